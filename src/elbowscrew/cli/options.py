@@ -1,0 +1,37 @@
+"""Options that several commands share, and values the shell gives as text."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from typing import Literal
+
+from elbowscrew.errors import UsageError
+
+Units = Literal["m", "cm", "mm"]
+Rotation = Literal["quaternion", "XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX"]
+
+
+class FigureFormat(StrEnum):
+    """Formats of figures; an enumeration because typer takes no list of literals."""
+
+    PNG = "png"
+    SVG = "svg"
+    PDF = "pdf"
+    NONE = "none"
+
+
+def frame_numbers(text: str | None) -> tuple[int, ...] | None:
+    """Split ``0,211,449`` into frame numbers.
+
+    Raises
+    ------
+    UsageError
+        If there is anything else between the commas.
+    """
+    if text is None:
+        return None
+    try:
+        return tuple(int(part) for part in text.split(","))
+    except ValueError as error:
+        msg = f"--keyframes {text!r}: expected frame numbers with commas between them, as in 0,211,449"
+        raise UsageError(msg) from error

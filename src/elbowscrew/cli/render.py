@@ -1,0 +1,140 @@
+"""What a person reads on the terminal: results on standard output, warnings on standard error."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+
+def warnings(found: Iterable[Mapping[str, str]]) -> None:
+    """Write one line a warning."""
+    for warning in found:
+        sys.stderr.write(f"elbowscrew: warning: {' '.join(warning['message'].split())} [{warning['code']}]\n")
+
+
+def json_object(value: Mapping[str, Any]) -> None:
+    """Write one JSON object."""
+    sys.stdout.write(json.dumps(value, indent=2, ensure_ascii=True, allow_nan=False) + "\n")
+
+
+def files(folder: Path) -> None:
+    """Name the files of a result on standard error."""
+    for path in sorted(folder.rglob("*")):
+        if path.is_file():
+            sys.stderr.write(f"{path}\n")
+
+
+def analysis_table(summary: Mapping[str, Any], folder: Path) -> None:
+    """Write the result of one trial at a glance."""
+    trial, motion, model = summary["trial"], summary["motion"], summary["interpolation"]
+    rows = [
+        ("Bodies", f"{_body(trial['arm'])} → {_body(trial['forearm'])}"),
+        ("Frames", _frames(trial)),
+        ("Angle θ", f"{motion['theta_min_deg']:.2f} to {motion['theta_max_deg']:.2f} deg"),
+        ("Inversion", ", ".join(f"frame {frame}" for frame in motion["inversion_frames"]) or "none"),
+        (
+            "Slide",
+            f"median {_number(motion['slide_median_mm'])} mm ({_number(motion['slide_min_mm'])} to "
+            f"{_number(motion['slide_max_mm'])})",
+        ),
+        (
+            "Mean axis",
+            f"direction ({_vector(motion['mean_axis']['direction'], 4)}), "
+            f"point ({_vector(motion['mean_axis']['point_mm'], 1)}) mm, in the {motion['expressed_in']} frame",
+        ),
+        (
+            "Dispersion",
+            f"median {motion['axis_dispersion_deg']:.2f} deg over the {motion['axis_frames']} frames with an axis",
+        ),
+        (
+            "Model",
+            f"{model['method']} {model['blend']}, {model['law']} law, keyframes "
+            f"{', '.join(map(str, model['keyframes']))}",
+        ),
+        (
+            "Model error",
+            f"θ {_number(model['rmse_theta_deg'])} deg RMS, {_number(model['max_theta_error_deg'])} at most "
+            f"(frame {model['max_theta_error_frame']}); displacement {_number(model['rms_displacement_mm'])} mm RMS"
+            + ("" if model["points"]["from"] == "markers" else f" ({_radius(model)})"),
+        ),
+        ("Results", str(folder)),
+    ]
+    _print_rows(_printable(summary["source"]["name"] or ""), rows)
+
+
+def info_table(summary: Mapping[str, Any]) -> None:
+    """Write what a file holds."""
+    source, trial = summary["source"], summary["trial"]
+    rotation = "quaternion" if source["rotation"] == "quaternion" else f"Euler {source['rotation']} (deg)"
+    rows = [
+        ("Layout", f"{source['layout']}, {rotation}, {source['length_unit']}"),
+        ("Take", source["take"] or "–"),
+        (
+            "Frames",
+            f"{trial['frames']} ({trial['first_frame']} to {trial['last_frame']}), {trial['rate_hz']:.6g} Hz, "
+            f"{trial['duration_s']:.3f} s",
+        ),
+        ("Roles", summary["roles"]["text"]),
+    ]
+    _print_rows(_printable(source["name"] or ""), rows)
+    table = Table(box=None, pad_edge=False, header_style="bold")
+    for column in ("Body", "Id", "Tracked", "Lost frames", "Markers"):
+        table.add_column(column, justify="right" if column in ("Tracked", "Markers") else "left", overflow="fold")
+    for body in trial["bodies"]:
+        table.add_row(
+            Text(_printable(body["name"])),
+            Text(_printable(body["id"])),
+            f"{100.0 * body['tracked_share']:.1f} %",
+            ", ".join(f"{count} {reason}" for reason, count in body["lost_frames"].items()) or "–",
+            str(body["markers"] or "–"),
+        )
+    Console().print(table)
+
+
+def _print_rows(title: str, rows: Iterable[tuple[str, str]]) -> None:
+    console = Console(highlight=False)
+    table = Table(box=None, show_header=False, pad_edge=False)
+    table.add_column(style="bold", no_wrap=True)
+    table.add_column(overflow="fold")
+    for name, value in rows:
+        table.add_row(name, Text(_printable(value)))
+    console.print(Text(title, style="bold"))
+    console.print(table)
+
+
+def _body(body: Mapping[str, Any] | None) -> str:
+    if body is None:
+        return "still arm"
+    return f"{body['name']} ({100.0 * body['tracked_share']:.1f} % tracked)"
+
+
+def _frames(trial: Mapping[str, Any]) -> str:
+    lost = trial["frames"] - trial["measured_frames"] - trial["filled_frames"]
+    parts = [f"{trial['frames']} at {trial['rate_hz']:.6g} Hz ({trial['duration_s']:.2f} s)"]
+    parts += [f"{trial['filled_frames']} filled"] if trial["filled_frames"] else []
+    parts += [f"{lost} lost"] if lost else []
+    return ", ".join(parts)
+
+
+def _number(value: float | None) -> str:
+    return "–" if value is None else f"{value:.2f}"
+
+
+def _vector(values: Iterable[float], decimals: int) -> str:
+    return ", ".join(f"{value:.{decimals}f}" for value in values)
+
+
+def _radius(model: Mapping[str, Any]) -> str:
+    return f"radius of gyration {model['points']['radius_of_gyration_mm']:g} mm"
+
+
+def _printable(text: str) -> str:
+    """Names come from files: no control character of theirs may reach the terminal."""
+    return "".join(character if character.isprintable() else "?" for character in text)

@@ -1,0 +1,78 @@
+"""``elbowscrew simulate``: a synthetic trial with its truth beside it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+import typer
+
+from elbowscrew.cli import options
+
+_MOTION, _RECORDING, _OUTPUT = "Motion", "Recording", "Output"
+
+
+def simulate(
+    output: Annotated[Path, typer.Argument(metavar="OUT.csv", help="File to write.", show_default=False)],
+    frames: Annotated[int, typer.Option(rich_help_panel=_MOTION, help="Frames of one repetition.")] = 450,
+    rate: Annotated[float, typer.Option(metavar="HZ", rich_help_panel=_RECORDING, help="Frames a second.")] = 100.0,
+    top: Annotated[float, typer.Option(metavar="DEG", rich_help_panel=_MOTION, help="Largest angle.")] = 130.0,
+    inversion: Annotated[
+        int, typer.Option(metavar="FRAME", rich_help_panel=_MOTION, help="Frame of the largest angle.")
+    ] = 211,
+    slide: Annotated[
+        float, typer.Option(metavar="MM", rich_help_panel=_MOTION, help="Slide along the axis at the top.")
+    ] = 3.0,
+    law: Annotated[
+        Literal["minimum-jerk", "cycloidal"], typer.Option(rich_help_panel=_MOTION, help="Law of motion.")
+    ] = "minimum-jerk",
+    arm: Annotated[Literal["moving", "still"], typer.Option(rich_help_panel=_MOTION, help="The upper arm.")] = "still",
+    repetitions: Annotated[int, typer.Option(rich_help_panel=_MOTION, help="Flexion-extension cycles.")] = 1,
+    rest_before: Annotated[
+        float, typer.Option(metavar="SECONDS", rich_help_panel=_MOTION, help="Rest before the movement.")
+    ] = 0.0,
+    rest_after: Annotated[
+        float, typer.Option(metavar="SECONDS", rich_help_panel=_MOTION, help="Rest after the movement.")
+    ] = 0.0,
+    marker_noise: Annotated[
+        float, typer.Option(metavar="MM", rich_help_panel=_RECORDING, help="SD of each marker coordinate.")
+    ] = 0.2,
+    gaps: Annotated[int, typer.Option(rich_help_panel=_RECORDING, help="Times the forearm is lost.")] = 0,
+    gap_frames: Annotated[int, typer.Option(rich_help_panel=_RECORDING, help="Frames of each gap.")] = 5,
+    sign_flips: Annotated[
+        bool, typer.Option("--sign-flips", rich_help_panel=_RECORDING, help="Flip quaternion signs at random.")
+    ] = False,
+    seed: Annotated[int, typer.Option(rich_help_panel=_RECORDING, help="Seed of noise, gaps and flips.")] = 0,
+    layout: Annotated[
+        Literal["motive", "row-tagged"], typer.Option("--format", rich_help_panel=_OUTPUT, help="File layout.")
+    ] = "motive",
+    length_unit: Annotated[
+        options.Units, typer.Option(rich_help_panel=_OUTPUT, help="Unit of length in the file (row-tagged: m).")
+    ] = "m",
+    force: Annotated[bool, typer.Option("--force", rich_help_panel=_OUTPUT, help="Replace existing files.")] = False,
+) -> None:
+    """Write a synthetic elbow trial, and the truth about it in <OUT>.truth.json."""
+    from elbowscrew.results import save_simulation
+    from elbowscrew.simulate import Simulation, simulate_recording
+
+    simulation = Simulation(
+        frames=frames,
+        rate_hz=rate,
+        top_deg=top,
+        inversion=inversion,
+        slide_mm=slide,
+        law=law,
+        marker_noise_mm=marker_noise,
+        gaps=gaps,
+        gap_frames=gap_frames,
+        sign_flips=sign_flips,
+        arm=arm,
+        repetitions=repetitions,
+        rest_before_s=rest_before,
+        rest_after_s=rest_after,
+        seed=seed,
+    )
+    for path in save_simulation(
+        simulate_recording(simulation), output, layout=layout, length_unit=length_unit, force=force
+    ):
+        typer.echo(str(path))

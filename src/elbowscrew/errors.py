@@ -1,0 +1,54 @@
+"""Everything that can go wrong for a reason outside the program.
+
+::
+
+    ElbowscrewError
+    ├── UsageError       2  a setting is not a possible one, whatever the recording
+    ├── RecordingError   3  the recording cannot be read
+    ├── SettingError     4  a setting does not fit this recording
+    ├── AnalysisError    5  the recording can be read but not analyzed
+    └── OutputError      6  the output cannot be written, or exists
+
+The number is the exit code of the command line. A message is one line and says the place, what was expected, what was
+found and what to do next.
+"""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+
+class ElbowscrewError(Exception):
+    """Base of all errors that a file, a setting or a disk can cause."""
+
+    exit_code: ClassVar[int] = 1
+
+
+class UsageError(ElbowscrewError):
+    """A setting that cannot hold for any recording: an unknown key, a negative angle."""
+
+    exit_code = 2
+
+
+class RecordingError(ElbowscrewError):
+    """The file is missing, damaged, or not a recording that can be read safely."""
+
+    exit_code = 3
+
+
+class SettingError(ElbowscrewError):
+    """A setting that does not fit this recording: a body or a frame that is not in it."""
+
+    exit_code = 4
+
+
+class AnalysisError(ElbowscrewError):
+    """The recording holds too little tracking or too little rotation for an axis."""
+
+    exit_code = 5
+
+
+class OutputError(ElbowscrewError):
+    """The result exists already, or the disk does not take it."""
+
+    exit_code = 6

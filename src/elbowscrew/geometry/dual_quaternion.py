@@ -1,0 +1,301 @@
+"""Unit dual quaternions as poses and displacements, shape (..., 8): real part (4), then dual part (4).
+
+A pose is ``Q = q + eps 1/2 d q`` and maps body coordinates to the frame's, ``x = R(q) X + d``. `Q` and `-Q` are the
+same pose. Lines are Plücker vectors, shape (..., 6): unit direction ``h``, then moment ``m = p x h``.
+The conventions are stated in ``docs/conventions.md``.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from elbowscrew.geometry import quaternion
+from elbowscrew.geometry._small_angle import divide, length, sinc, sinc_slope
+
+_QUATERNION_CONJUGATE = np.array([1.0, -1.0, -1.0, -1.0, 1.0, -1.0, -1.0, -1.0])
+_DUAL_CONJUGATE = np.array([1.0, 1.0, 1.0, 1.0, -1.0, -1.0, -1.0, -1.0])
+
+
+class DualNumber(NamedTuple):
+    """A dual number ``real + eps dual``; both parts have the same shape (...)."""
+
+    real: NDArray[np.float64]
+    dual: NDArray[np.float64]
+
+
+def multiply(left: ArrayLike, right: ArrayLike) -> NDArray[np.float64]:
+    """Product of dual quaternions; as motions, ``right`` is applied first.
+
+    Parameters
+    ----------
+    left, right : array_like, shape (..., 8)
+        Leading shapes broadcast.
+
+    Returns
+    -------
+    ndarray, shape (..., 8)
+
+    References
+    ----------
+    P 40.
+
+    Examples
+    --------
+    >>> shift = dual_quat_from_pose([1, 0, 0, 0], [0, 0, 2])
+    >>> pose_from_dual_quat(multiply(shift, shift))[1]
+    array([0., 0., 4.])
+    """
+    a = np.asarray(left, dtype=np.float64)
+    b = np.asarray(right, dtype=np.float64)
+    product = np.empty((*np.broadcast_shapes(a.shape[:-1], b.shape[:-1]), 8))
+    product[..., :4] = quaternion.multiply(a[..., :4], b[..., :4])
+    product[..., 4:] = quaternion.multiply(a[..., :4], b[..., 4:]) + quaternion.multiply(a[..., 4:], b[..., :4])
+    return product
+
+
+def conjugate(dual_quat: ArrayLike) -> NDArray[np.float64]:
+    """Quaternion conjugate ``q* + eps q0*`` (P 41), shape (..., 8). For a unit dual quaternion it is the inverse."""
+    conjugated: NDArray[np.float64] = np.multiply(np.asarray(dual_quat, dtype=np.float64), _QUATERNION_CONJUGATE)
+    return conjugated
+
+
+def dual_conjugate(dual_quat: ArrayLike) -> NDArray[np.float64]:
+    """Conjugate of the dual unit ``q - eps q0``, shape (..., 8)."""
+    conjugated: NDArray[np.float64] = np.multiply(np.asarray(dual_quat, dtype=np.float64), _DUAL_CONJUGATE)
+    return conjugated
+
+
+def full_conjugate(dual_quat: ArrayLike) -> NDArray[np.float64]:
+    """Both conjugates, ``q* - eps q0*``, shape (..., 8): the one that moves points, ``Q (1 + eps p) Q^``."""
+    conjugated: NDArray[np.float64] = np.multiply(
+        np.asarray(dual_quat, dtype=np.float64), _QUATERNION_CONJUGATE * _DUAL_CONJUGATE
+    )
+    return conjugated
+
+
+def norm(dual_quat: ArrayLike) -> DualNumber:
+    """Norm, a dual number: ``|q| + eps <q, q0>/|q|``; the dual part is NaN where q = 0.
+
+    References
+    ----------
+    P 42, with the real part's norm where the dual part's is printed.
+    """
+    Q = np.asarray(dual_quat, dtype=np.float64)
+    real = length(Q[..., :4])
+    return DualNumber(real, divide(np.sum(Q[..., :4] * Q[..., 4:], axis=-1), real))
+
+
+def normalize(dual_quat: ArrayLike) -> NDArray[np.float64]:
+    """Unit dual quaternion, shape (..., 8): divided by the dual norm, so that also ``<q, q0> = 0``; NaN where q = 0."""
+    Q = np.asarray(dual_quat, dtype=np.float64)
+    real_norm = length(Q[..., :4])[..., None]
+    real = divide(Q[..., :4], real_norm)
+    dual = divide(Q[..., 4:], real_norm)
+    return np.concatenate([real, dual - np.sum(real * dual, axis=-1, keepdims=True) * real], axis=-1)
+
+
+def inverse(dual_quat: ArrayLike) -> NDArray[np.float64]:
+    """Inverse ``Q* / |Q|^2`` (P 43), shape (..., 8), of any dual quaternion with q != 0; NaN where q = 0."""
+    Q = np.asarray(dual_quat, dtype=np.float64)
+    real, dual = (part[..., None] for part in norm(Q))
+    Qc = conjugate(Q)
+    inv_real = divide(divide(Qc[..., :4], real), real)
+    inv_dual = divide(divide(Qc[..., 4:], real), real) - 2.0 * inv_real * divide(dual, real)
+    return np.concatenate([inv_real, inv_dual], axis=-1)
+
+
+def dual_quat_from_pose(quat: ArrayLike, position: ArrayLike) -> NDArray[np.float64]:
+    """Pose as a unit dual quaternion: ``q + eps 1/2 d q`` (P 9-11, unit scale).
+
+    Parameters
+    ----------
+    quat : array_like, shape (..., 4)
+        Unit quaternions of the orientation, body to frame.
+    position : array_like, shape (..., 3)
+        Position of the body's origin in the frame.
+
+    Returns
+    -------
+    ndarray, shape (..., 8)
+    """
+    q = np.asarray(quat, dtype=np.float64)
+    d = np.asarray(position, dtype=np.float64)
+    shape = np.broadcast_shapes(q.shape[:-1], d.shape[:-1])
+    half = np.zeros((*d.shape[:-1], 4))
+    half[..., 1:] = 0.5 * d
+    dual_quat = np.empty((*shape, 8))
+    dual_quat[..., :4] = q
+    dual_quat[..., 4:] = quaternion.multiply(half, q)
+    return dual_quat
+
+
+def pose_from_dual_quat(dual_quat: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Orientation (..., 4) and position (..., 3) of unit dual quaternions (..., 8): ``d = 2 q0 q*`` (P 16a)."""
+    Q = np.asarray(dual_quat, dtype=np.float64)
+    return Q[..., :4].copy(), 2.0 * quaternion.multiply(Q[..., 4:], quaternion.conjugate(Q[..., :4]))[..., 1:]
+
+
+def matrix_from_dual_quat(dual_quat: ArrayLike) -> NDArray[np.float64]:
+    """Homogeneous matrices, shape (..., 4, 4), of unit dual quaternions (..., 8); the rotation is P 17's."""
+    quat, position = pose_from_dual_quat(dual_quat)
+    matrix = np.zeros((*quat.shape[:-1], 4, 4))
+    matrix[..., :3, :3] = quaternion.rotation_matrix_from_quat(quat)
+    matrix[..., :3, 3] = position
+    matrix[..., 3, 3] = 1.0
+    return matrix
+
+
+def dual_quat_from_matrix(matrix: ArrayLike) -> NDArray[np.float64]:
+    """Unit dual quaternions, shape (..., 8), of homogeneous matrices (..., 4, 4)."""
+    m = np.asarray(matrix, dtype=np.float64)
+    return dual_quat_from_pose(quaternion.quat_from_rotation_matrix(m[..., :3, :3]), m[..., :3, 3])
+
+
+def exp(half_twist: ArrayLike) -> NDArray[np.float64]:
+    """Exponential of pure dual quaternions: the screw motion of a dual rotation vector.
+
+    Parameters
+    ----------
+    half_twist : array_like, shape (..., 6)
+        ``theta/2 h + eps (s/2 h + theta/2 m)``: half the rotation vector (rad), then half its dual part (length).
+
+    Returns
+    -------
+    ndarray, shape (..., 8)
+        Unit dual quaternions, exact to round-off down to the smallest angles.
+
+    References
+    ----------
+    P 45.
+    """
+    u = np.asarray(half_twist, dtype=np.float64)
+    a, b = u[..., :3], u[..., 3:]
+    half_angle = length(a)[..., None]
+    ratio = sinc(half_angle)
+    projection = np.sum(a * b, axis=-1, keepdims=True)
+    return np.concatenate(
+        [np.cos(half_angle), ratio * a, -ratio * projection, ratio * b + sinc_slope(half_angle) * projection * a],
+        axis=-1,
+    )
+
+
+def log(dual_quat: ArrayLike) -> NDArray[np.float64]:
+    """Logarithm of unit dual quaternions, shape (..., 6): the inverse of `exp`, half the dual rotation vector.
+
+    The angle is ``theta/2 = atan2(|v|, w)`` in [0, pi]: the sign of ``Q`` is taken as it stands, so that `-Q` is the
+    motion the other way round. For the shorter one use ``canonical(Q)``. At ``w = -1`` the axis of the full turn is
+    not defined and the result is NaN; towards it the result is as ill-conditioned as the axis.
+
+    References
+    ----------
+    P 47, by atan2 in place of the arccosine.
+    """
+    Q = np.asarray(dual_quat, dtype=np.float64)
+    w, v, w0, v0 = Q[..., :1], Q[..., 1:4], Q[..., 4:5], Q[..., 5:]
+    sine = length(v)[..., None]
+    half_angle = np.arctan2(sine, w)
+    undefined = (sine == 0.0) & (w < 0.0)
+    ratio = np.where(sine == 0.0, 1.0, half_angle / np.where(sine == 0.0, 1.0, sine))
+    ratio = np.where(undefined, np.nan, ratio)
+    # d(half_angle/sine) = w0 sinc_slope(half_angle) ratio^3 for a unit Q, where <v, v0> = -w w0.
+    return np.concatenate([ratio * v, ratio * v0 + w0 * sinc_slope(half_angle) * ratio**3 * v], axis=-1)
+
+
+def power(dual_quat: ArrayLike, exponent: ArrayLike) -> NDArray[np.float64]:
+    """``Q^t = exp(t log Q)`` of unit dual quaternions: the same screw by t times its dual angle.
+
+    Parameters
+    ----------
+    dual_quat : array_like, shape (..., 8)
+    exponent : array_like, shape (...)
+
+    Returns
+    -------
+    ndarray, shape (..., 8)
+        NaN at ``w = -1``, see `log`.
+
+    References
+    ----------
+    P 31 and 48.
+    """
+    return exp(np.asarray(exponent, dtype=np.float64)[..., None] * log(dual_quat))
+
+
+def canonical(dual_quat: ArrayLike) -> NDArray[np.float64]:
+    """The one of ``Q`` and ``-Q`` whose scalar part is not negative, shape (..., 8): the rotation of at most pi."""
+    Q = np.asarray(dual_quat, dtype=np.float64)
+    return np.where(Q[..., :1] < 0.0, -Q, Q)
+
+
+def align_signs(dual_quat: ArrayLike, reference: ArrayLike) -> NDArray[np.float64]:
+    """Flip the sign of ``Q``, shape (..., 8), where its real part has a negative dot product with the reference's."""
+    Q = np.asarray(dual_quat, dtype=np.float64)
+    R = np.asarray(reference, dtype=np.float64)
+    return np.where(np.sum(Q[..., :4] * R[..., :4], axis=-1, keepdims=True) < 0.0, -Q, Q)
+
+
+def continuous_signs(series: ArrayLike) -> NDArray[np.float64]:
+    """Make a series of poses continuous over the double cover.
+
+    Parameters
+    ----------
+    series : array_like, shape (N, 8)
+        Poses in order; rows with NaN are gaps and are passed over.
+
+    Returns
+    -------
+    ndarray, shape (N, 8)
+        Each row flipped, if need be, to a non-negative dot product of its real part with the last row that is no gap.
+        The first one keeps its sign.
+    """
+    Q = np.array(series, dtype=np.float64)
+    known = np.flatnonzero(np.isfinite(Q).all(axis=-1))
+    if known.size > 1:
+        dots = np.sum(Q[known[1:], :4] * Q[known[:-1], :4], axis=-1)
+        Q[known[1:]] *= np.cumprod(np.where(dots < 0.0, -1.0, 1.0))[:, None]
+    return Q
+
+
+def transform_points(dual_quat: ArrayLike, points: ArrayLike) -> NDArray[np.float64]:
+    """Move points: ``R p + d``, shape (..., 3).
+
+    Parameters
+    ----------
+    dual_quat : array_like, shape (..., 8)
+        Unit dual quaternions.
+    points : array_like, shape (..., 3)
+
+    References
+    ----------
+    P 18; in dual quaternions ``Q (1 + eps p) (q* - eps q0*)``, where K 35 and W print an inverse that loses d.
+    """
+    quat, position = pose_from_dual_quat(dual_quat)
+    return quaternion.rotate(quat, points) + position
+
+
+def transform_lines(dual_quat: ArrayLike, lines: ArrayLike) -> NDArray[np.float64]:
+    """Move lines: ``Q l Q*``, that is ``h' = R h`` and ``m' = R m + d x h'``.
+
+    Parameters
+    ----------
+    dual_quat : array_like, shape (..., 8)
+        Unit dual quaternions.
+    lines : array_like, shape (..., 6)
+        Direction, then moment about the origin.
+
+    Returns
+    -------
+    ndarray, shape (..., 6)
+
+    References
+    ----------
+    P 20-21.
+    """
+    quat, position = pose_from_dual_quat(dual_quat)
+    line = np.asarray(lines, dtype=np.float64)
+    direction = quaternion.rotate(quat, line[..., :3])
+    moment = quaternion.rotate(quat, line[..., 3:]) + np.cross(position, direction)
+    return np.concatenate([direction, moment], axis=-1)

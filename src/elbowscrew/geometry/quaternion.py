@@ -1,0 +1,171 @@
+"""Quaternions and Euler parameters, shape (..., 4), scalar first: ``e0, e1, e2, e3``."""
+
+from __future__ import annotations
+
+from itertools import permutations
+from typing import Final
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from elbowscrew.geometry._small_angle import divide, length, sinc
+
+EULER_ORDERS: Final = tuple("".join(order) for order in permutations("XYZ"))
+
+_CONJUGATE: Final = np.array([1.0, -1.0, -1.0, -1.0])
+
+
+def multiply(left: ArrayLike, right: ArrayLike) -> NDArray[np.float64]:
+    """Hamilton product; as rotations, ``right`` is applied first.
+
+    Parameters
+    ----------
+    left, right : array_like, shape (..., 4)
+        Quaternions, scalar first; leading shapes broadcast.
+
+    Returns
+    -------
+    ndarray, shape (..., 4)
+
+    Examples
+    --------
+    >>> multiply([0, 1, 0, 0], [0, 0, 1, 0])
+    array([0., 0., 0., 1.])
+    """
+    a = np.asarray(left, dtype=np.float64)
+    b = np.asarray(right, dtype=np.float64)
+    aw, ax, ay, az = (a[..., k] for k in range(4))
+    bw, bx, by, bz = (b[..., k] for k in range(4))
+    product = np.empty((*np.broadcast_shapes(a.shape[:-1], b.shape[:-1]), 4))
+    product[..., 0] = aw * bw - ax * bx - ay * by - az * bz
+    product[..., 1] = aw * bx + ax * bw + ay * bz - az * by
+    product[..., 2] = aw * by - ax * bz + ay * bw + az * bx
+    product[..., 3] = aw * bz + ax * by - ay * bx + az * bw
+    return product
+
+
+def conjugate(quat: ArrayLike) -> NDArray[np.float64]:
+    """Conjugate, shape (..., 4): the vector part changes its sign. For a unit quaternion it is the inverse."""
+    conjugated: NDArray[np.float64] = np.multiply(np.asarray(quat, dtype=np.float64), _CONJUGATE)
+    return conjugated
+
+
+def norm(quat: ArrayLike) -> NDArray[np.float64]:
+    """Euclidean norm of quaternions (..., 4), shape (...)."""
+    return length(np.asarray(quat, dtype=np.float64))
+
+
+def normalize(quat: ArrayLike) -> NDArray[np.float64]:
+    """Unit quaternion of the same direction, shape (..., 4); NaN for the zero quaternion."""
+    q = np.asarray(quat, dtype=np.float64)
+    return divide(q, norm(q)[..., None])
+
+
+def rotate(quat: ArrayLike, vector: ArrayLike) -> NDArray[np.float64]:
+    """Rotate vectors by unit quaternions: ``q v q*``.
+
+    Parameters
+    ----------
+    quat : array_like, shape (..., 4)
+        Unit quaternions.
+    vector : array_like, shape (..., 3)
+
+    Returns
+    -------
+    ndarray, shape (..., 3)
+
+    Examples
+    --------
+    >>> rotate([0.5**0.5, 0, 0, 0.5**0.5], [1, 0, 0]).round(12)
+    array([0., 1., 0.])
+    """
+    q = np.asarray(quat, dtype=np.float64)
+    v = np.asarray(vector, dtype=np.float64)
+    twice_cross = 2.0 * np.cross(q[..., 1:], v)
+    rotated: NDArray[np.float64] = v + q[..., :1] * twice_cross + np.cross(q[..., 1:], twice_cross)
+    return rotated
+
+
+def rotation_matrix_from_quat(quat: ArrayLike) -> NDArray[np.float64]:
+    """Rotation matrices, shape (..., 3, 3), of unit quaternions (..., 4).
+
+    References
+    ----------
+    P 17, rotation block. (Kenwright's equation 7 has misprinted signs.)
+    """
+    q = np.asarray(quat, dtype=np.float64)
+    w, x, y, z = (q[..., k] for k in range(4))
+    matrix = np.empty((*q.shape[:-1], 3, 3))
+    matrix[..., 0, 0] = w * w + x * x - y * y - z * z
+    matrix[..., 0, 1] = 2.0 * (x * y - w * z)
+    matrix[..., 0, 2] = 2.0 * (x * z + w * y)
+    matrix[..., 1, 0] = 2.0 * (x * y + w * z)
+    matrix[..., 1, 1] = w * w - x * x + y * y - z * z
+    matrix[..., 1, 2] = 2.0 * (y * z - w * x)
+    matrix[..., 2, 0] = 2.0 * (x * z - w * y)
+    matrix[..., 2, 1] = 2.0 * (y * z + w * x)
+    matrix[..., 2, 2] = w * w - x * x - y * y + z * z
+    return matrix
+
+
+def quat_from_rotation_matrix(matrix: ArrayLike) -> NDArray[np.float64]:
+    """Unit quaternions, shape (..., 4), of rotation matrices (..., 3, 3); the scalar part is not negative.
+
+    The largest of the four components is taken from the diagonal and the others follow from it, so no digit is lost
+    at any angle, pi included.
+    """
+    m = np.asarray(matrix, dtype=np.float64)
+    xx, yy, zz = m[..., 0, 0], m[..., 1, 1], m[..., 2, 2]
+    wx, wy, wz = m[..., 2, 1] - m[..., 1, 2], m[..., 0, 2] - m[..., 2, 0], m[..., 1, 0] - m[..., 0, 1]
+    xy, xz, yz = m[..., 0, 1] + m[..., 1, 0], m[..., 0, 2] + m[..., 2, 0], m[..., 1, 2] + m[..., 2, 1]
+    # Row k is 4 q_k q: whichever row has the largest q_k^2 on its diagonal is normalized.
+    rows = np.stack(
+        [
+            np.stack([1.0 + xx + yy + zz, wx, wy, wz], axis=-1),
+            np.stack([wx, 1.0 + xx - yy - zz, xy, xz], axis=-1),
+            np.stack([wy, xy, 1.0 - xx + yy - zz, yz], axis=-1),
+            np.stack([wz, xz, yz, 1.0 - xx - yy + zz], axis=-1),
+        ],
+        axis=-2,
+    )
+    largest = np.argmax(np.nan_to_num(np.diagonal(rows, axis1=-2, axis2=-1), nan=-np.inf), axis=-1)
+    quat = normalize(np.take_along_axis(rows, largest[..., None, None], axis=-2)[..., 0, :])
+    return np.where(quat[..., :1] < 0.0, -quat, quat)
+
+
+def quat_from_rotation_vector(vector: ArrayLike) -> NDArray[np.float64]:
+    """Unit quaternions, shape (..., 4), of rotation vectors (..., 3) in radians: angle times unit axis.
+
+    Examples
+    --------
+    >>> quat_from_rotation_vector([0.0, 0.0, np.pi]).round(12)
+    array([0., 0., 0., 1.])
+    """
+    half = 0.5 * np.asarray(vector, dtype=np.float64)
+    half_angle = length(half)
+    return np.concatenate([np.cos(half_angle)[..., None], sinc(half_angle)[..., None] * half], axis=-1)
+
+
+def quat_from_euler_angles(angles: ArrayLike, order: str) -> NDArray[np.float64]:
+    """Unit quaternions of intrinsic Euler angles.
+
+    Parameters
+    ----------
+    angles : array_like, shape (..., 3)
+        Radians, in the order of the name: for "YXZ" the first is about Y.
+    order : str
+        One of the six orders of three different axes, in capitals: "XYZ" means R = Rx Ry Rz.
+
+    Returns
+    -------
+    ndarray, shape (..., 4)
+    """
+    if order not in EULER_ORDERS:
+        msg = f"Euler order {order!r} is not one of {', '.join(EULER_ORDERS)}"
+        raise ValueError(msg)
+    a = np.asarray(angles, dtype=np.float64)
+    axes = np.eye(3)
+    first, second, third = (
+        quat_from_rotation_vector(a[..., k : k + 1] * axes["XYZ".index(letter)]) for k, letter in enumerate(order)
+    )
+    return multiply(multiply(first, second), third)

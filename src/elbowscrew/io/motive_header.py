@@ -1,0 +1,161 @@
+"""The header of Motive's column layout: what each column is, found by label and not by counting."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import islice
+from typing import Final
+
+from elbowscrew.errors import RecordingError
+from elbowscrew.io.source import TextSource
+
+_HEADER_LINES: Final = 25
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ColumnKey:
+    """What the header says of one column."""
+
+    index: int
+    kind: str
+    name: str
+    identifier: str
+    field: str
+    axis: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Header:
+    """The header: the pairs of line 1 and a key for every column."""
+
+    pairs: dict[str, str]
+    columns: tuple[ColumnKey, ...]
+    lines: int
+
+    @property
+    def version(self) -> str:
+        """The number of the export format."""
+        return self.pairs.get("Format Version", "")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BodyColumns:
+    """Where one rigid body stands: its columns by label, its markers' columns."""
+
+    name: str
+    identifier: str
+    rotation: dict[str, int]
+    position: dict[str, int]
+    markers: tuple[tuple[int, int, int], ...]
+
+
+def parse_header(source: TextSource) -> Header:
+    """Find the header's rows by what they hold, not by counting: exports and spreadsheets insert and pad lines.
+
+    The axis row is the first whose first cell is `Frame`; the field row stands above it; the rows before that hold
+    types, names, ids and perhaps parents, in this order or as tagged in their second cell.
+    """
+    rows = list(csv.reader(islice(source.lines(), _HEADER_LINES)))
+    axis_row = next((k for k, row in enumerate(rows) if row and row[0].strip().casefold() == "frame"), None)
+    if axis_row is None or axis_row < 2:
+        msg = (
+            f"{source.path}: the header is cut: no row begins with 'Frame' in the first {_HEADER_LINES} lines; "
+            "export the take again"
+        )
+        raise RecordingError(msg)
+    cells = iter(cell.strip() for cell in rows[0])
+    pairs = {}
+    for key in cells:
+        if not key:
+            break
+        pairs[key] = next(cells, "")
+    labels = _label_rows(source, rows, axis_row)
+    axes, fields = rows[axis_row], rows[axis_row - 1]
+    width = _trimmed_width(axes)
+    columns = tuple(
+        ColumnKey(
+            index=k,
+            kind=_cell(labels["type"], k),
+            name=_cell(labels["name"], k),
+            identifier=_cell(labels["id"], k),
+            field=_cell(fields, k).casefold(),
+            axis=_cell(axes, k).upper(),
+        )
+        for k in range(width)
+    )
+    return Header(pairs=pairs, columns=columns, lines=axis_row + 1)
+
+
+def _trimmed_width(axes: Sequence[str]) -> int:
+    """Count the columns up to the last that has an axis label; spreadsheets pad the rest."""
+    return max(k for k, cell in enumerate(axes) if cell.strip()) + 1
+
+
+def _cell(row: Sequence[str], k: int) -> str:
+    return row[k].strip() if k < len(row) else ""
+
+
+def _label_rows(source: TextSource, rows: list[list[str]], axis_row: int) -> dict[str, list[str]]:
+    candidates = [row for row in rows[1 : axis_row - 1] if any(cell.strip() for cell in row[1:])]
+    tagged = {row[1].strip().casefold(): row for row in candidates if row[1].strip()}
+    if "type" in tagged:
+        return {key: tagged.get(key, []) for key in ("type", "name", "id")}
+    if len(candidates) < 3:
+        msg = (
+            f"{source.path}:{axis_row + 1}: the header is cut: expected rows of types, names and ids above the axis "
+            f"row, found {len(candidates)}; export the take again"
+        )
+        raise RecordingError(msg)
+    return dict(zip(("type", "name", "id"), candidates, strict=False))
+
+
+def body_columns(source: TextSource, header: Header) -> tuple[BodyColumns, ...]:
+    """Group the columns of the rigid bodies by id and name, taking every column by its label."""
+    groups: dict[tuple[str, str], list[ColumnKey]] = {}
+    markers: dict[str, dict[str, dict[str, int]]] = {}
+    for column in header.columns:
+        if column.kind.casefold() == "rigid body":
+            groups.setdefault((column.identifier, column.name), []).append(column)
+        elif column.kind.casefold() == "rigid body marker" and column.field == "position" and column.identifier:
+            markers.setdefault(column.identifier, {}).setdefault(column.name, {})[column.axis] = column.index
+    if not groups:
+        kinds = sorted({column.kind for column in header.columns[2:] if column.kind})
+        found = ", ".join(kinds) if kinds else "no data columns at all"
+        msg = (
+            f"{source.path}: no rigid bodies in the file (found: {found}); in Motive, solve the bodies and tick "
+            "'Rigid Bodies' in the export"
+        )
+        raise RecordingError(msg)
+    bodies = []
+    for (identifier, name), columns in groups.items():
+        rotation = _labelled(source, columns, "rotation", name)
+        position = _labelled(source, columns, "position", name)
+        if set(position) != set("XYZ") or set(rotation) not in (set("XYZ"), set("XYZW")):
+            msg = (
+                f"{source.path}:{header.lines}: body {name!r}: expected rotation X, Y, Z (W) and position X, Y, Z, "
+                f"found rotation {', '.join(rotation) or 'none'} and position {', '.join(position) or 'none'}; "
+                "export the take again"
+            )
+            raise RecordingError(msg)
+        own = markers.get(identifier, {})
+        triples = tuple((m["X"], m["Y"], m["Z"]) for m in own.values() if {"X", "Y", "Z"} <= set(m))
+        bodies.append(
+            BodyColumns(name=name, identifier=identifier, rotation=rotation, position=position, markers=triples)
+        )
+    return tuple(bodies)
+
+
+def _labelled(source: TextSource, columns: list[ColumnKey], field: str, body: str) -> dict[str, int]:
+    labelled: dict[str, int] = {}
+    for column in columns:
+        if column.field == field:
+            if column.axis in labelled:
+                msg = (
+                    f"{source.path}: body {body!r} stands twice in the file with the same id (columns "
+                    f"{labelled[column.axis] + 1} and {column.index + 1}); export the take again"
+                )
+                raise RecordingError(msg)
+            labelled[column.axis] = column.index
+    return labelled

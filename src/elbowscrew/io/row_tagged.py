@@ -1,0 +1,205 @@
+"""The row-tagged layout of Tracking Tools (1.0) and early Motive (1.1): the first cell of a line says what it is."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowscrew.errors import RecordingError, UsageError
+from elbowscrew.io.cells import parse_number
+from elbowscrew.io.source import TextSource
+from elbowscrew.model import QualityWarning, Recording, RigidBody, Source, TrackingLoss
+
+TAGS: Final = ("comment", "info", "righthanded", "lefthanded", "frame", "trackable", "rigidbody")
+_DEFINITIONS: Final = ("trackable", "rigidbody")
+_BODY_CELLS: Final = 11  # id, x, y, z, qx, qy, qz, qw, yaw, pitch, roll
+_OLD_VERSION: Final = "1.0"
+
+
+@dataclass(slots=True)
+class _Parsed:
+    """What the lines hold, gathered in one pass."""
+
+    info: dict[str, str] = field(default_factory=dict)
+    left_handed: bool = False
+    names: dict[int, str] = field(default_factory=dict)
+    markers: dict[int, list[list[float]]] = field(default_factory=dict)
+    frame: list[int] = field(default_factory=list)
+    time_s: list[float] = field(default_factory=list)
+    poses: dict[int, list[tuple[int, list[float]]]] = field(default_factory=dict)
+
+
+def read(source: TextSource, units: str | None, rotation: str | None) -> Recording:
+    """Read a file of the row-tagged layout; see `elbowscrew.io.reading.read_recording`.
+
+    Positions are meters, quaternions x, y, z, w. A body that is missing from a frame's row was not tracked; the
+    extended rows, which repeat its last pose then, are not used.
+    """
+    if units not in (None, "m") or rotation not in (None, "quaternion"):
+        msg = "units and rotation: the row-tagged layout has always meters and quaternions; leave both options out"
+        raise UsageError(msg)
+    parsed = _parse(source)
+    _validate(source, parsed)
+    return _build(source, parsed)
+
+
+def _parse(source: TextSource) -> _Parsed:
+    parsed = _Parsed()
+    for number, row in _rows(source):
+        tag = row[0].casefold()
+        try:
+            if tag == "info" and len(row) > 2:
+                parsed.info[row[1].casefold()] = row[2]
+            elif tag == "lefthanded":
+                parsed.left_handed = True
+            elif tag == "frame":
+                _parse_frame(parsed, row)
+            elif tag in _DEFINITIONS and _is_definition(row):
+                identifier, count = _integer(row[2]), _integer(row[3])
+                offsets = [_finite(cell) for cell in row[4 : 4 + 3 * count]]
+                if identifier in parsed.names or len(offsets) != 3 * count:
+                    msg = f"body {row[1]!r} is defined twice" if identifier in parsed.names else "the row is cut"
+                    raise ValueError(msg)
+                parsed.names[identifier] = row[1]
+                parsed.markers[identifier] = [offsets[k : k + 3] for k in range(0, 3 * count, 3)]
+            elif tag not in TAGS:
+                msg = f"expected one of {', '.join(TAGS)} in the first cell, found {row[0][:40]!r}"
+                raise ValueError(msg)
+        except (ValueError, IndexError) as error:
+            reason = "the row is cut" if isinstance(error, IndexError) else str(error)
+            msg = f"{source.path}:{number}: {reason}; export the take again"
+            raise RecordingError(msg) from error
+    return parsed
+
+
+def _rows(source: TextSource) -> Iterator[tuple[int, list[str]]]:
+    for number, line in enumerate(source.lines(), start=1):
+        if line.strip(", \t"):
+            try:
+                row = [cell.strip() for cell in next(csv.reader([line]))]
+            except csv.Error as error:
+                msg = f"{source.path}:{number}: not a line of a CSV file: {error}"
+                raise RecordingError(msg) from error
+            yield number, row
+
+
+def _is_definition(row: list[str]) -> bool:
+    """Tell a definition, with a name in its second cell, from an extended row, with frame, time and then the name."""
+    if len(row) < 4:
+        raise IndexError
+    try:
+        parse_number(row[3])
+    except ValueError:
+        return False
+    return True
+
+
+def _integer(text: str) -> int:
+    value = _finite(text)
+    if value != int(value):
+        msg = f"expected a whole number, found {text[:40]!r}"
+        raise ValueError(msg)
+    return int(value)
+
+
+def _finite(text: str) -> float:
+    value = parse_number(text)
+    if value != value:
+        msg = "expected a number, found a blank cell"
+        raise ValueError(msg)
+    return value
+
+
+def _parse_frame(parsed: _Parsed, row: list[str]) -> None:
+    frame, time_s, count = _integer(row[1]), _finite(row[2]), _integer(row[3])
+    if count < 0 or len(row) < 4 + _BODY_CELLS * count:
+        raise IndexError
+    index = len(parsed.frame)
+    seen: set[int] = set()
+    for k in range(count):
+        cells = row[4 + _BODY_CELLS * k : 4 + _BODY_CELLS * (k + 1)]
+        identifier = _integer(cells[0])
+        if identifier in seen:
+            msg = f"body {identifier} stands twice in the frame"
+            raise ValueError(msg)
+        seen.add(identifier)
+        parsed.poses.setdefault(identifier, []).append((index, [_finite(cell) for cell in cells[1:8]]))
+    parsed.frame.append(frame)
+    parsed.time_s.append(time_s)
+
+
+def _validate(source: TextSource, parsed: _Parsed) -> None:
+    """Collect all that forbids a safe reading and raise it together."""
+    faults = []
+    if parsed.left_handed:
+        faults.append("left-handed coordinates, in which every rotation is mirrored, are not read")
+    if not parsed.frame:
+        faults.append("no frame rows")
+    if not parsed.names and not parsed.poses:
+        faults.append("no rigid bodies (trackables)")
+    strangers = sorted(set(parsed.poses) - set(parsed.names))
+    if strangers:
+        faults.append(
+            f"the frames tell of bodies {', '.join(map(str, strangers))} but the definitions of "
+            f"{', '.join(map(str, sorted(parsed.names))) or 'none'}, so it is not certain which pose is whose"
+        )
+    if faults:
+        msg = f"{source.path}: {'; '.join(faults)}; export the take again, right-handed and with its rigid bodies"
+        raise RecordingError(msg)
+
+
+def _build(source: TextSource, parsed: _Parsed) -> Recording:
+    frame = np.array(parsed.frame, dtype=np.int64)
+    time_s = np.array(parsed.time_s)
+    bodies = [_body(parsed, identifier, frame.size) for identifier in parsed.names]
+    span = time_s[-1] - time_s[0]
+    rate = float((frame[-1] - frame[0]) / span) if span > 0.0 else 0.0
+    if not rate > 0.0:
+        msg = f"{source.path}: frame numbers and times do not increase from the first to the last row"
+        raise RecordingError(msg)
+    warnings = []
+    stated = parsed.info.get("framecount", "")
+    if stated and stated != str(frame.size):
+        message = f"the file states {stated} frames and has {frame.size}"
+        warnings.append(QualityWarning(code="frame-count", message=message))
+    if not source.ends_with_newline:
+        message = "the last line has no line end: the file may have been cut"
+        warnings.append(QualityWarning(code="no-final-newline", message=message))
+    return Recording(
+        bodies=tuple(bodies),
+        frame=frame,
+        time_s=time_s,
+        rate_hz=rate,
+        source=Source(
+            path=str(source.path),
+            sha256=source.sha256,
+            layout=f"row-tagged {parsed.info.get('version', _OLD_VERSION)}",
+            length_unit="m",
+            rotation_type="quaternion",
+            metadata=parsed.info,
+        ),
+        warnings=tuple(warnings),
+    )
+
+
+def _body(parsed: _Parsed, identifier: int, frames: int) -> RigidBody:
+    cells: NDArray[np.float64] = np.full((frames, 7), np.nan)
+    loss = np.full(frames, TrackingLoss.ABSENT, dtype=np.uint8)
+    poses = parsed.poses.get(identifier, [])
+    rows = [row for row, _ in poses]
+    cells[rows] = np.array([pose for _, pose in poses]).reshape(-1, 7)
+    loss[rows] = TrackingLoss.NONE
+    markers = parsed.markers[identifier]
+    return RigidBody.from_quaternions(
+        parsed.names[identifier],
+        cells[:, [6, 3, 4, 5]],
+        cells[:, :3],
+        identifier=str(identifier),
+        loss=loss,
+        marker_offsets=markers or None,
+    )

@@ -1,0 +1,106 @@
+"""A text file as the readers see it: checked, hashed, and given out line by line."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+from elbowscrew.errors import RecordingError
+
+_HEAD_BYTES: Final = 65536
+_MAX_LINE: Final = 1 << 24
+
+# Signatures of files that are taken for a CSV export by mistake.
+_NOT_TEXT: Final = {
+    b"PK\x03\x04": "a zip archive or a spreadsheet workbook; save it as CSV",
+    b"\xff\xfe": "UTF-16 text; save it as CSV in UTF-8",
+    b"\xfe\xff": "UTF-16 text; save it as CSV in UTF-8",
+    b"\x1f\x8b": "gzip-compressed; unpack it first",
+}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TextSource:
+    """A file that has been found to be text.
+
+    Attributes
+    ----------
+    path : Path
+    sha256 : str
+        Of the bytes as they are on disk.
+    ends_with_newline : bool
+        False hints that the file may have been cut.
+    """
+
+    path: Path
+    sha256: str
+    ends_with_newline: bool
+
+    def lines(self) -> Iterator[str]:
+        """Yield the lines without their ends, be these LF, CRLF or CR.
+
+        Raises
+        ------
+        RecordingError
+            If a line is not UTF-8, or is longer than any export's.
+        """
+        number = 0
+        try:
+            with self.path.open(encoding="utf-8-sig", newline=None) as stream:
+                while line := stream.readline(_MAX_LINE):
+                    number += 1
+                    if len(line) >= _MAX_LINE:
+                        msg = f"{self.path}:{number}: a line of over {_MAX_LINE} characters: not an OptiTrack export"
+                        raise RecordingError(msg)
+                    yield line.removesuffix("\n")
+        except UnicodeDecodeError as error:
+            msg = (
+                f"{self.path}: not UTF-8 text (byte 0x{error.object[error.start]:02x} after line {number}); "
+                "save it as CSV in UTF-8"
+            )
+            raise RecordingError(msg) from error
+        except OSError as error:
+            msg = f"{self.path}: cannot be read: {error.strerror}"
+            raise RecordingError(msg) from error
+
+
+def open_source(path: Path) -> TextSource:
+    """Check that a file is there and is text.
+
+    Raises
+    ------
+    RecordingError
+        If it is missing, a folder, unreadable, empty or binary.
+    """
+    try:
+        with path.open("rb") as stream:
+            head = stream.read(_HEAD_BYTES)
+            stream.seek(0)
+            digest = hashlib.file_digest(stream, "sha256").hexdigest()
+            last = b""
+            if head:
+                stream.seek(-1, 2)
+                last = stream.read(1)
+    except FileNotFoundError as error:
+        msg = f"{path}: no such file"
+        raise RecordingError(msg) from error
+    except IsADirectoryError as error:
+        msg = f"{path}: a folder, not a recording; give one exported CSV file"
+        raise RecordingError(msg) from error
+    except OSError as error:
+        msg = f"{path}: cannot be read: {error.strerror or error}"
+        raise RecordingError(msg) from error
+    if not head.strip(b"\xef\xbb\xbf\r\n\t ,;"):
+        msg = f"{path}: the file is empty; export the take again"
+        raise RecordingError(msg)
+    for signature, what in _NOT_TEXT.items():
+        if head.startswith(signature):
+            msg = f"{path}: {what}"
+            raise RecordingError(msg)
+    if b"\0" in head:
+        msg = f"{path}: a binary file, not text; export the take as CSV"
+        raise RecordingError(msg)
+    return TextSource(path=path, sha256=digest, ends_with_newline=last in (b"\n", b"\r"))

@@ -1,0 +1,40 @@
+"""Tables as CSV, with digits that read back as the same float64."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowscrew import tables
+from elbowscrew.model import Analysis
+
+_BLOCK_ROWS = 4096
+
+
+def write_tables(folder: Path, analysis: Analysis) -> None:
+    """Write ``screw.csv`` and ``interpolation.csv`` into a folder, in the units of the settings."""
+    units = analysis.settings.angle_unit, analysis.settings.length_unit
+    write_csv(folder / "screw.csv", tables.columns(analysis.screw, tables.SCREW_COLUMNS, *units))
+    write_csv(folder / "interpolation.csv", tables.columns(analysis.interpolated, tables.INTERPOLATION_COLUMNS, *units))
+
+
+def write_csv(path: Path, columns: dict[str, NDArray[Any]]) -> None:
+    """Write columns of equal length; NaN and masked values become empty cells."""
+    rows = len(next(iter(columns.values())))
+    with path.open("w", encoding="utf-8", newline="") as stream:
+        stream.write(",".join(columns) + "\n")
+        for start in range(0, rows, _BLOCK_ROWS):
+            block = [_texts(values[start : start + _BLOCK_ROWS]) for values in columns.values()]
+            stream.writelines(",".join(cells) + "\n" for cells in zip(*block, strict=True))
+
+
+def _texts(values: NDArray[Any]) -> list[str]:
+    if isinstance(values, np.ma.MaskedArray):
+        return ["" if value is None else str(value) for value in values.tolist()]
+    if values.dtype.kind == "i":
+        return [str(value) for value in values.tolist()]
+    # Adding 0.0 turns -0.0 into 0.0; repr is the shortest text that reads back as the same number.
+    return ["" if value != value else repr(value) for value in (values + 0.0).tolist()]

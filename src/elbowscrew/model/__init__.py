@@ -1,0 +1,27 @@
+"""What flows through the program: recordings in, results out; frozen, in SI units and radians."""
+
+from elbowscrew.model.recording import QualityWarning, Recording, RigidBody, Source, TrackingLoss
+from elbowscrew.model.results import (
+    Analysis,
+    BodyPoints,
+    InterpolatedMotion,
+    JointMotion,
+    Keyframes,
+    MeanAxis,
+    ScrewMotion,
+)
+
+__all__ = [
+    "Analysis",
+    "BodyPoints",
+    "InterpolatedMotion",
+    "JointMotion",
+    "Keyframes",
+    "MeanAxis",
+    "QualityWarning",
+    "Recording",
+    "RigidBody",
+    "ScrewMotion",
+    "Source",
+    "TrackingLoss",
+]

@@ -1,0 +1,227 @@
+"""Results: what an analysis finds, frozen, in SI units and radians."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowscrew import tables
+from elbowscrew.model.recording import QualityWarning, Recording, RigidBody
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from elbowscrew.settings import Settings
+
+Float = NDArray[np.float64]
+Bool = NDArray[np.bool_]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class JointMotion:
+    """The forearm (distal) seen from the arm (proximal), frame by frame.
+
+    Attributes
+    ----------
+    dual_quat_proximal_distal : ndarray, shape (N, 8)
+        ``J_i = A_i^-1 F_i``, sign-continuous; NaN where there is neither a measured nor a filled pose.
+    measured, filled : ndarray of bool, shape (N,)
+        Where both bodies were tracked; where a short gap was bridged.
+    reference : ndarray, shape (8,)
+        ``J_0``, the pose every displacement is counted from.
+    reference_row : int
+    dual_quat_lab_proximal : ndarray, shape (8,)
+        ``A_0``, the arm at the reference; the identity if the file has no arm.
+    """
+
+    dual_quat_proximal_distal: Float
+    measured: Bool
+    filled: Bool
+    reference: Float
+    reference_row: int
+    dual_quat_lab_proximal: Float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ScrewMotion:
+    """The displacement since the reference (P 35) and its screw, frame by frame; NaN where not defined or not known.
+
+    Attributes
+    ----------
+    frame, time_s : ndarray, shape (N,)
+    valid, filled : ndarray of bool, shape (N,)
+        Pose measured; pose of a short gap filled in.
+    angle : ndarray, shape (N,)
+        Rotation theta, radians, continuous in time, positive where it is largest.
+    slide : ndarray, shape (N,)
+        Translation along the axis, meters.
+    axis_direction, axis_point : ndarray, shape (N, 3)
+        Unit direction, and the point (m) of the axis nearest the origin, in the frame the screw is expressed in.
+    euler_parameters, translation : ndarray, shape (N, 4) and (N, 3)
+        The displacement itself: sign-continuous e0..e3, and d in meters.
+    """
+
+    frame: NDArray[np.int64]
+    time_s: Float
+    valid: Bool
+    filled: Bool
+    angle: Float
+    slide: Float
+    axis_direction: Float
+    axis_point: Float
+    euler_parameters: Float
+    translation: Float
+
+    @property
+    def axis_known(self) -> Bool:
+        """Frames whose rotation is large enough for an axis, shape (N,)."""
+        return np.logical_and.reduce(np.isfinite(self.axis_direction), axis=1)
+
+    def to_frame(self, angle_unit: tables.AngleUnit = "deg", length_unit: tables.LengthUnit = "mm") -> pd.DataFrame:
+        """Return the columns of ``screw.csv``."""
+        return tables.data_frame(self, tables.SCREW_COLUMNS, angle_unit, length_unit)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MeanAxis:
+    """The mean of the axes and their spread about it, in the frame the screw is expressed in.
+
+    Attributes
+    ----------
+    direction, point : ndarray, shape (3,)
+        Unit vector, and the point (m) nearest the origin; mean weighted by ``sin^2(theta/2)``.
+    deviation : ndarray, shape (N,)
+        Angle between each frame's axis and the plain mean direction, radians; NaN where there is no axis.
+    distance : ndarray, shape (N,)
+        Distance between the mean axis and the point of each frame's axis nearest the mean point, meters.
+    """
+
+    direction: Float
+    point: Float
+    deviation: Float
+    distance: Float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Keyframes:
+    """The poses the model passes through, and the phases between the inversions.
+
+    Attributes
+    ----------
+    row, frame : ndarray of int, shape (K,)
+        Row in the recording and frame number of each keyframe.
+    phase_bounds : ndarray of int, shape (P + 1,)
+        Indices into the keyframes where the phases begin and end.
+    knots : tuple of ndarray
+        For each phase (one for a global blend) the parameter at its keyframes.
+    """
+
+    row: NDArray[np.int64]
+    frame: NDArray[np.int64]
+    phase_bounds: NDArray[np.int64]
+    knots: tuple[Float, ...]
+
+    @property
+    def inversion_rows(self) -> NDArray[np.int64]:
+        """Rows where one phase ends and the next begins."""
+        return self.row[self.phase_bounds[1:-1]]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class InterpolatedMotion:
+    """The motion modeled from the keyframes, and its difference from the measured one; NaN outside the keyframes.
+
+    Attributes
+    ----------
+    frame, time_s : ndarray, shape (N,)
+    phase : masked ndarray of int, shape (N,)
+        1, 2, ...; masked outside the keyframes.
+    fraction : ndarray, shape (N,)
+        The time law's t in the phase.
+    angle, slide, euler_parameters, translation : ndarray
+        As in `ScrewMotion`.
+    angle_error : ndarray, shape (N,)
+        Angle of the rotation between modeled and measured orientation, radians.
+    translation_error : ndarray, shape (N,)
+        Distance between modeled and measured origin of the forearm, meters.
+    rms_displacement : ndarray, shape (N,)
+        RMS distance between modeled and measured points of the forearm, meters.
+    """
+
+    frame: NDArray[np.int64]
+    time_s: Float
+    phase: np.ma.MaskedArray[Any, np.dtype[np.int64]]
+    fraction: Float
+    angle: Float
+    slide: Float
+    euler_parameters: Float
+    translation: Float
+    angle_error: Float
+    translation_error: Float
+    rms_displacement: Float
+
+    def to_frame(self, angle_unit: tables.AngleUnit = "deg", length_unit: tables.LengthUnit = "mm") -> pd.DataFrame:
+        """Return the columns of ``interpolation.csv``."""
+        return tables.data_frame(self, tables.INTERPOLATION_COLUMNS, angle_unit, length_unit)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BodyPoints:
+    """The points of a body that a displacement is averaged over, in the body's frame.
+
+    Attributes
+    ----------
+    centroid : ndarray, shape (3,)
+        Meters.
+    covariance : ndarray, shape (3, 3)
+        Mean of ``(x - c)(x - c)^T``, square meters.
+    origin : str
+        "markers" or "radius".
+    """
+
+    centroid: Float
+    covariance: Float
+    origin: Literal["markers", "radius"]
+
+    @property
+    def radius_of_gyration(self) -> float:
+        """RMS distance of the points from their centroid, meters."""
+        return float(np.sqrt(np.trace(self.covariance)))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Analysis:
+    """Everything `elbowscrew.analyze` found in one recording.
+
+    Attributes
+    ----------
+    recording : Recording
+    settings : Settings
+    arm : RigidBody or None
+        None where the file has no arm and it is taken to stand still.
+    forearm : RigidBody
+    joint : JointMotion
+    screw : ScrewMotion
+    mean_axis : MeanAxis
+    keyframes : Keyframes
+    interpolated : InterpolatedMotion
+    points : BodyPoints
+        What the RMS displacement is averaged over.
+    warnings : tuple of QualityWarning
+        Those of the recording and those of the analysis.
+    """
+
+    recording: Recording
+    settings: Settings
+    arm: RigidBody | None
+    forearm: RigidBody
+    joint: JointMotion
+    screw: ScrewMotion
+    mean_axis: MeanAxis
+    keyframes: Keyframes
+    interpolated: InterpolatedMotion
+    points: BodyPoints
+    warnings: tuple[QualityWarning, ...]

@@ -1,0 +1,43 @@
+"""Mean of the finite helical axes and their spread about it."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowscrew.geometry._small_angle import length
+from elbowscrew.model import MeanAxis
+
+Float = NDArray[np.float64]
+
+
+def mean_axis_of(angle: Float, line: Float) -> MeanAxis:
+    """Weighted mean of lines, as dual vectors, with weights ``sin^2(theta/2)``.
+
+    The direction noise of a finite axis grows as 1/sin(theta/2), so these are the inverse variances. The spread is
+    told about the plain mean of the directions, every frame alike, as the literature does and so that it compares.
+
+    Parameters
+    ----------
+    angle : ndarray, shape (N,)
+        Rotation of each frame, radians.
+    line : ndarray, shape (N, 6)
+        Plücker vectors, one way round; NaN where there is no axis. At least one must be known.
+
+    References
+    ----------
+    Woltring 1994, Human Movement Science 13.
+    """
+    known = np.isfinite(line).all(axis=1)
+    weights = np.sin(0.5 * angle[known]) ** 2
+    mean = weights @ line[known] / weights.sum()
+    scale = length(mean[:3])
+    direction = mean[:3] / scale
+    moment = mean[3:] / scale
+    point = np.cross(direction, moment)
+    plain = line[known, :3].mean(axis=0)
+    deviation = np.arctan2(length(np.cross(line[:, :3], plain)), line[:, :3] @ plain)
+    # The point of each axis nearest the mean point, seen from the mean axis.
+    offset = np.cross(line[:, :3], line[:, 3:] - np.cross(point, line[:, :3]))
+    distance = length(offset - (offset @ direction)[:, None] * direction)
+    return MeanAxis(direction=direction, point=point, deviation=deviation, distance=distance)

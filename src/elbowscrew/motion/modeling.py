@@ -1,0 +1,86 @@
+"""The motion modeled from its keyframes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowscrew.geometry import dlb, lagrange_weights, sclerp, sdlb
+from elbowscrew.model import Keyframes
+from elbowscrew.motion.laws import Law
+
+Float = NDArray[np.float64]
+Method = Callable[[Float, Float, Float], Float]
+
+
+def _dlb(poses: Float, knots: Float, parameter: Float) -> Float:
+    return dlb(poses, lagrange_weights(parameter, knots), shortest_path=False)
+
+
+def _between_neighbors(two_poses: Callable[..., Float]) -> Method:
+    def method(poses: Float, knots: Float, parameter: Float) -> Float:
+        k = np.clip(np.searchsorted(knots, parameter, side="right") - 1, 0, knots.size - 2)
+        local = (parameter - knots[k]) / (knots[k + 1] - knots[k])
+        return two_poses(poses[k], poses[k + 1], local, shortest_path=False)
+
+    return method
+
+
+METHODS: Final[dict[str, Method]] = {
+    "dlb": _dlb,
+    "sclerp": _between_neighbors(sclerp),
+    "sdlb": _between_neighbors(sdlb),
+}
+"""Each takes keyframe poses (K, 8), their knots (K,) and parameters (n,) and gives poses (n, 8).
+
+The poses come from a sign-continuous series, which tells which way round the motion went, so no method looks for the
+shorter path of its own. A new method is one function above and one entry here (and its name in `Settings.method`).
+"""
+
+
+class ModeledPoses(NamedTuple):
+    """Poses of the model: phase (N,) masked outside the keyframes, law's t (N,), dual quaternions (N, 8)."""
+
+    phase: np.ma.MaskedArray[Any, np.dtype[np.int64]]
+    fraction: Float
+    dual_quat: Float
+
+
+def model_motion(pose: Float, elapsed: Float, keyframes: Keyframes, method: Method, law: Law) -> ModeledPoses:
+    """Interpolate the keyframes' poses under a time law (P 33-36).
+
+    In each phase tau runs from 0 to 1 over the phase's time and the law gives t. The frame of an inversion belongs to
+    the phase it begins, as P 36 prints it. A global blend takes all poses at once, with the parameter
+    ``(phase + t) / phases``.
+
+    Parameters
+    ----------
+    pose : ndarray, shape (N, 8)
+        The measured motion, sign-continuous.
+    elapsed : ndarray, shape (N,)
+        Seconds.
+    keyframes : Keyframes
+    method, law : callable
+        From `METHODS` and `elbowscrew.motion.laws.LAWS`.
+    """
+    phase = np.ma.array(np.zeros(elapsed.size, dtype=np.int64), mask=True)
+    fraction = np.full(elapsed.size, np.nan)
+    modeled = np.full((elapsed.size, 8), np.nan)
+    bounds = keyframes.phase_bounds
+    count = bounds.size - 1
+    piecewise = len(keyframes.knots) == count
+    for p in range(count):
+        members = keyframes.row[bounds[p] : bounds[p + 1] + 1]
+        rows = np.arange(members[0], members[-1] + (1 if p == count - 1 else 0))
+        span = elapsed[members[-1]] - elapsed[members[0]]
+        t = law((elapsed[rows] - elapsed[members[0]]) / span)
+        phase[rows] = p + 1
+        fraction[rows] = t
+        if piecewise:
+            modeled[rows] = method(pose[members], keyframes.knots[p], t)
+        else:
+            modeled[rows] = method(pose[keyframes.row], keyframes.knots[0], (p + t) / count)
+    return ModeledPoses(phase, fraction, modeled)

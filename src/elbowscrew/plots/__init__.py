@@ -1,0 +1,16 @@
+"""Figures of an analysis: functions that draw on Axes and return them, and whole figures made of them."""
+
+from elbowscrew.plots.axis import plot_axes_in_space, plot_axis_directions, plot_axis_places
+from elbowscrew.plots.figures import FIGURES
+from elbowscrew.plots.series import plot_angle_error, plot_euler_parameter, plot_rms_displacement, plot_theta
+
+__all__ = [
+    "FIGURES",
+    "plot_angle_error",
+    "plot_axes_in_space",
+    "plot_axis_directions",
+    "plot_axis_places",
+    "plot_euler_parameter",
+    "plot_rms_displacement",
+    "plot_theta",
+]

@@ -1,0 +1,163 @@
+"""The screw axes in space, and their spread about the mean axis."""
+
+from __future__ import annotations
+
+from typing import Any, Final, NamedTuple, cast
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
+from matplotlib.ticker import MaxNLocator
+from mpl_toolkits.mplot3d.art3d import Line3DCollection
+from mpl_toolkits.mplot3d.axes3d import Axes3D
+from numpy.typing import NDArray
+
+from elbowscrew.geometry.dual_quaternion import conjugate, multiply, pose_from_dual_quat, transform_points
+from elbowscrew.model import Analysis
+from elbowscrew.plots import style
+from elbowscrew.tables import angle_in, length_in
+
+Float = NDArray[np.float64]
+
+_MOST_AXES: Final = 60
+_MOST_POINTS: Final = 4000
+
+
+class _MeanFrame(NamedTuple):
+    """The mean axis with two directions perpendicular to it, and its point nearest the forearm's path."""
+
+    direction: Float
+    across: tuple[Float, Float]
+    names: tuple[str, str]
+    center: Float
+
+
+def color_scale(analysis: Analysis) -> ScalarMappable:
+    """Return the color scale of the angle, for axes and a color bar."""
+    angle = angle_in(analysis.screw.angle[analysis.screw.axis_known], analysis.settings.angle_unit)
+    return ScalarMappable(Normalize(float(angle.min()), float(angle.max())), style.COLORMAP)
+
+
+def plot_axes_in_space(ax: Axes3D, analysis: Analysis) -> Axes3D:
+    """Draw the axes with the mean axis, the path of the forearm and the arm, in the frame they are expressed in."""
+    unit = analysis.settings.length_unit
+    rows = _thinned(np.flatnonzero(analysis.screw.axis_known), _MOST_AXES)
+    path, arm, clusters = _bodies(analysis)
+    mean = _mean_frame(analysis, path)
+    seen = path[np.isfinite(path).all(axis=1)]
+    half = 0.55 * float(np.max(np.ptp(np.concatenate([seen, mean.center[None]]), axis=0)))
+    direction, point = analysis.screw.axis_direction[rows], analysis.screw.axis_point[rows]
+    middle = point + np.sum((mean.center - point) * direction, axis=1, keepdims=True) * direction
+    segments = length_in(np.stack([middle - half * direction, middle + half * direction], axis=1), unit)
+    colors = color_scale(analysis).to_rgba(angle_in(analysis.screw.angle[rows], analysis.settings.angle_unit))
+    ax.add_collection3d(Line3DCollection(list(segments), colors=colors, linewidths=0.7, alpha=0.8))
+    ends = length_in(mean.center + 1.15 * half * np.outer([-1.0, 1.0], mean.direction), unit)
+    ax.plot(*ends.T, color="black", linewidth=1.6, label="mean axis")
+    ax.plot(*length_in(path, unit).T, color="#D55E00", linewidth=1.2, label="forearm path")
+    shown = [segments.reshape(-1, 3), ends, length_in(seen, unit)]
+    if arm is not None:
+        ax.plot(*length_in(arm[None], unit).T, "^", color="#0072B2", markersize=5, label="arm")
+        shown.append(length_in(arm[None], unit))
+    for k, cluster in enumerate(clusters):
+        label = "markers" if k == 0 else None
+        ax.plot(*length_in(cluster, unit).T, ".", color="#666666", markersize=3, label=label)
+        shown.append(length_in(cluster, unit))
+    _equal_aspect(ax, np.concatenate(shown))
+    for name, label in (("x", ax.set_xlabel), ("y", ax.set_ylabel), ("z", ax.set_zlabel)):
+        label(f"{name} ({unit})", labelpad=-2)
+    return ax
+
+
+def plot_axis_directions(ax: Axes, analysis: Analysis) -> Axes:
+    """Draw how far each axis is tilted from the mean axis, in degrees, in two directions across it."""
+    mean = _mean_frame(analysis, _bodies(analysis)[0])
+    rows = _thinned(np.flatnonzero(analysis.screw.axis_known), _MOST_POINTS)
+    direction = analysis.screw.axis_direction[rows]
+    along = direction @ mean.direction
+    tilts = [np.degrees(np.arctan2(direction @ across, along)) for across in mean.across]
+    _scatter(ax, analysis, rows, tilts)
+    ax.set_xlabel(f"Tilt toward {mean.names[0]} (deg)")
+    ax.set_ylabel(f"Tilt toward {mean.names[1]} (deg)")
+    return ax
+
+
+def plot_axis_places(ax: Axes, analysis: Analysis) -> Axes:
+    """Draw where each axis pierces the plane across the mean axis nearest the forearm, relative to the mean axis."""
+    unit = analysis.settings.length_unit
+    mean = _mean_frame(analysis, _bodies(analysis)[0])
+    rows = _thinned(np.flatnonzero(analysis.screw.axis_known), _MOST_POINTS)
+    direction, point = analysis.screw.axis_direction[rows], analysis.screw.axis_point[rows]
+    along = direction @ mean.direction
+    crossing = np.abs(along) > 0.1  # an axis nearly in the plane pierces it far away or nowhere
+    rows, direction, point, along = rows[crossing], direction[crossing], point[crossing], along[crossing]
+    reach = ((mean.center - point) @ mean.direction) / along
+    offset = length_in(point + reach[:, None] * direction - mean.center, unit)
+    _scatter(ax, analysis, rows, [offset @ across for across in mean.across])
+    ax.set_xlabel(f"Place toward {mean.names[0]} ({unit})")
+    ax.set_ylabel(f"Place toward {mean.names[1]} ({unit})")
+    return ax
+
+
+def _scatter(ax: Axes, analysis: Analysis, rows: NDArray[np.int64], values: list[Float]) -> None:
+    scale = color_scale(analysis)
+    angle = angle_in(analysis.screw.angle[rows], analysis.settings.angle_unit)
+    ax.axhline(0.0, **style.LEVEL)
+    ax.axvline(0.0, **style.LEVEL)
+    ax.scatter(
+        values[0], values[1], c=angle, cmap=scale.cmap, norm=cast(Normalize, scale.norm), s=7, linewidths=0, zorder=3
+    )
+    ax.plot(0.0, 0.0, "+", color="black", markersize=9, markeredgewidth=1.2, zorder=4)
+    reach = 1.1 * max(float(np.max(np.abs(values), initial=0.0)), 1e-9)
+    ax.set_xlim(-reach, reach)
+    ax.set_ylim(-reach, reach)
+    ax.set_box_aspect(1.0)
+
+
+def _mean_frame(analysis: Analysis, path: Float) -> _MeanFrame:
+    axis = analysis.mean_axis
+    n = axis.direction
+    order = np.argsort(np.abs(n), kind="stable")
+    first, second = sorted(order[:2])
+    u = np.eye(3)[first] - n[first] * n
+    u /= np.linalg.norm(u)
+    v = np.cross(n, u)
+    if v[second] < 0.0:
+        v = -v
+    center = axis.point + ((np.nanmean(path, axis=0) - axis.point) @ n) * n
+    return _MeanFrame(n, (u, v), ("xyz"[first], "xyz"[second]), center)
+
+
+def _bodies(analysis: Analysis) -> tuple[Float, Float | None, list[Float]]:
+    """Path of the forearm's origin, the arm's origin, and the markers at the reference, in the frame shown."""
+    joint = analysis.joint
+    identity = np.array([1.0, 0, 0, 0, 0, 0, 0, 0])
+    change: Float = {
+        "forearm": conjugate(joint.reference),
+        "arm": identity,
+        "lab": joint.dual_quat_lab_proximal,
+    }[analysis.settings.express_in]
+    path = pose_from_dual_quat(multiply(change, joint.dual_quat_proximal_distal))[1]
+    arm = None if analysis.arm is None else pose_from_dual_quat(change)[1]
+    clusters: list[Float] = []
+    for body, pose in ((analysis.arm, change), (analysis.forearm, multiply(change, joint.reference))):
+        if body is not None and body.marker_offsets is not None:
+            clusters.append(transform_points(pose, body.marker_offsets))
+    return path, arm, clusters
+
+
+def _thinned(rows: NDArray[np.int64], most: int) -> NDArray[np.int64]:
+    return rows if rows.size <= most else rows[np.linspace(0, rows.size - 1, most).astype(np.int64)]
+
+
+def _equal_aspect(ax: Axes3D, points: Float) -> None:
+    low, high = points.min(axis=0), points.max(axis=0)
+    middle, half = 0.5 * (low + high), 0.5 * float(np.max(high - low)) or 1.0
+    bounds: Any = np.stack([middle - half, middle + half], axis=1)
+    ax.set_xlim(*bounds[0])
+    ax.set_ylim(*bounds[1])
+    ax.set_zlim(*bounds[2])
+    ax.set_box_aspect((1.0, 1.0, 1.0), zoom=0.92)
+    for axis in (ax.xaxis, ax.yaxis, ax.zaxis):
+        axis.set_major_locator(MaxNLocator(4))
+        axis.set_tick_params(pad=-1)

@@ -1,0 +1,70 @@
+"""The four figures of a result, each by name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Final, cast
+
+from matplotlib.figure import Figure
+from mpl_toolkits.mplot3d.axes3d import Axes3D
+
+from elbowscrew.model import Analysis
+from elbowscrew.plots import axis, series, style
+
+_WIDTH_MM: Final = 170.0
+
+
+def theta_figure(analysis: Analysis) -> Figure:
+    """Make the figure of measured and modeled angle over time with keyframes."""
+    figure = style.new_figure(_WIDTH_MM, 80.0)
+    ax = series.plot_theta(figure.add_subplot(), analysis)
+    figure.legend(*ax.get_legend_handles_labels(), loc="outside upper center", ncols=5)
+    return figure
+
+
+def euler_parameters_figure(analysis: Analysis) -> Figure:
+    """Make the figure of measured and modeled e0..e3 over time."""
+    figure = style.new_figure(_WIDTH_MM, 105.0)
+    panels = figure.subplots(2, 2, sharex=True).ravel()
+    for component, ax in enumerate(panels):
+        series.plot_euler_parameter(ax, analysis, component)
+    for ax in panels[:2]:
+        ax.set_xlabel("")
+    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside upper center", ncols=5)
+    return figure
+
+
+def axis_figure(analysis: Analysis) -> Figure:
+    """Make the figure of the axes in space, of their directions and of their places."""
+    figure = style.new_figure(_WIDTH_MM, 84.0)
+    grid = figure.add_gridspec(2, 3, width_ratios=[1.3, 1.0, 1.0], height_ratios=[1.0, 0.04])
+    space = cast(Axes3D, figure.add_subplot(grid[:, 0], projection="3d"))
+    axis.plot_axes_in_space(space, analysis)
+    directions = axis.plot_axis_directions(figure.add_subplot(grid[0, 1]), analysis)
+    places = axis.plot_axis_places(figure.add_subplot(grid[0, 2]), analysis)
+    bar = figure.colorbar(axis.color_scale(analysis), cax=figure.add_subplot(grid[1, 1:]), orientation="horizontal")
+    bar.set_label(f"Angle θ ({analysis.settings.angle_unit})")
+    for ax, letter in ((space, "a"), (directions, "b"), (places, "c")):
+        ax.set_title(letter, loc="left")
+    space.set_title(f"axes in the {analysis.settings.express_in} frame", loc="center", fontweight="normal")
+    space.legend(loc="upper center", bbox_to_anchor=(0.5, -0.02), ncols=2)
+    return figure
+
+
+def error_figure(analysis: Analysis) -> Figure:
+    """Make the figure of angle error and RMS displacement over time."""
+    figure = style.new_figure(_WIDTH_MM, 100.0)
+    upper, lower = figure.subplots(2, 1, sharex=True)
+    series.plot_angle_error(upper, analysis).set_xlabel("")
+    series.plot_rms_displacement(lower, analysis)
+    figure.legend(*upper.get_legend_handles_labels(), loc="outside upper center", ncols=4)
+    return figure
+
+
+FIGURES: Final[dict[str, Callable[[Analysis], Figure]]] = {
+    "theta": theta_figure,
+    "euler_parameters": euler_parameters_figure,
+    "axis": axis_figure,
+    "error": error_figure,
+}
+"""A new figure is one function above and one entry here; it is saved as ``figures/<name>``."""

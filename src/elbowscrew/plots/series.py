@@ -1,0 +1,108 @@
+"""Curves over time: angle, Euler parameters and errors."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from numpy.typing import NDArray
+
+from elbowscrew.model import Analysis
+from elbowscrew.plots import style
+from elbowscrew.tables import angle_in, length_in
+
+Float = NDArray[np.float64]
+
+
+def plot_theta(ax: Axes, analysis: Analysis) -> Axes:
+    """Draw measured and modeled angle over time with the keyframes (the paper's figures 7 and 8)."""
+    unit = analysis.settings.angle_unit
+    angle = angle_in(analysis.screw.angle, unit)
+    time_s = analysis.screw.time_s
+    ax.plot(time_s, angle, label="measured", **style.MEASURED)
+    ax.plot(time_s, angle_in(analysis.interpolated.angle, unit), label=_model_label(analysis), **style.MODELED)
+    rows = analysis.keyframes.row
+    ax.plot(time_s[rows], angle[rows], label="keyframes", **style.KEYFRAME)
+    mark_tracking(ax, analysis)
+    ax.set_ylabel(f"Angle θ ({unit})")
+    return _over_time(ax, time_s)
+
+
+def plot_euler_parameter(ax: Axes, analysis: Analysis, component: int) -> Axes:
+    """Draw one of e0..e3, measured and modeled, over time (the paper's figures 9 and 10)."""
+    time_s = analysis.screw.time_s
+    measured = analysis.screw.euler_parameters[:, component]
+    ax.plot(time_s, measured, label="measured", **style.MEASURED)
+    ax.plot(
+        time_s,
+        analysis.interpolated.euler_parameters[:, component],
+        label=_model_label(analysis),
+        **style.MODELED,
+    )
+    rows = analysis.keyframes.row
+    ax.plot(time_s[rows], measured[rows], label="keyframes", **style.KEYFRAME)
+    mark_tracking(ax, analysis)
+    ax.set_ylabel(f"$e_{component}$ (–)")
+    return _over_time(ax, time_s)
+
+
+def plot_angle_error(ax: Axes, analysis: Analysis) -> Axes:
+    """Draw the angle between modeled and measured orientation over time, with its RMS."""
+    unit = analysis.settings.angle_unit
+    return _plot_error(ax, analysis, angle_in(analysis.interpolated.angle_error, unit), "Angle error", unit)
+
+
+def plot_rms_displacement(ax: Axes, analysis: Analysis) -> Axes:
+    """Draw the RMS displacement of the forearm's points over time, with its RMS."""
+    unit = analysis.settings.length_unit
+    values = length_in(analysis.interpolated.rms_displacement, unit)
+    return _plot_error(ax, analysis, values, "RMS displacement", unit)
+
+
+def mark_tracking(ax: Axes, analysis: Analysis) -> Axes:
+    """Shade the frames without a measured pose: plain where they stay empty, hatched where they were filled in."""
+    screw = analysis.screw
+    half = 0.5 / analysis.recording.rate_hz
+    for mask, label, look in (
+        (~screw.valid & ~screw.filled, "not tracked", style.LOST),
+        (screw.filled, "filled in", style.FILLED),
+    ):
+        for k, (first, last) in enumerate(_runs(mask)):
+            span: dict[str, Any] = {**look, "label": label if k == 0 else None}
+            ax.axvspan(screw.time_s[first] - half, screw.time_s[last] + half, **span)
+    return ax
+
+
+def _plot_error(ax: Axes, analysis: Analysis, values: Float, name: str, unit: str) -> Axes:
+    time_s = analysis.screw.time_s
+    ax.plot(time_s, values, label="model against measurement", **style.MEASURED)
+    if np.isfinite(values).any():
+        level = float(np.sqrt(np.nanmean(values**2)))
+        ax.axhline(level, **style.LEVEL)
+        ax.text(1.0, level, f"RMS {level:.3g} {unit}", transform=ax.get_yaxis_transform(), ha="right", va="bottom")
+    rows = analysis.keyframes.row
+    ax.plot(time_s[rows], values[rows], label="keyframes", **style.KEYFRAME)
+    mark_tracking(ax, analysis)
+    ax.set_ylabel(f"{name} ({unit})")
+    ax.set_ylim(bottom=min(0.0, ax.get_ylim()[0]))
+    return _over_time(ax, time_s)
+
+
+def _over_time(ax: Axes, time_s: Float) -> Axes:
+    margin = 0.01 * (time_s[-1] - time_s[0])
+    ax.set_xlim(time_s[0] - margin, time_s[-1] + margin)
+    ax.set_xlabel("Time (s)")
+    return ax
+
+
+def _model_label(analysis: Analysis) -> str:
+    names = {"dlb": "DLB", "sclerp": "ScLERP", "sdlb": "sDLB"}
+    method = analysis.settings.method
+    return f"{names.get(method, method)} through {analysis.keyframes.row.size} poses"
+
+
+def _runs(mask: NDArray[np.bool_]) -> list[tuple[int, int]]:
+    """Give first and last index of every run of True."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], mask, [False]]).astype(np.int8)))
+    return [(int(first), int(after) - 1) for first, after in edges.reshape(-1, 2)]

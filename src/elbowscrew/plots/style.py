@@ -1,0 +1,63 @@
+"""The look of the figures: readable in print, in grey and by the colour-blind."""
+
+from __future__ import annotations
+
+from contextlib import AbstractContextManager
+from typing import Any, Final
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.colors import ListedColormap
+from matplotlib.figure import Figure
+
+# From the palette of Okabe and Ito, and apart in grey as well: line styles differ on top of it.
+MEASURED: Final[dict[str, Any]] = {"color": "#000000", "linewidth": 1.3, "linestyle": "-"}
+MODELED: Final[dict[str, Any]] = {"color": "#D55E00", "linewidth": 1.3, "linestyle": (0, (5, 2))}
+KEYFRAME: Final[dict[str, Any]] = {
+    "color": "#0072B2", "marker": "o", "markersize": 5.5, "linestyle": "none", "markerfacecolor": "white",
+    "markeredgewidth": 1.3, "zorder": 5, "clip_on": False,
+}  # fmt: skip
+LOST: Final[dict[str, Any]] = {"color": "#DDDDDD", "linewidth": 0.0, "zorder": 0}
+FILLED: Final[dict[str, Any]] = {
+    "facecolor": "none", "edgecolor": "#888888", "hatch": "//////", "linewidth": 0.0, "zorder": 0,
+}  # fmt: skip
+LEVEL: Final[dict[str, Any]] = {"color": "#666666", "linewidth": 0.8, "linestyle": (0, (1, 2))}
+# Viridis without its light end, which vanishes on white paper.
+COLORMAP: Final = ListedColormap(mpl.colormaps["viridis"](np.linspace(0.0, 0.88, 256)), name="angle")
+
+_MM_PER_INCH: Final = 25.4
+_RC: Final[dict[Any, Any]] = {
+    "font.family": "sans-serif",
+    "font.sans-serif": ["DejaVu Sans"],
+    "font.size": 8.0,
+    "axes.labelsize": 8.0,
+    "axes.titlesize": 8.0,
+    "axes.titlelocation": "left",
+    "axes.titleweight": "bold",
+    "axes.linewidth": 0.7,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.formatter.useoffset": False,
+    "xtick.labelsize": 7.5,
+    "ytick.labelsize": 7.5,
+    "xtick.major.width": 0.7,
+    "ytick.major.width": 0.7,
+    "hatch.linewidth": 0.5,
+    "legend.fontsize": 7.5,
+    "legend.frameon": False,
+    "legend.handlelength": 2.6,
+    "savefig.dpi": 300,
+    "pdf.fonttype": 42,
+    "svg.fonttype": "path",
+    "svg.hashsalt": "elbowscrew",
+}
+
+
+def publication_style() -> AbstractContextManager[None]:
+    """Matplotlib settings of the figures, for a ``with`` block."""
+    return mpl.rc_context(dict(_RC))
+
+
+def new_figure(width_mm: float, height_mm: float) -> Figure:
+    """Return an empty figure of that size on paper, laid out by itself, without pyplot's global state."""
+    return Figure(figsize=(width_mm / _MM_PER_INCH, height_mm / _MM_PER_INCH), layout="constrained")

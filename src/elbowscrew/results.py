@@ -1,0 +1,125 @@
+"""Results on disk: an analysis into one folder, a synthetic trial into its two files."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, Final, Literal
+
+from elbowscrew.errors import UsageError
+from elbowscrew.io.exports import motive_columns_lines, row_tagged_lines
+from elbowscrew.io.staging import check_file, result_folder, write_file
+from elbowscrew.io.summary import summary_from_analysis
+from elbowscrew.io.writing import write_tables
+from elbowscrew.model import Analysis
+from elbowscrew.simulate import SimulatedTrial
+
+FIGURE_FORMATS: Final = ("png", "svg", "pdf")
+
+# Without dates and program versions the same analysis gives the same bytes.
+_METADATA: Final[dict[str, dict[str, Any]]] = {
+    "png": {"Software": None},
+    "svg": {"Date": None, "Creator": None},
+    "pdf": {"CreationDate": None, "Creator": None, "Producer": None},
+}
+
+
+def save_analysis(
+    analysis: Analysis,
+    folder: str | os.PathLike[str],
+    *,
+    force: bool = False,
+    figure_formats: Sequence[str] = ("png",),
+) -> Path:
+    """Write ``screw.csv``, ``interpolation.csv``, ``summary.json`` and ``figures/`` into a folder, whole or not at all.
+
+    Parameters
+    ----------
+    analysis : Analysis
+    folder : path-like
+    force : bool
+        Replace an earlier result.
+    figure_formats : sequence of {"png", "svg", "pdf"}
+        May be empty.
+
+    Returns
+    -------
+    Path
+        The folder.
+
+    Raises
+    ------
+    OutputError
+        If a result is there already, or the disk does not take it.
+    """
+    target = Path(folder)
+    with result_folder(target, force=force) as staged:
+        write_tables(staged, analysis)
+        text = json.dumps(summary_from_analysis(analysis), indent=2, ensure_ascii=False, allow_nan=False)
+        (staged / "summary.json").write_text(text + "\n", encoding="utf-8")
+        if figure_formats:
+            _write_figures(staged / "figures", analysis, figure_formats)
+    return target
+
+
+def _write_figures(folder: Path, analysis: Analysis, formats: Sequence[str]) -> None:
+    from elbowscrew.plots.figures import FIGURES
+    from elbowscrew.plots.style import publication_style
+
+    folder.mkdir()
+    with publication_style():
+        for name, make in FIGURES.items():
+            figure = make(analysis)
+            for kind in formats:
+                figure.savefig(folder / f"{name}.{kind}", format=kind, metadata=_METADATA[kind])
+
+
+def save_simulation(
+    trial: SimulatedTrial,
+    path: str | os.PathLike[str],
+    *,
+    layout: Literal["motive", "row-tagged"] = "motive",
+    length_unit: Literal["m", "cm", "mm"] = "m",
+    force: bool = False,
+) -> tuple[Path, Path]:
+    """Write a synthetic trial in an OptiTrack layout, and the truth about it beside it.
+
+    Parameters
+    ----------
+    trial : SimulatedTrial
+    path : path-like
+        The export; the truth goes to the same name with ``.truth.json``.
+    layout : {"motive", "row-tagged"}
+        Motive's columns 1.23, or the row-tagged layout 1.1.
+    length_unit : {"m", "cm", "mm"}
+        Unit in the export; the row-tagged layout has meters always.
+    force : bool
+        Replace existing files.
+
+    Returns
+    -------
+    tuple of Path
+        The export and the truth.
+
+    Raises
+    ------
+    UsageError
+        If the layout does not have the unit.
+    OutputError
+        If a file exists, or the disk does not take it.
+    """
+    export = Path(path)
+    truth = export.with_suffix(".truth.json")
+    if layout == "row-tagged" and length_unit != "m":
+        msg = f"--length-unit {length_unit}: the row-tagged layout has meters always; leave the option out"
+        raise UsageError(msg)
+    if layout == "motive":
+        lines = motive_columns_lines(trial.recording, trial.markers, length_unit, export.stem)
+    else:
+        lines = row_tagged_lines(trial.recording, trial.markers)
+    check_file(truth, force=force)
+    write_file(export, lines, force=force)
+    write_file(truth, [json.dumps(trial.truth, indent=1)], force=force)
+    return export, truth

@@ -1,0 +1,143 @@
+"""One `Settings`, from defaults, a TOML file and options, each stronger than the one before."""
+
+from __future__ import annotations
+
+import difflib
+import itertools
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, Final, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+
+from elbowscrew.errors import UsageError
+from elbowscrew.tables import AngleUnit, LengthUnit
+
+_LISTS: Final = ("keyframes", "figure-format")
+_UNIT_SUFFIXES: Final = ("_deg", "_mm", "_s", "_percent")
+
+STILL_ARM: Final = "none"
+"""The value of ``arm`` that says: the file has no arm, it stands still."""
+
+
+def option_name(field: str) -> str:
+    """Give a field's name on the command line and in TOML: ``min_angle_deg`` is ``min-angle``."""
+    for suffix in _UNIT_SUFFIXES:
+        field = field.removesuffix(suffix)
+    return field.replace("_", "-")
+
+
+class Settings(BaseModel):
+    """How a recording is analyzed.
+
+    The names here carry their units; on the command line and in TOML the unit is left out (`option_name`).
+    An impossible value raises `UsageError` through `settings_from`, and pydantic's own error here.
+    """
+
+    model_config = ConfigDict(
+        frozen=True, extra="forbid", alias_generator=option_name, populate_by_name=True, allow_inf_nan=False
+    )
+
+    arm: str | None = Field(None, description="Name or id of the upper arm's body; 'none' if it stands still")
+    forearm: str | None = Field(None, description="Name or id of the forearm's body")
+    reference: int | None = Field(None, description="Frame all displacements are counted from")
+    reference_window: int = Field(1, ge=1, description="Take the mean of so many frames from the reference on")
+    express_in: Literal["forearm", "arm", "lab"] = Field("forearm", description="Frame the screw is written in")
+    max_gap_s: float = Field(0.1, ge=0, description="Longest gap that is filled, in seconds")
+    frozen: Literal["lost", "keep"] = Field("lost", description="Poses that repeat: lost tracking, or kept")
+    min_tracked_percent: float = Field(50.0, ge=0, le=100, description="Least share of frames tracked")
+    min_angle_deg: float = Field(10.0, gt=0, lt=180, description="Least angle that gives an axis, in degrees")
+    inversion: int | None = Field(None, description="Frame where the motion turns back")
+    keyframes: tuple[int, ...] | None = Field(None, min_length=2, description="Frames the model passes through")
+    method: Literal["dlb", "sclerp", "sdlb"] = Field("dlb", description="Interpolation of poses")
+    blend: Literal["piecewise", "global"] = Field("piecewise", description="Phase by phase, or all poses at once")
+    law: Literal["cycloidal", "linear"] = Field("cycloidal", description="Law of motion in each phase")
+    knots: Literal["law", "chord", "uniform", "angle"] = Field("law", description="Parameter of the keyframes")
+    radius_mm: float | None = Field(
+        None, gt=0, description="Radius of gyration of the forearm's points; default: its markers, else 50 mm"
+    )
+    angle_unit: AngleUnit = Field("deg", description="Unit of angles in tables and figures")
+    length_unit: LengthUnit = Field("mm", description="Unit of lengths in tables and figures")
+    figure_format: tuple[Literal["png", "svg", "pdf", "none"], ...] = Field(
+        ("png",), min_length=1, description="Formats of the figures"
+    )
+    units: Literal["m", "cm", "mm"] | None = Field(None, description="Unit of length of a file that states none")
+    rotation: Literal["quaternion", "XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX"] | None = Field(
+        None, description="Rotation type of a file that states none"
+    )
+
+    @property
+    def figure_formats(self) -> tuple[str, ...]:
+        """Formats to write, without doubles; empty for no figures."""
+        return tuple(dict.fromkeys(kind for kind in self.figure_format if kind != "none"))
+
+    @model_validator(mode="after")
+    def _check_keyframes(self) -> Settings:
+        frames = self.keyframes
+        if frames is not None:
+            if any(later <= earlier for earlier, later in itertools.pairwise(frames)):
+                msg = "keyframes must increase"
+                raise ValueError(msg)
+            if self.inversion is not None and self.inversion not in frames[1:-1]:
+                msg = (
+                    f"the inversion ({self.inversion}) must be one of the keyframes between the first and the last: "
+                    "add it to --keyframes or leave --inversion out"
+                )
+                raise ValueError(msg)
+        return self
+
+
+def settings_from(config: Path | None = None, options: Mapping[str, Any] | None = None) -> Settings:
+    """Merge defaults, a TOML file and options; the later ones win.
+
+    Parameters
+    ----------
+    config : Path, optional
+        A TOML file with option names as keys (``min-angle = 5``).
+    options : mapping, optional
+        Field or option names; None means not given.
+
+    Raises
+    ------
+    UsageError
+        If the file cannot be read, or a key or value is not a possible one; it names the key.
+    """
+    given = {option_name(key): value for key, value in (options or {}).items() if value is not None}
+    table = _read_toml(config) if config is not None else {}
+    if config is not None:
+        _validate(table, str(config))
+    return _validate({**table, **given}, "settings")
+
+
+def _read_toml(config: Path) -> dict[str, Any]:
+    try:
+        with config.open("rb") as stream:
+            table = {option_name(key): value for key, value in tomllib.load(stream).items()}
+            return {key: [value] if key in _LISTS and isinstance(value, str) else value for key, value in table.items()}
+    except OSError as error:
+        msg = f"{config}: cannot be read as a settings file: {error.strerror}"
+        raise UsageError(msg) from error
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        msg = f"{config}: not TOML: {error}. Write one `key = value` a line, text in quotes"
+        raise UsageError(msg) from error
+
+
+def _validate(values: Mapping[str, Any], place: str) -> Settings:
+    known = [option_name(name) for name in Settings.model_fields]
+    try:
+        return Settings.model_validate(dict(values))
+    except ValidationError as error:
+        raise UsageError("; ".join(_sentence(place, fault, known) for fault in error.errors())) from error
+
+
+def _sentence(place: str, fault: Any, known: list[str]) -> str:
+    key = str(fault["loc"][0]) if fault["loc"] else ""
+    if fault["type"] == "extra_forbidden":
+        close = difflib.get_close_matches(key, known, n=1)
+        hint = f"did you mean {close[0]!r}?" if close else f"possible keys: {', '.join(known)}"
+        return f"{place}: unknown key {key!r}; {hint}"
+    message = str(fault["msg"]).removeprefix("Value error, ").replace("Input should", "should")
+    if not key:
+        return f"{place}: {message}"
+    return f"{place}: {key}: {message}, found {fault['input']!r}"

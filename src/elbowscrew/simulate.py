@@ -1,0 +1,260 @@
+"""Synthetic elbow trials whose joint line, angle and slide are known."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any, Final, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowscrew.errors import UsageError
+from elbowscrew.geometry import dual_quat_from_screw, line_through, point_nearest_origin, pose_from_points, quaternion
+from elbowscrew.geometry.dual_quaternion import (
+    conjugate,
+    dual_quat_from_pose,
+    multiply,
+    transform_lines,
+    transform_points,
+)
+from elbowscrew.model import Recording, RigidBody, TrackingLoss
+from elbowscrew.motion.laws import cycloidal
+from elbowscrew.motion.relative import IDENTITY
+
+Float = NDArray[np.float64]
+
+# An adult's arm: the line through the elbow in the arm's frame, tilted as the trochlea is; the segments' markers.
+_JOINT_POINT: Final = np.array([0.004, -0.132, 0.011])
+_JOINT_DIRECTION: Final = np.array([0.986, 0.104, -0.131])
+_FOREARM_CENTER: Final = np.array([0.018, -0.251, 0.037])
+_FOREARM_TURN: Final = np.array([0.09, 0.21, -0.06])
+_ARM_PLACE: Final = np.array([0.31, 1.24, -0.18])
+_ARM_TURN: Final = np.array([0.12, 0.55, -0.2])
+_ARM_MARKERS: Final = np.array([[38, 12, 31], [-41, 27, 8], [9, -44, -28], [-6, 5, -47]]) * 1e-3
+_FOREARM_MARKERS: Final = np.array([[35, 33, -9], [-37, 14, 25], [-11, -45, 19], [28, -21, -38]]) * 1e-3
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Simulation:
+    """What to simulate.
+
+    Attributes
+    ----------
+    frames : int
+        Frames of one repetition, from the start to the end of its movement.
+    rate_hz : float
+    top_deg : float
+        Largest angle of the joint.
+    inversion : int
+        Frame of the repetition at which the angle is largest.
+    slide_mm : float
+        Translation along the axis at the top; it grows with the angle.
+    law : {"minimum-jerk", "cycloidal"}
+        Law of motion of flexion and of extension.
+    marker_noise_mm : float
+        Standard deviation of each coordinate of each marker; the poses are fitted to the noisy markers.
+    gaps, gap_frames : int
+        How many times the forearm is lost, and for how many frames each time.
+    sign_flips : bool
+        Flip the sign of the quaternions at random, as exports do.
+    arm : {"moving", "still"}
+    repetitions : int
+    rest_before_s, rest_after_s : float
+        Rest before and after the movement, seconds.
+    seed : int
+    """
+
+    frames: int = 450
+    rate_hz: float = 100.0
+    top_deg: float = 130.0
+    inversion: int = 211
+    slide_mm: float = 3.0
+    law: Literal["minimum-jerk", "cycloidal"] = "minimum-jerk"
+    marker_noise_mm: float = 0.2
+    gaps: int = 0
+    gap_frames: int = 5
+    sign_flips: bool = False
+    arm: Literal["moving", "still"] = "still"
+    repetitions: int = 1
+    rest_before_s: float = 0.0
+    rest_after_s: float = 0.0
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        """Check what the types cannot.
+
+        Raises
+        ------
+        UsageError
+            Naming the option.
+        """
+        checks = {
+            "frames": self.frames >= 3,
+            "inversion": 0 < self.inversion < self.frames - 1,
+            "rate": np.isfinite(self.rate_hz) and self.rate_hz > 0.0,
+            "top": 0.0 < self.top_deg < 360.0,
+            "slide": bool(np.isfinite(self.slide_mm)),
+            "marker-noise": np.isfinite(self.marker_noise_mm) and self.marker_noise_mm >= 0.0,
+            "gaps": self.gaps >= 0 and self.gaps * (self.gap_frames + 2) <= self.total_frames - 2,
+            "gap-frames": self.gap_frames >= 1,
+            "repetitions": self.repetitions >= 1,
+            "rest-before": np.isfinite(self.rest_before_s) and self.rest_before_s >= 0.0,
+            "rest-after": np.isfinite(self.rest_after_s) and self.rest_after_s >= 0.0,
+            "seed": self.seed >= 0,
+        }
+        bad = [name for name, good in checks.items() if not good]
+        if bad:
+            names = ", ".join(f"--{name}" for name in bad)
+            msg = (
+                f"simulate: impossible value of {names}: the inversion must lie inside the frames, the top between 0 "
+                "and 360 deg, the gaps must fit into the trial, and nothing may be negative"
+            )
+            raise UsageError(msg)
+
+    @property
+    def total_frames(self) -> int:
+        """Frames of the whole trial, rests included."""
+        rests = sum(round(rest * self.rate_hz) for rest in (self.rest_before_s, self.rest_after_s) if np.isfinite(rest))
+        return self.repetitions * (self.frames - 1) + 1 + rests
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SimulatedTrial:
+    """A synthetic recording, its markers as seen, and the truth about it.
+
+    Attributes
+    ----------
+    recording : Recording
+    markers : mapping of str to ndarray, shape (N, M, 3)
+        The markers of each body, by the body's name, in the laboratory, meters; NaN where not seen.
+    truth : dict
+        Joint line, angles and slides, ready for JSON; units in the names.
+    """
+
+    recording: Recording
+    markers: Mapping[str, Float]
+    truth: dict[str, Any]
+
+
+def simulate_recording(simulation: Simulation | None = None, **settings: Any) -> SimulatedTrial:
+    """Simulate an elbow that turns about and slides along one line.
+
+    Parameters
+    ----------
+    simulation : Simulation, optional
+    **settings
+        Fields of `Simulation` to change.
+
+    Returns
+    -------
+    SimulatedTrial
+
+    Examples
+    --------
+    >>> trial = simulate_recording(top_deg=142, seed=3)
+    >>> [body.name for body in trial.recording.bodies], trial.recording.frame.size
+    (['Upper Arm', 'Forearm'], 450)
+    """
+    wanted = replace(simulation or Simulation(), **settings)
+    rng = np.random.default_rng(wanted.seed)
+    progress, inversions = _progress(wanted)
+    angle, slide = np.radians(wanted.top_deg) * progress, 1e-3 * wanted.slide_mm * progress
+    time_s = np.arange(progress.size) / wanted.rate_hz
+    line = line_through(_JOINT_POINT, _JOINT_DIRECTION)
+    start = dual_quat_from_pose(quaternion.quat_from_rotation_vector(_FOREARM_TURN), _FOREARM_CENTER)
+    arm_pose = _arm_poses(time_s, wanted.arm)
+    joint = multiply(dual_quat_from_screw(angle, slide, line[:3], line[3:]), start)
+    forearm_pose = multiply(arm_pose, joint)
+    lost = _lost_frames(wanted, progress.size, rng)
+    bodies, markers = [], {}
+    for name, identifier, offsets, pose, gone in (
+        ("Upper Arm", "5C0E1B7A90D311EDA1EB0242AC120002", _ARM_MARKERS, arm_pose, None),
+        ("Forearm", "5C0E1DB490D311EDA1EB0242AC120003", _FOREARM_MARKERS, forearm_pose, lost),
+    ):
+        body, seen = _observed(name, identifier, offsets - offsets.mean(axis=0), pose, gone, wanted, rng)
+        bodies.append(body)
+        markers[name] = seen
+    recording = Recording.from_bodies(bodies, rate_hz=wanted.rate_hz)
+    truth = {
+        "settings": {name: getattr(wanted, name) for name in Simulation.__dataclass_fields__},
+        "axis": {
+            frame: _line_truth(transform_lines(change, line))
+            for frame, change in (("forearm", conjugate(start)), ("arm", IDENTITY), ("lab", arm_pose[0]))
+        },
+        "inversion_frames": inversions,
+        "lost_frames": np.flatnonzero(lost).tolist(),
+        "theta_deg": np.degrees(angle).tolist(),
+        "slide_mm": (1000.0 * slide).tolist(),
+    }
+    return SimulatedTrial(recording=recording, markers=markers, truth=truth)
+
+
+def _progress(wanted: Simulation) -> tuple[Float, list[int]]:
+    """Return the share of the full motion in every frame, 0 to 1 and back, and the frames of its tops."""
+    law = cycloidal if wanted.law == "cycloidal" else _minimum_jerk
+    frame = np.arange(wanted.frames)
+    flexion = law(frame[: wanted.inversion] / wanted.inversion)
+    extension = law((wanted.frames - 1 - frame[wanted.inversion :]) / (wanted.frames - 1 - wanted.inversion))
+    repetition = np.concatenate([flexion, extension])
+    before, after = (np.zeros(round(rest * wanted.rate_hz)) for rest in (wanted.rest_before_s, wanted.rest_after_s))
+    # The end of one repetition is the start of the next.
+    movement = np.concatenate([repetition, *([repetition[1:]] * (wanted.repetitions - 1))])
+    tops = [before.size + wanted.inversion + k * (wanted.frames - 1) for k in range(wanted.repetitions)]
+    return np.concatenate([before, movement, after]), tops
+
+
+def _minimum_jerk(tau: Float) -> Float:
+    return tau**3 * (10.0 - 15.0 * tau + 6.0 * tau**2)
+
+
+def _arm_poses(time_s: Float, arm: str) -> Float:
+    sway = np.zeros((time_s.size, 3))
+    shift = np.zeros((time_s.size, 3))
+    if arm == "moving":
+        phase = 2.0 * np.pi * time_s[:, None] * np.array([0.31, 0.23, 0.17])
+        sway = np.array([0.10, 0.16, 0.07]) * np.sin(phase)
+        shift = np.array([0.03, 0.02, 0.04]) * np.sin(1.3 * phase)
+    turn = quaternion.multiply(
+        quaternion.quat_from_rotation_vector(sway), quaternion.quat_from_rotation_vector(_ARM_TURN)
+    )
+    return dual_quat_from_pose(turn, _ARM_PLACE + shift)
+
+
+def _lost_frames(wanted: Simulation, frames: int, rng: np.random.Generator) -> NDArray[np.bool_]:
+    lost = np.zeros(frames, dtype=np.bool_)
+    if wanted.gaps:
+        # One gap somewhere in each of equal stretches, never at the trial's first or last frame.
+        stretches = np.array_split(np.arange(1, frames - 1), wanted.gaps)
+        for stretch in stretches:
+            first = int(rng.integers(stretch[0], stretch[-1] - wanted.gap_frames + 1))
+            lost[first : first + wanted.gap_frames] = True
+    return lost
+
+
+def _observed(
+    name: str,
+    identifier: str,
+    offsets: Float,
+    pose: Float,
+    lost: NDArray[np.bool_] | None,
+    wanted: Simulation,
+    rng: np.random.Generator,
+) -> tuple[RigidBody, Float]:
+    seen = transform_points(pose[:, None, :], offsets)
+    if wanted.marker_noise_mm > 0.0:
+        seen = seen + rng.normal(scale=1e-3 * wanted.marker_noise_mm, size=seen.shape)
+        pose = pose_from_points(offsets, seen)
+    if wanted.sign_flips:
+        pose = pose * np.where(rng.random(len(pose)) < 0.5, -1.0, 1.0)[:, None]
+    loss = np.zeros(len(pose), dtype=np.uint8)
+    if lost is not None:
+        loss[lost] = TrackingLoss.BLANK
+        pose = np.where(lost[:, None], np.nan, pose)
+        seen = np.where(lost[:, None, None], np.nan, seen)
+    body = RigidBody(name=name, identifier=identifier, dual_quat_lab_body=pose, loss=loss, marker_offsets=offsets)
+    return body, seen
+
+
+def _line_truth(line: Float) -> dict[str, list[float]]:
+    return {"direction": line[:3].tolist(), "point_mm": (1000.0 * point_nearest_origin(line)).tolist()}

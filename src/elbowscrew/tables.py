@@ -1,0 +1,131 @@
+"""The only list of column names: what stands in ``screw.csv`` and ``interpolation.csv``, in which order and unit.
+
+The results themselves hold SI units and radians; a column says where its values come from and what kind of quantity
+they are, and `columns` turns a result into named columns in the units asked for.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import Enum
+from operator import attrgetter
+from typing import TYPE_CHECKING, Any, Final, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+AngleUnit = Literal["deg", "rad"]
+LengthUnit = Literal["mm", "m"]
+
+METERS: Final[dict[str, float]] = {"m": 1.0, "cm": 0.01, "mm": 0.001}
+"""Meters in one unit of length."""
+
+
+class Quantity(Enum):
+    """What a column holds, and so how it is scaled, named and written."""
+
+    INTEGER = "integer"
+    NUMBER = "number"
+    ANGLE = "angle"
+    LENGTH = "length"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Column:
+    """One column: its name without unit, where its values are found, and their kind."""
+
+    name: str
+    values: Callable[[Any], NDArray[Any]]
+    quantity: Quantity
+
+
+def _column(name: str, attribute: str, quantity: Quantity) -> Column:
+    return Column(name=name, values=attrgetter(attribute), quantity=quantity)
+
+
+def _components(names: tuple[str, ...], attribute: str, quantity: Quantity) -> tuple[Column, ...]:
+    def component(k: int) -> Callable[[Any], NDArray[Any]]:
+        return lambda result: attrgetter(attribute)(result)[:, k]
+
+    return tuple(Column(name=name, values=component(k), quantity=quantity) for k, name in enumerate(names))
+
+
+_DISPLACEMENT: Final = (
+    *_components(("e0", "e1", "e2", "e3"), "euler_parameters", Quantity.NUMBER),
+    *_components(("d_x", "d_y", "d_z"), "translation", Quantity.LENGTH),
+)
+
+SCREW_COLUMNS: Final = (
+    _column("frame", "frame", Quantity.INTEGER),
+    _column("time_s", "time_s", Quantity.NUMBER),
+    _column("valid", "valid", Quantity.INTEGER),
+    _column("theta", "angle", Quantity.ANGLE),
+    _column("slide", "slide", Quantity.LENGTH),
+    *_components(("axis_x", "axis_y", "axis_z"), "axis_direction", Quantity.NUMBER),
+    *_components(("point_x", "point_y", "point_z"), "axis_point", Quantity.LENGTH),
+    *_DISPLACEMENT,
+    _column("filled", "filled", Quantity.INTEGER),
+)
+
+INTERPOLATION_COLUMNS: Final = (
+    _column("frame", "frame", Quantity.INTEGER),
+    _column("time_s", "time_s", Quantity.NUMBER),
+    _column("phase", "phase", Quantity.INTEGER),
+    _column("t", "fraction", Quantity.NUMBER),
+    _column("theta", "angle", Quantity.ANGLE),
+    _column("slide", "slide", Quantity.LENGTH),
+    *_DISPLACEMENT,
+    _column("angle_error", "angle_error", Quantity.ANGLE),
+    _column("translation_error", "translation_error", Quantity.LENGTH),
+    _column("rms_displacement", "rms_displacement", Quantity.LENGTH),
+)
+
+
+def angle_in(radians: NDArray[np.float64], unit: AngleUnit) -> NDArray[np.float64]:
+    """Angles in the unit asked for."""
+    return np.degrees(radians) if unit == "deg" else radians
+
+
+def length_in(meters: NDArray[np.float64], unit: LengthUnit) -> NDArray[np.float64]:
+    """Lengths in the unit asked for."""
+    return meters * 1000.0 if unit == "mm" else meters
+
+
+def columns(
+    result: object, table: tuple[Column, ...], angle_unit: AngleUnit, length_unit: LengthUnit
+) -> dict[str, NDArray[Any]]:
+    """Named columns of a result, in order; floats are NaN and masked integers masked where nothing is known."""
+    named: dict[str, NDArray[Any]] = {}
+    for column in table:
+        values = column.values(result)
+        match column.quantity:
+            case Quantity.ANGLE:
+                named[f"{column.name}_{angle_unit}"] = angle_in(values, angle_unit)
+            case Quantity.LENGTH:
+                named[f"{column.name}_{length_unit}"] = length_in(values, length_unit)
+            case Quantity.INTEGER:
+                named[column.name] = values.astype(np.int64)
+            case Quantity.NUMBER:
+                named[column.name] = values
+    return named
+
+
+def data_frame(
+    result: object, table: tuple[Column, ...], angle_unit: AngleUnit, length_unit: LengthUnit
+) -> pd.DataFrame:
+    """Return the columns as a pandas data frame, the same names and values as in the CSV."""
+    import pandas as pd
+
+    named = columns(result, table, angle_unit, length_unit)
+    return pd.DataFrame(
+        {
+            name: pd.Series(values.filled(0), dtype="Int64").mask(np.ma.getmaskarray(values))
+            if isinstance(values, np.ma.MaskedArray)
+            else values
+            for name, values in named.items()
+        }
+    )
