@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -57,7 +57,8 @@ def length(vector: Float) -> Float:
 
 
 def divide(numerator: Float, denominator: Float) -> Float:
-    """``numerator / denominator``, NaN where the denominator is 0: what is undefined stays undefined."""
+    """``numerator / denominator``, NaN where the denominator is 0 or the quotient beyond all numbers."""
     zero = denominator == 0.0
-    quotient: Any = numerator / np.where(zero, 1.0, denominator)
-    return np.where(zero, np.nan, quotient)
+    with np.errstate(over="ignore"):
+        quotient: Float = numerator / np.where(zero, 1.0, denominator)
+    return np.where(zero | np.isinf(quotient), np.nan, quotient)

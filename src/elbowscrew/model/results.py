@@ -78,7 +78,8 @@ class ScrewMotion:
     @property
     def axis_known(self) -> Bool:
         """Frames whose rotation is large enough for an axis, shape (N,)."""
-        return np.logical_and.reduce(np.isfinite(self.axis_direction), axis=1)
+        known: Bool = np.logical_and.reduce(np.isfinite(self.axis_direction), axis=1)
+        return known
 
     def to_frame(self, angle_unit: tables.AngleUnit = "deg", length_unit: tables.LengthUnit = "mm") -> pd.DataFrame:
         """Return the columns of ``screw.csv``."""
