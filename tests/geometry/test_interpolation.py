@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from elbowscrew.geometry import dlb, dual_quat_from_screw, lagrange_weights, sclerp, sdlb
 from elbowscrew.geometry import dual_quaternion as dq
-from geometry.test_laws import poses, random_poses
+from poses import poses, random_poses
 
 Float = NDArray[np.float64]
 
@@ -55,11 +55,9 @@ def test_the_way_round_is_kept_on_request() -> None:
     assert sclerp(start, end, 0.5)[:4] == pytest.approx(back[:4])
 
 
-@given(
-    arrays(np.float64, 5, elements=st.floats(-1, 1), unique=True).filter(lambda k: np.diff(np.sort(k)).min() > 0.05),
-    st.floats(-1, 1),
-)
-def test_lagrange_weights_reproduce_polynomials(knots: Float, t: float) -> None:
+@given(arrays(np.float64, 5, elements=st.floats(0.1, 0.5)), st.floats(-1, 1))
+def test_lagrange_weights_reproduce_polynomials(gaps: Float, t: float) -> None:
+    knots = np.cumsum(gaps) - 1.5
     weights = lagrange_weights(t, knots)
     for degree in range(5):
         assert weights @ knots**degree == pytest.approx(t**degree, abs=1e-8)

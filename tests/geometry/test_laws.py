@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import pytest
 from hypothesis import given
@@ -18,26 +16,10 @@ from elbowscrew.geometry import (
     screw_from_dual_quat,
 )
 from elbowscrew.geometry import dual_quaternion as dq
-from elbowscrew.geometry import quaternion as qn
+from poses import SHAPES, poses, random_poses, vectors
 
 Float = NDArray[np.float64]
-SHAPES: tuple[tuple[int, ...], ...] = ((), (1,), (3, 1, 2), (0,))
 ONE = np.array([1.0, 0, 0, 0, 0, 0, 0, 0])
-
-vectors = arrays(np.float64, 3, elements=st.floats(-3.0, 3.0))
-lengths = arrays(np.float64, 3, elements=st.floats(-1e3, 1e3))
-
-
-@st.composite
-def poses(draw: Any) -> Float:
-    return dq.dual_quat_from_pose(qn.quat_from_rotation_vector(draw(vectors)), draw(lengths))
-
-
-def random_poses(shape: tuple[int, ...], seed: int = 0) -> Float:
-    rng = np.random.default_rng(seed)
-    quat = qn.normalize(rng.normal(size=(*shape, 4)))
-    return dq.dual_quat_from_pose(quat, rng.normal(size=(*shape, 3)))
-
 
 @given(poses(), poses(), poses())
 def test_product_is_associative(a: Float, b: Float, c: Float) -> None:

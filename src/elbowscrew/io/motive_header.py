@@ -73,7 +73,7 @@ def parse_header(source: TextSource) -> Header:
         pairs[key] = next(cells, "")
     labels = _label_rows(source, rows, axis_row)
     axes, fields = rows[axis_row], rows[axis_row - 1]
-    width = _trimmed_width(axes)
+    width = max(_trimmed_width(axes), _trimmed_width(fields))
     columns = tuple(
         ColumnKey(
             index=k,
@@ -88,9 +88,9 @@ def parse_header(source: TextSource) -> Header:
     return Header(pairs=pairs, columns=columns, lines=axis_row + 1)
 
 
-def _trimmed_width(axes: Sequence[str]) -> int:
-    """Count the columns up to the last that has an axis label; spreadsheets pad the rest."""
-    return max(k for k, cell in enumerate(axes) if cell.strip()) + 1
+def _trimmed_width(row: Sequence[str]) -> int:
+    """Count the columns up to the last that has a label; spreadsheets pad the rest."""
+    return max((k + 1 for k, cell in enumerate(row) if cell.strip()), default=0)
 
 
 def _cell(row: Sequence[str], k: int) -> str:

@@ -52,7 +52,7 @@ def plot_axes_in_space(ax: Axes3D, analysis: Analysis) -> Axes3D:
     segments = length_in(np.stack([middle - half * direction, middle + half * direction], axis=1), unit)
     colors = color_scale(analysis).to_rgba(angle_in(analysis.screw.angle[rows], analysis.settings.angle_unit))
     ax.add_collection3d(Line3DCollection(list(segments), colors=colors, linewidths=0.7, alpha=0.8))
-    ends = length_in(mean.center + 1.15 * half * np.outer([-1.0, 1.0], mean.direction), unit)
+    ends = length_in(mean.center + 1.3 * half * np.outer([-1.0, 1.0], mean.direction), unit)
     ax.plot(*ends.T, color="black", linewidth=1.6, label="mean axis")
     ax.plot(*length_in(path, unit).T, color="#D55E00", linewidth=1.2, label="forearm path")
     shown = [segments.reshape(-1, 3), ends, length_in(seen, unit)]

@@ -37,12 +37,13 @@ def euler_parameters_figure(analysis: Analysis) -> Figure:
 def axis_figure(analysis: Analysis) -> Figure:
     """Make the figure of the axes in space, of their directions and of their places."""
     figure = style.new_figure(_WIDTH_MM, 84.0)
-    grid = figure.add_gridspec(2, 3, width_ratios=[1.3, 1.0, 1.0], height_ratios=[1.0, 0.04])
+    # The second column keeps the labels of the space apart from the next panel's: the layout does not see them.
+    grid = figure.add_gridspec(2, 4, width_ratios=[1.3, 0.12, 1.0, 1.0], height_ratios=[1.0, 0.04])
     space = cast(Axes3D, figure.add_subplot(grid[:, 0], projection="3d"))
     axis.plot_axes_in_space(space, analysis)
-    directions = axis.plot_axis_directions(figure.add_subplot(grid[0, 1]), analysis)
-    places = axis.plot_axis_places(figure.add_subplot(grid[0, 2]), analysis)
-    bar = figure.colorbar(axis.color_scale(analysis), cax=figure.add_subplot(grid[1, 1:]), orientation="horizontal")
+    directions = axis.plot_axis_directions(figure.add_subplot(grid[0, 2]), analysis)
+    places = axis.plot_axis_places(figure.add_subplot(grid[0, 3]), analysis)
+    bar = figure.colorbar(axis.color_scale(analysis), cax=figure.add_subplot(grid[1, 2:]), orientation="horizontal")
     bar.set_label(f"Angle θ ({analysis.settings.angle_unit})")
     for ax, letter in ((space, "a"), (directions, "b"), (places, "c")):
         ax.set_title(letter, loc="left")

@@ -80,7 +80,16 @@ def _plot_error(ax: Axes, analysis: Analysis, values: Float, name: str, unit: st
     if np.isfinite(values).any():
         level = float(np.sqrt(np.nanmean(values**2)))
         ax.axhline(level, **style.LEVEL)
-        ax.text(1.0, level, f"RMS {level:.3g} {unit}", transform=ax.get_yaxis_transform(), ha="right", va="bottom")
+        ax.annotate(
+            f"RMS {level:.3g} {unit}",
+            (1.0, level),
+            xycoords=ax.get_yaxis_transform(),
+            xytext=(0.0, 2.0),
+            textcoords="offset points",
+            ha="right",
+            va="bottom",
+            bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.0, "alpha": 0.85},
+        )
     rows = analysis.keyframes.row
     ax.plot(time_s[rows], values[rows], label="keyframes", **style.KEYFRAME)
     mark_tracking(ax, analysis)

@@ -1,0 +1,237 @@
+"""Every variant of the column layout gives the poses that were written."""
+
+from __future__ import annotations
+
+from itertools import permutations
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from elbowscrew import read_recording
+from elbowscrew.errors import RecordingError, SettingError, UsageError
+from elbowscrew.geometry import dual_quaternion as dq
+from motive_files import bodies_of, write_columns
+from oracles import KnownTrial, known_trial
+
+Float = NDArray[np.float64]
+TRIAL = known_trial(95.0, frames=40, inversion=20, seed=3)
+
+VARIANTS: dict[str, dict[str, Any]] = {
+    "1.21": {"version": "1.21"},
+    "1.22": {"version": "1.22"},
+    "1.23": {"version": "1.23"},
+    "1.24": {"version": "1.24", "quoted_ids": False},
+    "1.25 with Parent row": {"version": "1.25"},
+    "millimeters": {"unit": "Millimeters"},
+    "centimeters": {"unit": "Centimeters"},
+    "CRLF": {"end": "\r\n"},
+    "CR": {"end": "\r"},
+    "BOM": {"bom": True},
+    "padded by a spreadsheet": {"padding": 13, "end": "\r\n", "quoted_ids": False},
+    "padded 1.21": {"version": "1.21", "padding": 4},
+    "time code column": {"version": "1.24", "timecode": True},
+    "lower-case w": {"w_label": "w"},
+    "rotation type missing": {"header": {"Rotation Type": None}},
+    **{f"Euler {''.join(order)}": {"rotation": "".join(order)} for order in permutations("XYZ")},
+}
+
+
+def assert_poses(recording: Any, trial: KnownTrial, tolerance: float = 1e-12) -> None:
+    for body, R, p in zip(recording.bodies, (trial.arm_R, trial.forearm_R), (trial.arm_p, trial.forearm_p), strict=True):
+        matrix = dq.matrix_from_dual_quat(body.dual_quat_lab_body)
+        assert matrix[:, :3, :3] == pytest.approx(R, abs=tolerance)
+        assert matrix[:, :3, 3] == pytest.approx(p, abs=tolerance)
+
+
+@pytest.mark.parametrize("options", VARIANTS.values(), ids=VARIANTS.keys())
+def test_every_variant_gives_the_poses_written(tmp_path: Path, options: dict[str, Any]) -> None:
+    path = write_columns(tmp_path / "take.csv", bodies_of(TRIAL, seed=1), **options)
+    recording = read_recording(path)
+    assert [body.name for body in recording.bodies] == ["Upper Arm", "Forearm"]
+    assert_poses(recording, TRIAL)
+    assert recording.rate_hz == 100.0
+    assert recording.frame.tolist() == list(range(40))
+    assert recording.time_s == pytest.approx(np.arange(40) / 100)
+    assert not recording.warnings
+
+
+def test_six_decimals_are_normalized(tmp_path: Path) -> None:
+    recording = read_recording(write_columns(tmp_path / "take.csv", bodies_of(TRIAL), decimals=6))
+    assert_poses(recording, TRIAL, tolerance=3e-6)
+    norm = dq.norm(recording.bodies[0].dual_quat_lab_body)
+    assert norm.real == pytest.approx(1.0, abs=1e-15)
+
+
+def test_blank_cells_are_lost_frames(tmp_path: Path) -> None:
+    bodies = bodies_of(TRIAL)
+    bodies[1].lost = np.isin(np.arange(40), [0, 7, 8, 39])
+    recording = read_recording(write_columns(tmp_path / "take.csv", bodies))
+    arm, forearm = recording.bodies
+    assert arm.tracked.all()
+    assert np.flatnonzero(~forearm.tracked).tolist() == [0, 7, 8, 39]
+    assert forearm.loss_counts() == {"blank": 4}
+    assert np.isnan(forearm.dual_quat_lab_body[[0, 7, 8, 39]]).all()
+    known = forearm.tracked
+    assert dq.matrix_from_dual_quat(forearm.dual_quat_lab_body)[known, :3, 3] == pytest.approx(TRIAL.forearm_p[known])
+
+
+def test_bodies_of_one_name_are_told_apart_by_id(tmp_path: Path) -> None:
+    path = write_columns(tmp_path / "take.csv", bodies_of(TRIAL, ("Red", "Red")))
+    recording = read_recording(path)
+    assert [(body.name, body.identifier) for body in recording.bodies] == [("Red", "A" * 32), ("Red", "B" * 32)]
+    assert_poses(recording, TRIAL)
+
+
+def test_a_body_that_stands_twice_is_refused(tmp_path: Path) -> None:
+    bodies = bodies_of(TRIAL, ("Red", "Red"))
+    bodies[1].identifier = bodies[0].identifier
+    with pytest.raises(RecordingError, match="twice"):
+        read_recording(write_columns(tmp_path / "take.csv", bodies))
+
+
+def test_interleaved_markers_do_not_disturb_and_are_the_offsets(tmp_path: Path) -> None:
+    """Body, its markers, next body, its markers: as Motive 1.23 and 1.24 write now and then."""
+    offsets = np.array([[0.03, 0.0, 0.01], [-0.02, 0.04, 0.0], [0.0, -0.05, 0.02]])
+    lines = ["Format Version,1.24,Take Name,x,Capture Frame Rate,100,Export Frame Rate,100,Rotation Type,Quaternion,"
+             "Length Units,Millimeters,Coordinate Space,Global", ""]  # fmt: skip
+    labels: list[tuple[str, ...]] = []
+    columns: list[Float] = []
+    for body in bodies_of(TRIAL):
+        from oracles import quaternion_xyzw
+
+        labels += [("Rigid Body", body.name, body.identifier, "Rotation", axis) for axis in "XYZW"]
+        labels += [("Rigid Body", body.name, body.identifier, "Position", axis) for axis in "XYZ"]
+        columns += [quaternion_xyzw(body.R), 1000 * body.p]
+        for k, offset in enumerate(offsets):
+            name = f'"{body.name}:Marker{k + 1}"'
+            labels += [("Rigid Body Marker", name, f'"{body.identifier}"', "Position", axis) for axis in "XYZ"]
+            labels.append(("Rigid Body Marker", name, f'"{body.identifier}"', "Marker Quality", ""))
+            columns += [1000 * (body.R @ offset + body.p), np.ones((40, 1))]
+    for row, title in enumerate(("Type", "Name", "ID", "")):
+        lines.append(",".join(["", title, *(label[row] for label in labels)]))
+    lines.append(",".join(["Frame", "Time (Seconds)", *(label[4] for label in labels)]))
+    data = np.concatenate(columns, axis=1)
+    lines += [",".join([str(k), str(k / 100), *map(repr, row)]) for k, row in enumerate(data.tolist())]
+    path = tmp_path / "take.csv"
+    path.write_text("\n".join(lines) + "\n")
+    recording = read_recording(path)
+    assert_poses(recording, TRIAL)
+    for rigid in recording.bodies:
+        assert rigid.marker_offsets == pytest.approx(offsets, abs=1e-9)
+
+
+def test_frame_numbers_and_times_are_the_files_own(tmp_path: Path) -> None:
+    recording = read_recording(write_columns(tmp_path / "take.csv", bodies_of(TRIAL), first_frame=72210))
+    assert recording.frame[[0, -1]].tolist() == [72210, 72249]
+    assert recording.time_s[0] == 0.0
+
+
+def test_a_missing_unit_must_be_given_and_a_stated_one_not_contradicted(tmp_path: Path) -> None:
+    silent = write_columns(tmp_path / "a.csv", bodies_of(TRIAL), unit="Centimeters", header={"Length Units": None})
+    with pytest.raises(SettingError, match="--units"):
+        read_recording(silent)
+    assert_poses(read_recording(silent, units="cm"), TRIAL)
+    stated = write_columns(tmp_path / "b.csv", bodies_of(TRIAL))
+    with pytest.raises(UsageError, match="contradicts"):
+        read_recording(stated, units="mm")
+    with pytest.raises(UsageError, match="units"):
+        read_recording(stated, units="inch")
+
+
+def test_a_missing_euler_order_must_be_given(tmp_path: Path) -> None:
+    silent = write_columns(tmp_path / "a.csv", bodies_of(TRIAL), rotation="ZYX", header={"Rotation Type": None})
+    with pytest.raises(SettingError, match="--rotation"):
+        read_recording(silent)
+    assert_poses(read_recording(silent, rotation="ZYX"), TRIAL)
+    with pytest.raises(UsageError, match="rotation"):
+        read_recording(silent, rotation="quaternion")
+
+
+def test_mirrored_version_1_1_is_not_read_as_if_it_were_not(tmp_path: Path) -> None:
+    path = write_columns(tmp_path / "a.csv", bodies_of(TRIAL), version="1.21", header={"Format Version": "1.1"})
+    with pytest.raises(RecordingError, match="mirrored"):
+        read_recording(path)
+
+
+def good_lines(tmp_path: Path) -> list[str]:
+    return write_columns(tmp_path / "good.csv", bodies_of(TRIAL)).read_text().splitlines()
+
+
+@pytest.mark.parametrize("text", ["abc", "nan", "inf", "1e400", "1_0", "0x1A", "--1", "1.0.0", "#REF!"])
+@pytest.mark.parametrize("line", [7, 30])
+def test_a_cell_that_is_no_number_is_an_error_with_its_place(tmp_path: Path, text: str, line: int) -> None:
+    lines = good_lines(tmp_path)
+    cells = lines[line].split(",")
+    cells[4] = text
+    lines[line] = ",".join(cells)
+    path = tmp_path / "bad.csv"
+    path.write_text("\n".join(lines) + "\n")
+    with pytest.raises(RecordingError, match=rf"bad\.csv:{line + 1}: column 5: expected a number") as caught:
+        read_recording(path)
+    assert text in str(caught.value)
+
+
+def test_a_line_that_is_cut_is_an_error_with_its_place(tmp_path: Path) -> None:
+    lines = good_lines(tmp_path)
+    path = tmp_path / "bad.csv"
+    path.write_text("\n".join(lines[:-1]) + "\n" + lines[-1][:60])
+    with pytest.raises(RecordingError, match=r"bad\.csv:47: expected 18 cells, found \d+: the line is cut"):
+        read_recording(path)
+    path.write_text("\n".join(lines))
+    assert [warning.code for warning in read_recording(path).warnings] == ["no-final-newline"]
+
+
+@pytest.mark.parametrize("kept", range(7))
+def test_a_header_that_is_cut_is_refused(tmp_path: Path, kept: int) -> None:
+    path = tmp_path / "bad.csv"
+    path.write_text("\n".join(good_lines(tmp_path)[:kept]) + "\n")
+    with pytest.raises(RecordingError):
+        read_recording(path)
+
+
+def test_a_header_without_frames_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "bad.csv"
+    path.write_text("\n".join(good_lines(tmp_path)[:7]) + "\n")
+    with pytest.raises(RecordingError, match="no frame"):
+        read_recording(path)
+
+
+def test_no_rigid_bodies_says_what_is_there(tmp_path: Path) -> None:
+    path = tmp_path / "bad.csv"
+    path.write_text(
+        "Format Version,1.23,Length Units,Meters\n\n,Type,Marker,Marker,Marker\n,Name,a,a,a\n,ID,1,1,1\n"
+        ",,Position,Position,Position\nFrame,Time (Seconds),X,Y,Z\n0,0.0,1,2,3\n"
+    )
+    with pytest.raises(RecordingError, match="no rigid bodies in the file .found: Marker"):
+        read_recording(path)
+
+
+@pytest.mark.parametrize(
+    ("content", "says"),
+    [
+        (b"", "empty"),
+        (b"\n\n ,,\n", "empty"),
+        (b"\x00\x01\x02Format Version", "binary"),
+        (b"PK\x03\x04rest", "zip"),
+        ("Format Version,1.23".encode("utf-16"), "UTF-16"),
+        (b"Format Version,1.23,Take Name,caf\xe9\n\n", "UTF-8"),
+        (b"0,0.0,0,8,0.1,0.2\n1,0.01,0,8,0.1,0.2\n", "header is missing"),
+        (b"time;x;y\n", "not an OptiTrack export"),
+        (b"Format Version;1.23;Take Name\n", "semicolon"),
+    ],
+)
+def test_what_is_no_export_is_refused_with_the_reason(tmp_path: Path, content: bytes, says: str) -> None:
+    path = tmp_path / "bad.csv"
+    path.write_bytes(content)
+    with pytest.raises(RecordingError, match=says):
+        read_recording(path)
+
+
+def test_missing_files_and_folders_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(RecordingError, match="no such file"):
+        read_recording(tmp_path / "nothing.csv")
+    with pytest.raises(RecordingError, match="folder"):
+        read_recording(tmp_path)
