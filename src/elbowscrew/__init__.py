@@ -9,12 +9,12 @@ True
 
 from __future__ import annotations
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
-
 from elbowscrew._version import __version__
 
+TYPE_CHECKING = False  # typing itself would double the time of `elbowscrew --version`
 if TYPE_CHECKING:
+    from typing import Any
+
     from elbowscrew.errors import ElbowscrewError
     from elbowscrew.io.reading import read_recording
     from elbowscrew.model import Analysis, Recording, RigidBody
@@ -54,6 +54,8 @@ _HOME = {
 
 def __getattr__(name: str) -> Any:
     if name in _HOME:
+        from importlib import import_module
+
         return getattr(import_module(f"elbowscrew.{_HOME[name]}"), name)
     msg = f"module 'elbowscrew' has no attribute {name!r}"
     raise AttributeError(msg)

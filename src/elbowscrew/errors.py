@@ -15,13 +15,11 @@ found and what to do next.
 
 from __future__ import annotations
 
-from typing import ClassVar
-
 
 class ElbowscrewError(Exception):
     """Base of all errors that a file, a setting or a disk can cause."""
 
-    exit_code: ClassVar[int] = 1
+    exit_code = 1
 
 
 class UsageError(ElbowscrewError):

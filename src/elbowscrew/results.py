@@ -66,12 +66,13 @@ def save_analysis(
 
 def _write_figures(folder: Path, analysis: Analysis, formats: Sequence[str]) -> None:
     from elbowscrew.plots.figures import FIGURES
-    from elbowscrew.plots.style import publication_style
+    from elbowscrew.plots.style import publication_style, settle
 
     folder.mkdir()
     with publication_style():
         for name, make in FIGURES.items():
             figure = make(analysis)
+            settle(figure)
             for kind in formats:
                 figure.savefig(folder / f"{name}.{kind}", format=kind, metadata=_METADATA[kind])
 

@@ -8,10 +8,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from numpy.typing import NDArray
+from poses import poses, random_poses
 
 from elbowscrew.geometry import dlb, dual_quat_from_screw, lagrange_weights, sclerp, sdlb
 from elbowscrew.geometry import dual_quaternion as dq
-from poses import poses, random_poses
 
 Float = NDArray[np.float64]
 
@@ -31,9 +31,7 @@ def test_no_method_depends_on_the_frame_on_either_side(left: Float, a: Float, b:
         return
     for method in (sclerp, sdlb):
         inside = dq.multiply(left, dq.multiply(method(a, b, t), left))
-        outside = method(
-            dq.multiply(left, dq.multiply(a, left)), dq.multiply(left, dq.multiply(b, left)), t
-        )
+        outside = method(dq.multiply(left, dq.multiply(a, left)), dq.multiply(left, dq.multiply(b, left)), t)
         assert outside == pytest.approx(inside, rel=1e-7, abs=1e-5)
 
 

@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from numpy.typing import NDArray
+from poses import SHAPES, poses, random_poses, vectors
 
 from elbowscrew.geometry import (
     dual_quat_from_screw,
@@ -16,10 +17,10 @@ from elbowscrew.geometry import (
     screw_from_dual_quat,
 )
 from elbowscrew.geometry import dual_quaternion as dq
-from poses import SHAPES, poses, random_poses, vectors
 
 Float = NDArray[np.float64]
 ONE = np.array([1.0, 0, 0, 0, 0, 0, 0, 0])
+
 
 @given(poses(), poses(), poses())
 def test_product_is_associative(a: Float, b: Float, c: Float) -> None:
@@ -39,7 +40,7 @@ def test_norm_is_a_dual_number_that_normalizing_makes_one(Q: Float) -> None:
     # |Q|^2 = Q Q*, which is a dual number.
     square = dq.multiply(Q, dq.conjugate(Q))
     assert square == pytest.approx(
-        [norm.real**2, 0, 0, 0, 2 * norm.real * norm.dual, 0, 0, 0], abs=1e-9 * (1 + norm.real**2)
+        [norm.real**2, 0, 0, 0, 2 * norm.real * norm.dual, 0, 0, 0], abs=1e-9 * (1 + float(norm.real) ** 2)
     )
     unit = dq.norm(dq.normalize(Q))
     assert unit.real == pytest.approx(1.0, abs=1e-14)
@@ -143,7 +144,8 @@ def test_translation_has_a_direction_but_no_place() -> None:
 
 def test_the_identity_has_no_axis() -> None:
     screw = screw_from_dual_quat(ONE)
-    assert (screw.angle, screw.slide) == (0.0, 0.0)
+    assert screw.angle == 0.0
+    assert screw.slide == 0.0
     assert np.isnan(screw.direction).all()
 
 

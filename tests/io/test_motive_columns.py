@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from motive_files import bodies_of, write_columns
 from numpy.typing import NDArray
+from oracles import KnownTrial, known_trial
 
 from elbowscrew import read_recording
 from elbowscrew.errors import RecordingError, SettingError, UsageError
 from elbowscrew.geometry import dual_quaternion as dq
-from motive_files import bodies_of, write_columns
-from oracles import KnownTrial, known_trial
 
 Float = NDArray[np.float64]
 TRIAL = known_trial(95.0, frames=40, inversion=20, seed=3)
@@ -40,7 +40,9 @@ VARIANTS: dict[str, dict[str, Any]] = {
 
 
 def assert_poses(recording: Any, trial: KnownTrial, tolerance: float = 1e-12) -> None:
-    for body, R, p in zip(recording.bodies, (trial.arm_R, trial.forearm_R), (trial.arm_p, trial.forearm_p), strict=True):
+    for body, R, p in zip(
+        recording.bodies, (trial.arm_R, trial.forearm_R), (trial.arm_p, trial.forearm_p), strict=True
+    ):
         matrix = dq.matrix_from_dual_quat(body.dual_quat_lab_body)
         assert matrix[:, :3, :3] == pytest.approx(R, abs=tolerance)
         assert matrix[:, :3, 3] == pytest.approx(p, abs=tolerance)
@@ -205,7 +207,7 @@ def test_no_rigid_bodies_says_what_is_there(tmp_path: Path) -> None:
         "Format Version,1.23,Length Units,Meters\n\n,Type,Marker,Marker,Marker\n,Name,a,a,a\n,ID,1,1,1\n"
         ",,Position,Position,Position\nFrame,Time (Seconds),X,Y,Z\n0,0.0,1,2,3\n"
     )
-    with pytest.raises(RecordingError, match="no rigid bodies in the file .found: Marker"):
+    with pytest.raises(RecordingError, match=r"no rigid bodies in the file \(found: Marker\)"):
         read_recording(path)
 
 

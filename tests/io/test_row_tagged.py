@@ -6,12 +6,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from motive_files import bodies_of, write_row_tagged
+from oracles import known_trial
 
 from elbowscrew import read_recording
 from elbowscrew.errors import RecordingError, UsageError
 from elbowscrew.geometry import dual_quaternion as dq
-from motive_files import bodies_of, write_row_tagged
-from oracles import known_trial
 
 TRIAL = known_trial(95.0, frames=30, inversion=14, seed=5)
 

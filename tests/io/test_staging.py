@@ -32,9 +32,14 @@ def test_a_new_folder_appears_when_the_block_ends(tmp_path: Path) -> None:
 def test_a_failure_leaves_nothing_and_keeps_the_earlier_result(tmp_path: Path, error: BaseException) -> None:
     target = earlier_result(tmp_path / "result")
     expected = OutputError if isinstance(error, OSError) else type(error)
-    with pytest.raises(expected), result_folder(target, force=True) as staged:
-        (staged / "summary.json").write_text("half")
-        raise error
+
+    def fail_half_way() -> None:
+        with result_folder(target, force=True) as staged:
+            (staged / "summary.json").write_text("half")
+            raise error
+
+    with pytest.raises(expected):
+        fail_half_way()
     assert (target / "summary.json").read_text() == "old"
     assert [path.name for path in tmp_path.iterdir()] == ["result"]
 

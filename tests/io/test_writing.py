@@ -24,9 +24,7 @@ INTERPOLATION_NAMES = (
 
 
 @given(values=st.lists(st.floats(allow_nan=True, allow_infinity=False), min_size=1, max_size=20))
-def test_numbers_read_back_as_the_same_float(
-    tmp_path_factory: pytest.TempPathFactory, values: list[float]
-) -> None:
+def test_numbers_read_back_as_the_same_float(tmp_path_factory: pytest.TempPathFactory, values: list[float]) -> None:
     path = tmp_path_factory.mktemp("csv") / "t.csv"
     write_csv(path, {"value": np.array(values), "n": np.arange(len(values))})
     with path.open(newline="") as stream:

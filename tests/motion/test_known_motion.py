@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from motive_files import bodies_of, write_columns, write_row_tagged
 from numpy.typing import NDArray
+from oracles import ComplexDualQuaternion, KnownTrial, known_trial, quaternion_xyzw, relative_motion
 
 from elbowscrew import Analysis, Settings, analyze, read_recording
-from motive_files import bodies_of, write_columns, write_row_tagged
-from oracles import ComplexDualQuaternion, KnownTrial, known_trial, quaternion_xyzw, relative_motion
 
 Float = NDArray[np.float64]
 
@@ -33,7 +33,8 @@ def analyzed(
 
 
 def angle_between_deg(a: Float, b: Float) -> Float:
-    return np.degrees(np.arctan2(np.linalg.norm(np.cross(a, b), axis=-1), np.sum(a * b, axis=-1)))
+    angle: Float = np.degrees(np.arctan2(np.linalg.norm(np.cross(a, b), axis=-1), np.sum(a * b, axis=-1)))
+    return angle
 
 
 @pytest.mark.parametrize("express_in", ["forearm", "arm", "lab"])
@@ -111,6 +112,13 @@ def test_moving_the_laboratory_moves_nothing_seen_from_the_bodies(tmp_path: Path
         assert other.screw.axis_point == pytest.approx(one.screw.axis_point, abs=1e-9, nan_ok=True)
         ours, theirs = one.interpolated.rms_displacement, other.interpolated.rms_displacement
         assert theirs == pytest.approx(ours, abs=1e-10)
+    distances = [
+        analyzed(tmp_path, trial, Settings(express_in=frame), decimals=4).mean_axis.distance
+        for frame in ("forearm", "arm", "lab")
+    ]
+    assert np.nanmax(distances[0]) > 1e-4
+    for distance in distances[1:]:
+        assert distance == pytest.approx(distances[0], abs=1e-9, nan_ok=True)
     lab = analyzed(tmp_path, moved, Settings(express_in="lab")).screw
     large = lab.axis_known
     direction, _ = trial.line_in("lab")

@@ -7,9 +7,8 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
-
 from oracles import KnownTrial, quaternion_xyzw
+from scipy.spatial.transform import Rotation
 
 Float = NDArray[np.float64]
 SCALES = {"Meters": 1.0, "Centimeters": 100.0, "Millimeters": 1000.0}
@@ -148,7 +147,8 @@ def write_row_tagged(
             lost = body.lost is not None and body.lost[k]
             seen = "NAN,NAN,NAN" if lost else "0.1,0.2,0.3"
             lines.append(
-                f"{tag},{k},{k / 100:.8f},{quote}{body.name}{quote},{number},{int(lost)},1,0.1,0.2,0.3,{seen},1,1.0,0.001"
+                f"{tag},{k},{k / 100:.8f},{quote}{body.name}{quote},{number},{int(lost)},1,"
+                f"0.1,0.2,0.3,{seen},1,1.0,0.001"
             )
     path.write_text("\n".join(lines) + "\n")
     return path

@@ -15,7 +15,8 @@ def rodrigues(axis: Float, angle: Float) -> Float:
     n = axis / np.linalg.norm(axis)
     K = np.array([[0.0, -n[2], n[1]], [n[2], 0.0, -n[0]], [-n[1], n[0], 0.0]])
     a = np.asarray(angle)[:, None, None]
-    return np.eye(3) + np.sin(a) * K + (1.0 - np.cos(a)) * (K @ K)
+    rotation: Float = np.eye(3) + np.sin(a) * K + (1.0 - np.cos(a)) * (K @ K)
+    return rotation
 
 
 def quaternion_xyzw(R: Float) -> Float:
@@ -23,19 +24,39 @@ def quaternion_xyzw(R: Float) -> Float:
     m = R
     K = np.empty((len(R), 4, 4))
     K[:, 0] = np.stack(
-        [m[:, 0, 0] - m[:, 1, 1] - m[:, 2, 2], m[:, 1, 0] + m[:, 0, 1], m[:, 2, 0] + m[:, 0, 2], m[:, 2, 1] - m[:, 1, 2]],
+        [
+            m[:, 0, 0] - m[:, 1, 1] - m[:, 2, 2],
+            m[:, 1, 0] + m[:, 0, 1],
+            m[:, 2, 0] + m[:, 0, 2],
+            m[:, 2, 1] - m[:, 1, 2],
+        ],
         axis=1,
     )
     K[:, 1] = np.stack(
-        [m[:, 1, 0] + m[:, 0, 1], m[:, 1, 1] - m[:, 0, 0] - m[:, 2, 2], m[:, 2, 1] + m[:, 1, 2], m[:, 0, 2] - m[:, 2, 0]],
+        [
+            m[:, 1, 0] + m[:, 0, 1],
+            m[:, 1, 1] - m[:, 0, 0] - m[:, 2, 2],
+            m[:, 2, 1] + m[:, 1, 2],
+            m[:, 0, 2] - m[:, 2, 0],
+        ],
         axis=1,
     )
     K[:, 2] = np.stack(
-        [m[:, 2, 0] + m[:, 0, 2], m[:, 2, 1] + m[:, 1, 2], m[:, 2, 2] - m[:, 0, 0] - m[:, 1, 1], m[:, 1, 0] - m[:, 0, 1]],
+        [
+            m[:, 2, 0] + m[:, 0, 2],
+            m[:, 2, 1] + m[:, 1, 2],
+            m[:, 2, 2] - m[:, 0, 0] - m[:, 1, 1],
+            m[:, 1, 0] - m[:, 0, 1],
+        ],
         axis=1,
     )
     K[:, 3] = np.stack(
-        [m[:, 2, 1] - m[:, 1, 2], m[:, 0, 2] - m[:, 2, 0], m[:, 1, 0] - m[:, 0, 1], m[:, 0, 0] + m[:, 1, 1] + m[:, 2, 2]],
+        [
+            m[:, 2, 1] - m[:, 1, 2],
+            m[:, 0, 2] - m[:, 2, 0],
+            m[:, 1, 0] - m[:, 0, 1],
+            m[:, 0, 0] + m[:, 1, 1] + m[:, 2, 2],
+        ],
         axis=1,
     )
     return np.linalg.eigh(K / 3.0)[1][:, :, -1]

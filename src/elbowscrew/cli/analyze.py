@@ -132,7 +132,10 @@ def analyze(
         bool, typer.Option("--verbose", "-v", help="Name every file written.", rich_help_panel=_OUTPUT)
     ] = False,
 ) -> None:
-    """Analyze one trial: screw axis, angle and slide of every frame, and a model through a few poses."""
+    """Analyze one trial into a result folder.
+
+    Screw axis, angle and slide of every frame, a model through a few poses, tables, a summary and figures.
+    """
     from elbowscrew.cli import render
     from elbowscrew.io.reading import read_recording
     from elbowscrew.io.staging import check_result_folder

@@ -36,3 +36,11 @@ def _common(
 app.command()(analyze)
 app.command()(info)
 app.command()(simulate)
+
+
+def run(arguments: list[str]) -> object:
+    """Parse and run; an error is raised, a wish to exit becomes the code returned."""
+    command = typer.main.get_command(app)
+    # The list of commands is short and needs no panels: without rich the help is there in half the time.
+    command.rich_markup_mode = None  # type: ignore[attr-defined]
+    return command.main(arguments, standalone_mode=False, prog_name="elbowscrew")

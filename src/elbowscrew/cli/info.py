@@ -16,7 +16,10 @@ def info(
     rotation: Annotated[options.Rotation | None, typer.Option(help="Rotation type, if the file states none.")] = None,
     json_output: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
 ) -> None:
-    """Say what a file holds: layout, clock, bodies, tracking; analyze nothing."""
+    """Say what a file holds; analyze nothing.
+
+    Layout, clock, bodies and their tracking.
+    """
     from elbowscrew.cli import render
     from elbowscrew.io.reading import read_recording
     from elbowscrew.io.summary import summary_from_recording

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import os
-import signal
 import sys
 from collections.abc import Sequence
 from types import FrameType
 
 from elbowscrew._version import __version__
+from elbowscrew.cli.text import one_line
 from elbowscrew.errors import ElbowscrewError, OutputError, RecordingError, UsageError
 
 INTERRUPTED = 130
@@ -22,11 +22,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 0
     from typer.exceptions import TyperException
 
-    from elbowscrew.cli.app import app
+    from elbowscrew.cli.app import run
 
     _end_cleanly_when_terminated()
     try:
-        code = app(given or ["--help"], standalone_mode=False, prog_name="elbowscrew")
+        code = run(given or ["--help"])
         sys.stdout.flush()
     except ElbowscrewError as error:
         return _report(str(error), error.exit_code)
@@ -53,8 +53,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _report(message: str, code: int) -> int:
-    line = " ".join(message.split())
-    sys.stderr.write(f"elbowscrew: error: {line}\n".encode("utf-8", "replace").decode("utf-8"))
+    sys.stderr.write(f"elbowscrew: error: {one_line(message)}\n")
     return code
 
 
@@ -68,6 +67,7 @@ def _report_usage(error: Exception) -> int:
 
 def _end_cleanly_when_terminated() -> None:
     """Let a SIGTERM unwind the stack, so that temporary files go."""
+    import signal
 
     def stop(number: int, _frame: FrameType | None) -> None:
         raise SystemExit(128 + number)

@@ -12,11 +12,13 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from elbowscrew.cli.text import one_line, printable
+
 
 def warnings(found: Iterable[Mapping[str, str]]) -> None:
     """Write one line a warning."""
     for warning in found:
-        sys.stderr.write(f"elbowscrew: warning: {' '.join(warning['message'].split())} [{warning['code']}]\n")
+        sys.stderr.write(f"elbowscrew: warning: {one_line(warning['message'])} [{warning['code']}]\n")
 
 
 def json_object(value: Mapping[str, Any]) -> None:
@@ -66,7 +68,7 @@ def analysis_table(summary: Mapping[str, Any], folder: Path) -> None:
         ),
         ("Results", str(folder)),
     ]
-    _print_rows(_printable(summary["source"]["name"] or ""), rows)
+    _print_rows(printable(summary["source"]["name"] or ""), rows)
 
 
 def info_table(summary: Mapping[str, Any]) -> None:
@@ -83,14 +85,14 @@ def info_table(summary: Mapping[str, Any]) -> None:
         ),
         ("Roles", summary["roles"]["text"]),
     ]
-    _print_rows(_printable(source["name"] or ""), rows)
+    _print_rows(printable(source["name"] or ""), rows)
     table = Table(box=None, pad_edge=False, header_style="bold")
     for column in ("Body", "Id", "Tracked", "Lost frames", "Markers"):
         table.add_column(column, justify="right" if column in ("Tracked", "Markers") else "left", overflow="fold")
     for body in trial["bodies"]:
         table.add_row(
-            Text(_printable(body["name"])),
-            Text(_printable(body["id"])),
+            Text(printable(body["name"])),
+            Text(printable(body["id"])),
             f"{100.0 * body['tracked_share']:.1f} %",
             ", ".join(f"{count} {reason}" for reason, count in body["lost_frames"].items()) or "–",
             str(body["markers"] or "–"),
@@ -104,7 +106,7 @@ def _print_rows(title: str, rows: Iterable[tuple[str, str]]) -> None:
     table.add_column(style="bold", no_wrap=True)
     table.add_column(overflow="fold")
     for name, value in rows:
-        table.add_row(name, Text(_printable(value)))
+        table.add_row(name, Text(printable(value)))
     console.print(Text(title, style="bold"))
     console.print(table)
 
@@ -133,8 +135,3 @@ def _vector(values: Iterable[float], decimals: int) -> str:
 
 def _radius(model: Mapping[str, Any]) -> str:
     return f"radius of gyration {model['points']['radius_of_gyration_mm']:g} mm"
-
-
-def _printable(text: str) -> str:
-    """Names come from files: no control character of theirs may reach the terminal."""
-    return "".join(character if character.isprintable() else "?" for character in text)

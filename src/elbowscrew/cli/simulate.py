@@ -51,7 +51,10 @@ def simulate(
     ] = "m",
     force: Annotated[bool, typer.Option("--force", rich_help_panel=_OUTPUT, help="Replace existing files.")] = False,
 ) -> None:
-    """Write a synthetic elbow trial, and the truth about it in <OUT>.truth.json."""
+    """Write a synthetic elbow trial.
+
+    The truth about it goes to <OUT>.truth.json.
+    """
     from elbowscrew.results import save_simulation
     from elbowscrew.simulate import Simulation, simulate_recording
 

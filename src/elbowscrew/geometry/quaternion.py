@@ -76,7 +76,7 @@ def rotate(quat: ArrayLike, vector: ArrayLike) -> NDArray[np.float64]:
 
     Examples
     --------
-    >>> rotate([0.5**0.5, 0, 0, 0.5**0.5], [1, 0, 0]).round(12)
+    >>> rotate([0.5**0.5, 0, 0, 0.5**0.5], [1, 0, 0]).round(12) + 0.0
     array([0., 1., 0.])
     """
     q = np.asarray(quat, dtype=np.float64)

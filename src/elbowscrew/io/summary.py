@@ -114,16 +114,18 @@ def _trial(analysis: Analysis) -> dict[str, Any]:
 
 def _motion(analysis: Analysis) -> dict[str, Any]:
     screw, axis = analysis.screw, analysis.mean_axis
+    angle = np.degrees(np.where(screw.valid, screw.angle, np.nan))
+    slide = 1000.0 * np.where(screw.valid, screw.slide, np.nan)
     return {
-        "theta_max_deg": _statistic(np.nanmax, np.degrees(screw.angle)),
-        "theta_min_deg": _statistic(np.nanmin, np.degrees(screw.angle)),
-        "theta_max_frame": int(screw.frame[int(np.nanargmax(screw.angle))]),
+        "theta_max_deg": _statistic(np.nanmax, angle),
+        "theta_min_deg": _statistic(np.nanmin, angle),
+        "theta_max_frame": int(screw.frame[int(np.nanargmax(angle))]),
         "inversion_frames": screw.frame[analysis.keyframes.inversion_rows].tolist(),
-        "slide_median_mm": _statistic(np.nanmedian, 1000.0 * screw.slide),
-        "slide_min_mm": _statistic(np.nanmin, 1000.0 * screw.slide),
-        "slide_max_mm": _statistic(np.nanmax, 1000.0 * screw.slide),
+        "slide_median_mm": _statistic(np.nanmedian, slide),
+        "slide_min_mm": _statistic(np.nanmin, slide),
+        "slide_max_mm": _statistic(np.nanmax, slide),
         "expressed_in": analysis.settings.express_in,
-        "axis_frames": int(screw.axis_known.sum()),
+        "axis_frames": int((screw.axis_known & screw.valid).sum()),
         "mean_axis": {"direction": axis.direction.tolist(), "point_mm": (1000.0 * axis.point).tolist()},
         "axis_dispersion_deg": _statistic(np.nanmedian, np.degrees(axis.deviation)),
         "axis_dispersion_rms_deg": _statistic(_rms, np.degrees(axis.deviation)),

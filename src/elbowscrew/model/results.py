@@ -97,7 +97,8 @@ class MeanAxis:
     deviation : ndarray, shape (N,)
         Angle between each frame's axis and the plain mean direction, radians; NaN where there is no axis.
     distance : ndarray, shape (N,)
-        Distance between the mean axis and the point of each frame's axis nearest the mean point, meters.
+        Distance between each frame's axis and the mean axis, across the latter where it passes the forearm at the
+        reference, meters; NaN where there is no axis.
     """
 
     direction: Float

@@ -15,6 +15,7 @@ from elbowscrew.model import (
     InterpolatedMotion,
     JointMotion,
     Keyframes,
+    MeanAxis,
     QualityWarning,
     Recording,
     RigidBody,
@@ -33,7 +34,7 @@ from elbowscrew.motion.keyframes import choose_rows, keyframes_at, row_of_frame
 from elbowscrew.motion.laws import LAWS
 from elbowscrew.motion.mean_axis import mean_axis_of
 from elbowscrew.motion.modeling import METHODS, ModeledPoses, model_motion
-from elbowscrew.motion.relative import displacement, expressed, joint_from_bodies
+from elbowscrew.motion.relative import displacement, expressed, frame_change, joint_from_bodies
 from elbowscrew.motion.selection import choose_bodies
 from elbowscrew.motion.tracking import check_tracking
 from elbowscrew.settings import Settings
@@ -74,7 +75,7 @@ def analyze(recording: Recording, settings: Settings | None = None) -> Analysis:
     Examples
     --------
     >>> import elbowscrew
-    >>> analysis = elbowscrew.analyze(elbowscrew.simulate_recording(seed=1).recording)
+    >>> analysis = elbowscrew.analyze(elbowscrew.simulate_recording(marker_noise_mm=0).recording)
     >>> int(analysis.keyframes.frame[1])
     211
     """
@@ -84,6 +85,7 @@ def analyze(recording: Recording, settings: Settings | None = None) -> Analysis:
     joint = joint_from_bodies(
         arm,
         forearm,
+        recording.frame,
         elapsed,
         recording.rate_hz,
         reference_row=None
@@ -128,7 +130,7 @@ def analyze(recording: Recording, settings: Settings | None = None) -> Analysis:
         forearm=forearm,
         joint=joint,
         screw=screw,
-        mean_axis=mean_axis_of(series.angle, series.line),
+        mean_axis=_mean_axis(series, joint, wanted),
         keyframes=keyframes,
         interpolated=_compared(modeled, D, series, joint, keyframes, points, screw, wanted),
         points=points,
@@ -166,13 +168,20 @@ def _tracked_bodies(
 def _measured_series(D: Float, joint: JointMotion, settings: Settings) -> HelicalSeries:
     series = helical_series(D, np.radians(settings.min_angle_deg), joint.reference_row)
     peak = int(np.nanargmax(np.abs(series.angle)))
-    if not np.isfinite(series.line).any():
+    if not np.isfinite(series.line[joint.measured]).any():
         msg = (
             f"the largest rotation since the reference is {np.degrees(abs(series.angle[peak])):.3g} deg, less than the "
             f"{settings.min_angle_deg:g} deg an axis needs: no rotation to analyze (--min-angle sets the limit)"
         )
         raise AnalysisError(msg)
     return series.reversed() if series.angle[peak] < 0.0 else series
+
+
+def _mean_axis(series: HelicalSeries, joint: JointMotion, settings: Settings) -> MeanAxis:
+    """Take the mean over measured frames: a pose filled in says nothing that its neighbors do not."""
+    lines = np.where(joint.measured[:, None], series.line, np.nan)
+    forearm = pose_from_dual_quat(frame_change(joint, settings.express_in))[1]
+    return mean_axis_of(series.angle, lines, forearm)
 
 
 def _body_points(forearm: RigidBody, settings: Settings) -> BodyPoints:

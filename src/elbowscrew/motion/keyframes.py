@@ -163,8 +163,9 @@ def _scaled(values: Float) -> Float:
 
 
 def _accumulated(steps: Float, rows: Index, frame: Index, choice: str) -> Float:
-    if (steps <= 0.0).any():
-        k = int(np.flatnonzero(steps <= 0.0)[0])
+    least = _LEAST_STEPS[choice]
+    if (steps < least).any():
+        k = int(np.flatnonzero(steps < least)[0])
         what = "origin does not move" if choice == "chord" else "orientation does not change"
         others = ", ".join(name for name in ("law", *_STEPS) if name != choice)
         msg = (
@@ -179,6 +180,9 @@ def _chords(pose: Float) -> Float:
     origin = pose_from_dual_quat(pose)[1]
     return length(np.diff(origin, axis=0))
 
+
+# Below these a step is round-off or noise of the cameras: 10 micrometers, 10 microradians.
+_LEAST_STEPS: Final = {"chord": 1e-5, "uniform": 0.0, "angle": 1e-5}
 
 _STEPS: Final[dict[str, Callable[[Float], Float]]] = {
     "chord": _chords,

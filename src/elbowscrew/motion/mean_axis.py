@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowscrew.geometry._small_angle import length
+from elbowscrew.geometry._small_angle import divide, length
 from elbowscrew.model import MeanAxis
 
 Float = NDArray[np.float64]
 
 
-def mean_axis_of(angle: Float, line: Float) -> MeanAxis:
+def mean_axis_of(angle: Float, line: Float, near: Float) -> MeanAxis:
     """Weighted mean of lines, as dual vectors, with weights ``sin^2(theta/2)``.
 
     The direction noise of a finite axis grows as 1/sin(theta/2), so these are the inverse variances. The spread is
@@ -23,6 +23,8 @@ def mean_axis_of(angle: Float, line: Float) -> MeanAxis:
         Rotation of each frame, radians.
     line : ndarray, shape (N, 6)
         Plücker vectors, one way round; NaN where there is no axis. At least one must be known.
+    near : ndarray, shape (3,)
+        A point of the body; distances are taken across the mean axis where it passes this point.
 
     References
     ----------
@@ -37,7 +39,9 @@ def mean_axis_of(angle: Float, line: Float) -> MeanAxis:
     point = np.cross(direction, moment)
     plain = line[known, :3].mean(axis=0)
     deviation = np.arctan2(length(np.cross(line[:, :3], plain)), line[:, :3] @ plain)
-    # The point of each axis nearest the mean point, seen from the mean axis.
-    offset = np.cross(line[:, :3], line[:, 3:] - np.cross(point, line[:, :3]))
-    distance = length(offset - (offset @ direction)[:, None] * direction)
+    # Where each axis pierces the plane across the mean axis at `near`: the same in whatever frame it is described.
+    center = point + ((near - point) @ direction) * direction
+    foot = np.cross(line[:, :3], line[:, 3:]) - center
+    along = line[:, :3] @ direction
+    distance = length(foot - divide(foot @ direction, along)[:, None] * line[:, :3])
     return MeanAxis(direction=direction, point=point, deviation=deviation, distance=distance)

@@ -13,12 +13,15 @@ from elbowscrew.geometry.dual_quaternion import conjugate, continuous_signs, mul
 from elbowscrew.model import JointMotion, RigidBody
 from elbowscrew.motion.gaps import fill_gaps
 
+ExpressIn = Literal["forearm", "arm", "lab"]
+
 IDENTITY = np.array([1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])
 
 
 def joint_from_bodies(
     proximal: RigidBody | None,
     distal: RigidBody,
+    frame: NDArray[np.int64],
     elapsed: NDArray[np.float64],
     rate_hz: float,
     *,
@@ -34,6 +37,8 @@ def joint_from_bodies(
         The arm; None if it stands still.
     distal : RigidBody
         The forearm.
+    frame : ndarray of int64, shape (N,)
+        Frame numbers, for messages.
     elapsed : ndarray, shape (N,)
         Seconds.
     rate_hz : float
@@ -60,7 +65,10 @@ def joint_from_bodies(
         raise AnalysisError(msg)
     row = int(rows[0]) if reference_row is None else reference_row
     if not measured[row]:
-        msg = f"--reference: row {row} has no measured pose of both bodies; the first that has is row {rows[0]}"
+        msg = (
+            f"--reference {frame[row]}: in that frame not all is tracked; the first frame that has both bodies is "
+            f"{frame[rows[0]]}"
+        )
         raise SettingError(msg)
     window = rows[rows >= row][:reference_window]
     if window.size < reference_window:
@@ -87,9 +95,7 @@ def displacement(joint: JointMotion) -> NDArray[np.float64]:
     return -D if D[joint.reference_row, 0] < 0.0 else D
 
 
-def expressed(
-    dual_quat: NDArray[np.float64], joint: JointMotion, express_in: Literal["forearm", "arm", "lab"]
-) -> NDArray[np.float64]:
+def expressed(dual_quat: NDArray[np.float64], joint: JointMotion, express_in: ExpressIn) -> NDArray[np.float64]:
     """Write displacements, shape (N, 8), given in the forearm's reference frame in another frame.
 
     The arm's is ``J_0 D J_0^-1``, the laboratory's ``A_0 J_0 D J_0^-1 A_0^-1``: same angle, same slide, another
@@ -97,10 +103,19 @@ def expressed(
     """
     if express_in == "forearm":
         return dual_quat
-    change = joint.reference
-    if express_in == "lab":
-        change = multiply(joint.dual_quat_lab_proximal, change)
+    change = frame_change(joint, express_in)
     return multiply(multiply(change, dual_quat), conjugate(change))
+
+
+def frame_change(joint: JointMotion, express_in: ExpressIn) -> NDArray[np.float64]:
+    """Pose of the forearm at the reference, shape (8,), in the frame screws are expressed in."""
+    match express_in:
+        case "forearm":
+            return IDENTITY
+        case "arm":
+            return joint.reference
+        case "lab":
+            return multiply(joint.dual_quat_lab_proximal, joint.reference)
 
 
 def _mean_pose(poses: NDArray[np.float64]) -> NDArray[np.float64]:

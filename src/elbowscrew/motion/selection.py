@@ -45,6 +45,8 @@ def choose_bodies(recording: Recording, arm: str | None, forearm: str | None) ->
         distal = _speaking(bodies, "forearm", taken=proximal)
     if proximal is None and not still:
         proximal = _speaking(bodies, "arm", taken=distal)
+    if proximal is not None and arm is None and forearm is None:
+        _check_sides(proximal, distal)
     if proximal is distal:
         msg = f"body {distal.name!r} is named both as arm and as forearm; the file has {_listed(bodies)}"
         raise SettingError(msg)
@@ -67,6 +69,13 @@ def segment_of(name: str) -> str | None:
     if _FOREARM & (pairs | set(words)):
         return "forearm"
     return "arm" if _UPPER_ARM & (pairs | set(words)) else None
+
+
+def _check_sides(proximal: RigidBody, distal: RigidBody) -> None:
+    sides = [{side for side in _SIDES if side in body.name.casefold()} for body in (proximal, distal)]
+    if all(sides) and not sides[0] & sides[1]:
+        msg = f"{proximal.name!r} and {distal.name!r} are of different sides; give --arm NAME and --forearm NAME"
+        raise SettingError(msg)
 
 
 def _without_side(word: str) -> str:
@@ -108,8 +117,10 @@ def _speaking(bodies: tuple[RigidBody, ...], role: str, taken: RigidBody | None)
     if len(found) == 1:
         return found[0]
     why = "no name says which" if not found else f"{len(found)} names say so"
-    still = f"; if the arm stands still and is not in the file, give --arm {STILL_ARM}" if role == "arm" else ""
-    msg = f"which body is the {role}? {why}; the file has {_listed(bodies)}: give --{role} NAME{still}"
+    msg = (
+        f"which body is the {role}? {why}; the file has {_listed(bodies)}: give --arm NAME and --forearm NAME "
+        f"(--arm {STILL_ARM} for an arm that stands still and is not in the file)"
+    )
     raise SettingError(msg)
 
 

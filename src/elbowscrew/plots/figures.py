@@ -48,7 +48,7 @@ def axis_figure(analysis: Analysis) -> Figure:
     for ax, letter in ((space, "a"), (directions, "b"), (places, "c")):
         ax.set_title(letter, loc="left")
     space.set_title(f"axes in the {analysis.settings.express_in} frame", loc="center", fontweight="normal")
-    space.legend(loc="upper center", bbox_to_anchor=(0.5, -0.02), ncols=2)
+    space.legend(loc="upper center", bbox_to_anchor=(0.5, -0.05), ncols=2)
     return figure
 
 

@@ -61,3 +61,17 @@ def publication_style() -> AbstractContextManager[None]:
 def new_figure(width_mm: float, height_mm: float) -> Figure:
     """Return an empty figure of that size on paper, laid out by itself, without pyplot's global state."""
     return Figure(figsize=(width_mm / _MM_PER_INCH, height_mm / _MM_PER_INCH), layout="constrained")
+
+
+def settle(figure: Figure) -> None:
+    """Lay a figure out once and for all, the places of its axes rounded.
+
+    The layout's solver leaves last digits that differ from run to run, and with them the bytes of a file.
+    """
+    engine = figure.get_layout_engine()
+    if engine is not None:
+        engine.execute(figure)
+    figure.set_layout_engine("none")
+    for ax in figure.axes:
+        left, bottom, width, height = (round(float(value), 6) for value in ax.get_position(original=True).bounds)
+        ax.set_position((left, bottom, width, height), which="both")

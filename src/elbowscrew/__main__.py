@@ -1,0 +1,7 @@
+"""``python -m elbowscrew``."""
+
+import sys
+
+from elbowscrew.cli import main
+
+sys.exit(main())

@@ -1,0 +1,11 @@
+"""Text that may come from files: nothing of it may speak to the terminal."""
+
+
+def printable(text: str) -> str:
+    """Put a question mark in place of every character that is not printable, control characters above all."""
+    return "".join(character if character.isprintable() else "?" for character in text)
+
+
+def one_line(text: str) -> str:
+    """Fold white space, line ends included, to single blanks, and make the rest printable."""
+    return printable(" ".join(text.split()))

@@ -1,0 +1,263 @@
+"""Bad input: the right exit code and one clear line, through `main` as the command runs it."""
+
+from __future__ import annotations
+
+import json
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+from motive_files import bodies_of, write_columns
+from oracles import known_trial
+
+from elbowscrew.cli import main
+
+TRIAL = known_trial(120.0, frames=60, inversion=30, seed=1)
+
+
+@pytest.fixture
+def take(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    return write_columns(tmp_path / "take.csv", bodies_of(TRIAL))
+
+
+def run(capsys: pytest.CaptureFixture[str], *arguments: object) -> tuple[int, str, str]:
+    code = main([str(argument) for argument in arguments])
+    captured = capsys.readouterr()
+    return code, captured.out, captured.err
+
+
+def assert_one_line(error: str) -> None:
+    lines = [line for line in error.splitlines() if not line.startswith("elbowscrew: warning: ")]
+    assert len(lines) == 1
+    assert lines[0].startswith("elbowscrew: error: ")
+
+
+def test_a_good_trial_ends_with_0_and_a_whole_result(take: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    code, out, err = run(capsys, "analyze", take)
+    assert (code, err) == (0, "")
+    assert "Mean axis" in out
+    folder = take.parent / "take_elbowscrew"
+    names = sorted(str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file())
+    assert names == ["figures/axis.png", "figures/error.png", "figures/euler_parameters.png", "figures/theta.png",
+                     "interpolation.csv", "screw.csv", "summary.json"]  # fmt: skip
+    assert sorted(path.name for path in take.parent.iterdir()) == ["take.csv", "take_elbowscrew"]
+
+
+def test_json_is_the_summary_and_nothing_else(take: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    code, out, _ = run(capsys, "analyze", take, "--json", "--figure-format", "none")
+    summary = json.loads(out)
+    assert code == 0
+    assert summary == json.loads((take.parent / "take_elbowscrew" / "summary.json").read_text())
+    assert not (take.parent / "take_elbowscrew" / "figures").exists()
+    for keys in (("elbowscrew",), ("source", "sha256"), ("settings",), ("trial", "frames"), ("trial", "rate_hz"),
+                 ("trial", "bodies"), ("trial", "missing_share"), ("motion", "theta_max_deg"),
+                 ("motion", "inversion_frames"), ("motion", "mean_axis"), ("motion", "axis_dispersion_deg"),
+                 ("interpolation", "rmse_theta_deg"), ("interpolation", "max_theta_error_deg"),
+                 ("interpolation", "rms_displacement_mm"), ("warnings",)):  # fmt: skip
+        value = summary
+        for key in keys:
+            value = value[key]
+    assert summary["motion"]["theta_max_deg"] == pytest.approx(120.0, abs=1e-6)
+
+
+def test_quiet_and_several_figure_formats(take: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    code, out, _ = run(capsys, "analyze", take, "-q", "--figure-format", "svg", "--figure-format", "pdf", "-o", "r")
+    assert (code, out) == (0, "")
+    kinds = {path.suffix for path in (take.parent / "r" / "figures").iterdir()}
+    assert kinds == {".svg", ".pdf"}
+
+
+def test_results_do_not_depend_on_when_they_are_made(take: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    formats = [word for kind in ("png", "svg", "pdf") for word in ("--figure-format", kind)]
+    for name in ("a", "b"):
+        assert run(capsys, "analyze", take, "-q", "-o", name, *formats)[0] == 0
+    for path in (take.parent / "a").rglob("*"):
+        if path.is_file():
+            assert path.read_bytes() == (take.parent / "b" / path.relative_to(take.parent / "a")).read_bytes(), path
+
+
+def test_the_file_of_settings_and_the_options(take: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    Path("lab.toml").write_text('express-in = "arm"\nmin-angle = 20\nfigure-format = "none"\n')
+    code, out, _ = run(capsys, "analyze", take, "--config", "lab.toml", "--min-angle", "15", "--json")
+    settings = json.loads(out)["settings"]
+    assert (code, settings["express-in"], settings["min-angle"]) == (0, "arm", 15.0)
+
+
+BAD_FILES: dict[str, tuple[bytes | None, int]] = {
+    "missing": (None, 3),
+    "empty": (b"", 3),
+    "binary": (b"\x7fELF\x00\x00", 3),
+    "truncated header": (b"Format Version,1.23,Length Units,Meters\n\n,Type,Rigid Body\n", 3),
+    "no rigid bodies": (b"Format Version,1.23,Length Units,Meters\n\n,Type\n,Name\n,ID\n,\nFrame,Time\n0,0\n", 3),
+}
+
+
+@pytest.mark.parametrize(("content", "code"), BAD_FILES.values(), ids=BAD_FILES.keys())
+@pytest.mark.parametrize("command", ["analyze", "info"])
+def test_bad_files(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], command: str, content: bytes | None, code: int
+) -> None:
+    path = tmp_path / "bad.csv"
+    if content is not None:
+        path.write_bytes(content)
+    found, out, err = run(capsys, command, path, *(["-o", tmp_path / "out"] if command == "analyze" else []))
+    assert (found, out) == (code, "")
+    assert_one_line(err)
+    assert "bad.csv" in err
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_folder_is_no_trial(take: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    code, _, err = run(capsys, "analyze", take.parent)
+    assert code == 3
+    assert "folder" in err
+    assert_one_line(err)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "says"),
+    [
+        (["--nonsense"], 2, "No such option"),
+        (["--method", "magic"], 2, "'magic' is not one of"),
+        (["--keyframes", "0,x"], 2, "expected frame numbers"),
+        (["--keyframes", "30,10"], 2, "increase"),
+        (["--min-angle", "-1"], 2, "min-angle"),
+        (["--min-angle", "nan"], 2, "min-angle"),
+        (["--max-gap", "inf"], 2, "max-gap"),
+        (["--units", "mm"], 2, "contradicts"),
+        (["--config", "none.toml"], 2, "none.toml"),
+        (["--inversion", "30", "--keyframes", "0,59"], 2, "inversion"),
+        (["--arm", "Leg"], 4, "no such body; the file has 'Upper Arm'"),
+        (["--arm", "Forearm", "--forearm", "Forearm"], 4, "both as arm and as forearm"),
+        (["--reference", "60"], 4, "frames 0 to 59"),
+        (["--inversion", "-3"], 4, "no such frame"),
+        (["--keyframes", "0,30,1000"], 4, "no such frame"),
+        (["--min-angle", "150"], 5, "no rotation"),
+        (["--output", "take.csv"], 6, "no folder"),
+        (["--output", "/proc/elbowscrew"], 6, "cannot be written"),
+    ],
+)
+def test_bad_settings(
+    take: Path, capsys: pytest.CaptureFixture[str], arguments: list[str], code: int, says: str
+) -> None:
+    found, out, err = run(capsys, "analyze", take, *arguments)
+    assert (found, out) == (code, "")
+    assert_one_line(err)
+    assert says in err
+    assert sorted(path.name for path in take.parent.iterdir()) == ["take.csv"]
+
+
+def test_all_frames_blank_cannot_be_analyzed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    bodies = bodies_of(TRIAL)
+    bodies[0].lost = TRIAL.angle > -1.0
+    path = write_columns(tmp_path / "blank.csv", bodies)
+    code, _, err = run(capsys, "analyze", path, "-o", tmp_path / "out")
+    assert code == 5
+    assert "0.0 % of 60 frames (60 blank)" in err
+    assert_one_line(err)
+
+
+def test_an_existing_result_is_kept_until_forced(take: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    options = ("-q", "--figure-format", "none")
+    assert run(capsys, "analyze", take, *options)[0] == 0
+    before = (take.parent / "take_elbowscrew" / "summary.json").read_bytes()
+    code, _, err = run(capsys, "analyze", take, *options, "--min-angle", "20")
+    assert code == 6
+    assert_one_line(err)
+    assert (take.parent / "take_elbowscrew" / "summary.json").read_bytes() == before
+    assert run(capsys, "analyze", take, *options, "--min-angle", "20", "--force")[0] == 0
+    assert (take.parent / "take_elbowscrew" / "summary.json").read_bytes() != before
+
+
+LIMITED = """
+import resource, sys
+from elbowscrew.cli import main
+resource.setrlimit(resource.RLIMIT_FSIZE, (int(sys.argv[1]), int(sys.argv[1])))
+sys.exit(main(sys.argv[2:]))
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="POSIX limits")
+@pytest.mark.parametrize("size", [0, 1000, 12_000, 60_000])
+def test_a_disk_that_takes_no_more_leaves_nothing(take: Path, size: int) -> None:
+    """Files cannot grow beyond the limit: the tables fail, or the summary, or a figure."""
+    result = subprocess.run(
+        [sys.executable, "-c", LIMITED, str(size), "analyze", str(take), "-o", "out"],
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert result.returncode == 6
+    assert_one_line(result.stderr)
+    assert "cannot be written" in result.stderr
+    assert sorted(path.name for path in take.parent.iterdir()) == ["take.csv"]
+
+
+def test_names_of_files_and_bodies_cannot_speak_to_the_terminal(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = write_columns(tmp_path / "[red]a\x1b[31m.csv", bodies_of(TRIAL, ("Arm [bold]", "Forearm\x1b[2J[/]")))
+    code, out, _ = run(capsys, "analyze", path, "-o", tmp_path / "o", "--figure-format", "none")
+    assert code == 0
+    assert "\x1b" not in out
+    assert "[bold]" in out
+    code, out, err = run(capsys, "info", path)
+    assert code == 0
+    assert "\x1b" not in out + err
+    code, _, err = run(capsys, "analyze", tmp_path / "a\nb\x1b[2J.csv", "-o", tmp_path / "p")
+    assert code == 3
+    assert "\x1b" not in err
+    assert_one_line(err)
+
+
+def test_no_command_shows_the_help(capsys: pytest.CaptureFixture[str]) -> None:
+    code, out, _ = run(capsys)
+    assert code == 2
+    assert "analyze" in out
+
+
+def command(*arguments: str, **options: Any) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-m", "elbowscrew", *arguments], capture_output=True, text=True, check=False, **options
+    )
+
+
+def test_the_installed_command_speaks_of_itself_as_elbowscrew() -> None:
+    result = command("analyze", "nothing.csv")
+    assert (result.returncode, result.stdout) == (3, "")
+    assert result.stderr.startswith("elbowscrew: error: nothing.csv: no such file")
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full")
+def test_an_output_that_takes_nothing_is_exit_6(take: Path) -> None:
+    with Path("/dev/full").open("w") as full:
+        result = subprocess.run(
+            [sys.executable, "-m", "elbowscrew", "info", str(take)],
+            stdout=full, stderr=subprocess.PIPE, text=True, check=False,
+        )  # fmt: skip
+    assert result.returncode == 6
+    assert_one_line(result.stderr)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")
+@pytest.mark.parametrize(("sent", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+def test_an_interrupted_run_leaves_nothing(tmp_path: Path, sent: signal.Signals, code: int) -> None:
+    """Stopped while it writes: the trial is long enough for the temporary folder to be seen."""
+    from elbowscrew import simulate_recording
+    from elbowscrew.results import save_simulation
+
+    save_simulation(simulate_recording(frames=20000, inversion=9000), tmp_path / "long.csv")
+    process = subprocess.Popen(
+        [sys.executable, "-m", "elbowscrew", "analyze", "long.csv", "-o", "out"],
+        cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+    )  # fmt: skip
+    deadline = time.monotonic() + 60.0
+    while not list(tmp_path.glob(".out.*")) and process.poll() is None and time.monotonic() < deadline:
+        time.sleep(0.002)
+    process.send_signal(sent)
+    process.communicate(timeout=60)
+    assert process.returncode == code
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["long.csv", "long.truth.json"]

@@ -1,0 +1,78 @@
+"""Figures show the numbers they claim to show."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from elbowscrew import Analysis, Settings, analyze, plots, simulate_recording
+
+
+@pytest.fixture(scope="module")
+def analysis() -> Analysis:
+    recording = simulate_recording(frames=120, inversion=60, gaps=2, gap_frames=20, seed=4).recording
+    return analyze(recording, Settings(angle_unit="rad", length_unit="m"))
+
+
+def lines(ax: Axes) -> dict[str, NDArray[np.float64]]:
+    return {str(line.get_label()): np.asarray(line.get_ydata()) for line in ax.get_lines()}
+
+
+def test_theta_shows_measured_modeled_and_keyframes_in_the_units_asked_for(analysis: Analysis) -> None:
+    ax = plots.plot_theta(Figure().add_subplot(), analysis)
+    drawn = lines(ax)
+    assert drawn["measured"] == pytest.approx(analysis.screw.angle, nan_ok=True)
+    assert drawn["DLB through 3 poses"] == pytest.approx(analysis.interpolated.angle, nan_ok=True)
+    assert drawn["keyframes"] == pytest.approx(analysis.screw.angle[analysis.keyframes.row])
+    assert ax.get_ylabel() == "Angle θ (rad)"
+    assert ax.get_xlabel() == "Time (s)"
+
+
+def test_lost_frames_are_shaded(analysis: Analysis) -> None:
+    ax = plots.plot_theta(Figure().add_subplot(), analysis)
+    spans = [(patch.get_x(), patch.get_x() + patch.get_width()) for patch in ax.patches]  # type: ignore[attr-defined]
+    shaded = np.zeros(120, dtype=bool)
+    for first, last in spans:
+        shaded |= (analysis.screw.time_s > first) & (analysis.screw.time_s < last)
+    assert (shaded == ~analysis.screw.valid).all()
+
+
+def test_errors_and_euler_parameters(analysis: Analysis) -> None:
+    angle = plots.plot_angle_error(Figure().add_subplot(), analysis)
+    assert lines(angle)["model against measurement"] == pytest.approx(analysis.interpolated.angle_error, nan_ok=True)
+    displacement = plots.plot_rms_displacement(Figure().add_subplot(), analysis)
+    assert displacement.get_ylabel() == "RMS displacement (m)"
+    third = plots.plot_euler_parameter(Figure().add_subplot(), analysis, 3)
+    assert lines(third)["measured"] == pytest.approx(analysis.screw.euler_parameters[:, 3], nan_ok=True)
+
+
+def test_tilts_are_the_angles_to_the_mean_axis(analysis: Analysis) -> None:
+    ax = plots.plot_axis_directions(Figure().add_subplot(), analysis)
+    offsets = np.asarray(ax.collections[0].get_offsets())
+    directions = analysis.screw.axis_direction[analysis.screw.axis_known]
+    expected = np.degrees(np.arccos(np.clip(directions @ analysis.mean_axis.direction, -1, 1)))
+    assert np.hypot(*offsets.T) == pytest.approx(expected, abs=2e-3)
+
+
+def test_places_of_axes_that_are_one_line_are_at_the_mean() -> None:
+    exact = analyze(simulate_recording(marker_noise_mm=0.0, frames=60, inversion=30).recording)
+    ax = plots.plot_axis_places(Figure().add_subplot(), exact)
+    assert np.abs(np.asarray(ax.collections[0].get_offsets())).max() < 1e-6
+
+
+@pytest.mark.parametrize("name", plots.FIGURES)
+@pytest.mark.parametrize("express_in", ["forearm", "arm", "lab"])
+def test_every_axes_of_every_figure_has_labels_with_units(name: str, express_in: Any) -> None:
+    recording = simulate_recording(frames=80, inversion=40, gaps=1).recording
+    figure = plots.FIGURES[name](analyze(recording, Settings(express_in=express_in)))
+    figure.draw_without_rendering()
+    labels = [ax.get_ylabel() for ax in figure.axes if ax.get_ylabel()] + [
+        ax.get_xlabel() for ax in figure.axes if ax.get_xlabel()
+    ]
+    assert labels
+    assert all("(" in label and label.endswith(")") for label in labels)

@@ -1,0 +1,91 @@
+"""The documents say what the program does."""
+
+from __future__ import annotations
+
+import csv
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from elbowscrew import __version__
+from elbowscrew.cli.app import app
+from elbowscrew.tables import INTERPOLATION_COLUMNS, SCREW_COLUMNS
+
+LINK = re.compile(r"!?\[[^\]]*\]\(([^)#]+)")
+
+
+def documents(root: Path) -> list[Path]:
+    return [root / "README.md", root / "CHANGELOG.md", *sorted((root / "docs").rglob("*.md"))]
+
+
+def test_links_lead_somewhere(root: Path) -> None:
+    for document in documents(root):
+        for target in LINK.findall(document.read_text(encoding="utf-8")):
+            if not target.startswith("http"):
+                assert (document.parent / target).exists(), f"{document.name}: {target}"
+
+
+def test_the_readme_names_every_command(root: Path) -> None:
+    readme = (root / "README.md").read_text(encoding="utf-8")
+    commands = [command.callback.__name__ for command in app.registered_commands if command.callback]
+    assert len(commands) >= 3
+    for name in commands:
+        assert f"elbowscrew {name}" in readme
+
+
+def test_the_readmes_first_two_shell_blocks_are_one_command_line_each(root: Path) -> None:
+    blocks = re.findall(r"^```sh\n(.*?)^```", (root / "README.md").read_text(encoding="utf-8"), re.M | re.S)
+    assert len(blocks) == 2
+    assert all(block.count("\n") == 1 for block in blocks)
+    assert "elbowscrew analyze sample_data/" in blocks[0]
+    assert "pytest" in blocks[1]
+
+
+def test_the_notebook_example_runs(root: Path, tmp_path: Path) -> None:
+    blocks = re.findall(r"^```python\n(.*?)^```", (root / "README.md").read_text(encoding="utf-8"), re.M | re.S)
+    code = "\n".join(blocks).replace("sample_data/", f"{root.as_posix()}/sample_data/")
+    subprocess.run([sys.executable, "-W", "error", "-c", code], cwd=tmp_path, check=True)
+    with (tmp_path / "result" / "screw.csv").open(newline="") as stream:
+        assert len(list(csv.reader(stream))) == 451
+
+
+def test_every_column_is_documented(root: Path) -> None:
+    text = (root / "docs" / "outputs.md").read_text(encoding="utf-8")
+    for column in (*SCREW_COLUMNS, *INTERPOLATION_COLUMNS):
+        stem = column.name.rstrip("0123") if re.fullmatch(r"e\d", column.name) else column.name
+        assert re.search(rf"`{re.escape(stem.removesuffix('_x').removesuffix('_y').removesuffix('_z'))}", text), column
+
+
+def test_the_version_stands_in_changelog_and_citation(root: Path) -> None:
+    assert f"## {__version__}" in (root / "CHANGELOG.md").read_text(encoding="utf-8")
+    assert f"version: {__version__}" in (root / "CITATION.cff").read_text(encoding="utf-8")
+
+
+def test_the_architecture_names_every_module_of_the_top_level(root: Path) -> None:
+    text = (root / "docs" / "architecture.md").read_text(encoding="utf-8")
+    for path in (root / "src" / "elbowscrew").iterdir():
+        if path.is_dir() and path.name != "__pycache__":
+            assert f"`{path.name}/`" in text, path.name
+        elif path.suffix == ".py" and not path.name.startswith("_"):
+            assert f"`{path.name}`" in text, path.name
+
+
+def test_lower_bounds_are_the_versions_tested(root: Path) -> None:
+    floors = dict(
+        line.split("==")
+        for line in (root / "constraints-floor.txt").read_text().splitlines()
+        if line and not line.startswith("#")
+    )
+    project = (root / "pyproject.toml").read_text()
+    for name, version in floors.items():
+        bound = re.search(rf'"{re.escape(name)}>=([\d.]+)"', project)
+        assert bound, name
+        assert version == bound[1] or version.removesuffix(".0") == bound[1], name
+
+
+@pytest.mark.parametrize("name", ["theta.png", "axis.png"])
+def test_the_readmes_pictures_are_there(root: Path, name: str) -> None:
+    assert (root / "docs" / "images" / name).read_bytes().startswith(b"\x89PNG")

@@ -1,0 +1,118 @@
+"""Real recordings, where they are at hand; the figures come from the index that describes them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from elbowscrew import Recording, RigidBody, Settings, analyze, read_recording
+from elbowscrew.errors import RecordingError
+
+HINGES = [
+    # file, arm, forearm, range deg, dispersion deg, median slide mm, its 5 and 95 % mm
+    ("v121_thomazach_20230627_0117", 1, 2, 72.7, 0.08, -0.51, (-0.77, -0.07)),
+    ("v121_thomazach_20230627_0117", 2, 3, 88.7, 0.23, -0.10, (-0.15, 0.45)),
+    ("v121_thomazach_20230706_122504", 1, 2, 55.6, 1.43, -0.29, (-0.67, 0.64)),
+    ("v121_thomazach_20230706_122504", 2, 3, 58.6, 0.61, -0.25, (-0.50, 0.48)),
+]
+
+
+@pytest.mark.parametrize(("name", "arm", "forearm", "top", "dispersion", "slide", "spread"), HINGES)
+def test_mechanical_hinges(
+    real_data: Path, name: str, arm: int, forearm: int, top: float, dispersion: float, slide: float,
+    spread: tuple[float, float],
+) -> None:  # fmt: skip
+    recording = read_recording(real_data / "real" / f"{name}.csv")
+    settings = Settings(arm=f"Rigid Body {arm}", forearm=f"Rigid Body {forearm}")
+    analysis = analyze(recording, settings)
+    assert np.degrees(np.nanmax(analysis.screw.angle)) == pytest.approx(top, abs=0.05)
+    assert np.degrees(np.nanmedian(analysis.mean_axis.deviation)) == pytest.approx(dispersion, abs=0.006)
+    slides = 1000 * analysis.screw.slide[np.isfinite(analysis.screw.slide)]
+    assert np.median(slides) == pytest.approx(slide, abs=0.006)
+    assert np.percentile(slides, [5, 95]) == pytest.approx(spread, abs=0.011)
+
+
+def test_simulated_curl_through_the_python_interface(real_data: Path) -> None:
+    folder = real_data / "haexplorer_curl"
+
+    def body(name: str) -> RigidBody:
+        rotation = np.loadtxt(folder / f"{name}_rot.txt").reshape(-1, 3, 3)
+        return RigidBody.from_matrices(name, rotation, np.loadtxt(folder / f"{name}_pos.txt"))
+
+    recording = Recording.from_bodies([body("humerus"), body("radius")], rate_hz=1000)
+    analysis = analyze(recording, Settings(express_in="arm"))
+    assert np.degrees(analysis.screw.angle.max()) == pytest.approx(66.06, abs=0.005)
+    assert analysis.mean_axis.direction == pytest.approx([0.99756, 0.00122, -0.06975], abs=1e-4)
+    assert analysis.mean_axis.point == pytest.approx([-0.01146, 0.01998, -0.16357], abs=1e-4)
+    assert np.nanmax(np.abs(analysis.screw.slide)) < 1e-6
+
+
+READ = {
+    "excerpt_v123_rofunc_interleaved_3frames": ("Motive columns 1.23", "mm", "quaternion", 3, {"Left": 3, "Right": 3}),
+    "motive_rowtag_v11_1body": ("row-tagged 1.1", "m", "quaternion", 548, {"Rigid Body 1": 528}),
+    "v121_hmv_sample": ("Motive columns 1.21", "m", "quaternion", 250, {"Rigid Body 1": 250}),
+    "v123_decar_155_imu": ("Motive columns 1.23", "m", "quaternion", 2194, {"RigidBody": 2193}),
+    "v123_kronium_recording": ("Motive columns 1.23", "mm", "quaternion", 9420, {"drone": 9356}),
+    "v123_parseoptitrack_test": ("Motive columns 1.23", "m", "quaternion", 499, {"ernesto_body": 498}),
+    "v123_pool_20191122_excel": ("Motive columns 1.23", "mm", "quaternion", 1451, {"Cue Ball": 1451}),
+    "v124_saito_hopping": ("Motive columns 1.24", "mm", "YXZ", 666, {"RED_WShip": 666, "Wheel": 666}),
+}
+
+
+@pytest.mark.parametrize("name", READ)
+def test_real_variants_are_read(real_data: Path, name: str) -> None:
+    recording = read_recording(real_data / "real" / f"{name}.csv")
+    assert recording.source is not None
+    found = (
+        recording.source.layout,
+        recording.source.length_unit,
+        recording.source.rotation_type,
+        recording.frame.size,
+        {body.name: int(body.tracked.sum()) for body in recording.bodies},
+    )
+    assert found == READ[name]
+
+
+@pytest.mark.parametrize(
+    ("name", "says"),
+    [
+        ("tt2011_gimbal_Rotation_stripped", "header is missing"),
+        ("tt2011_gimbal_Abduction_stripped", "header is missing"),
+        ("v123_nmotive_default", "no data columns at all"),
+        ("v121_dance_zyx_mm_local", "found: Marker"),
+        ("excerpt_v124_timecode_cm", "found: Marker"),
+        ("natnethelper_rowtag_2bodies", "not certain which pose is whose"),
+        ("v11_handsyn_20141028_body", "mirrored"),
+    ],
+)
+def test_what_cannot_be_read_safely_is_refused(real_data: Path, name: str, says: str) -> None:
+    with pytest.raises(RecordingError, match=says):
+        read_recording(real_data / "real" / f"{name}.csv")
+
+
+@pytest.mark.parametrize(("name", "pivot_mm"), [("v121_hmv_sample", 0.0), ("v123_decar_155_imu", 135.0)])
+def test_markers_are_at_rest_in_their_body(real_data: Path, name: str, pivot_mm: float) -> None:
+    """Only with the right order and sense of the quaternion; where the pivot is, the index tells."""
+    recording = read_recording(real_data / "real" / f"{name}.csv")
+    offsets = recording.bodies[0].marker_offsets
+    assert offsets is not None
+    assert 1000 * np.linalg.norm(offsets.mean(axis=0)) == pytest.approx(pivot_mm, abs=0.5)
+
+
+def test_local_coordinate_space_gives_the_offsets_themselves(real_data: Path) -> None:
+    recording = read_recording(real_data / "real" / "v124_saito_hopping.csv")
+    offsets = recording.bodies[1].marker_offsets
+    assert offsets == pytest.approx(
+        1e-3 * np.array([[23.2168, 19.6676, 0.292987], [-26.6404, 10.9816, 0.39503], [3.42361, -30.6491, -0.688046]]),
+        abs=2e-9,
+    )
+
+
+def test_one_take_saved_twice_gives_the_same_poses(real_data: Path) -> None:
+    plain, excel = (read_recording(real_data / "real" / f"v123_pathviewr_july29_{kind}.csv") for kind in ("a", "excel"))
+    shared, rows, others = np.intersect1d(plain.frame, excel.frame, return_indices=True)
+    assert shared.size > 1000
+    for one, other in zip(plain.bodies, excel.bodies, strict=True):
+        assert one.dual_quat_lab_body[rows] == pytest.approx(other.dual_quat_lab_body[others], abs=1e-9, nan_ok=True)
