@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from elbowscrew import Recording, RigidBody, Settings, analyze, read_recording
-from elbowscrew.errors import RecordingError
+from elbowscrew.errors import RecordingError, SettingError
+from elbowscrew.geometry.dual_quaternion import conjugate, transform_points
 
 HINGES = [
     # file, arm, forearm, range deg, dispersion deg, median slide mm, its 5 and 95 % mm
@@ -84,7 +85,6 @@ def test_real_variants_are_read(real_data: Path, name: str) -> None:
         ("v121_dance_zyx_mm_local", "found: Marker"),
         ("excerpt_v124_timecode_cm", "found: Marker"),
         ("natnethelper_rowtag_2bodies", "not certain which pose is whose"),
-        ("v11_handsyn_20141028_body", "mirrored"),
     ],
 )
 def test_what_cannot_be_read_safely_is_refused(real_data: Path, name: str, says: str) -> None:
@@ -108,6 +108,22 @@ def test_local_coordinate_space_gives_the_offsets_themselves(real_data: Path) ->
         1e-3 * np.array([[23.2168, 19.6676, 0.292987], [-26.6404, 10.9816, 0.39503], [3.42361, -30.6491, -0.688046]]),
         abs=2e-9,
     )
+
+
+def test_mirrored_bodies_of_version_1_1_are_corrected(real_data: Path) -> None:
+    path = real_data / "real" / "v11_handsyn_20141028_body.csv"
+    with pytest.raises(SettingError, match="--units"):
+        read_recording(path)
+    recording = read_recording(path, units="m")
+    assert [warning.code for warning in recording.warnings] == ["mirrored"]
+    body = recording.bodies[0]
+    assert body.marker_offsets is not None
+    # The body's markers, columns 11 on in the file, are at rest in the body.
+    cells = np.genfromtxt(
+        path, delimiter=",", skip_header=7, usecols=[c for k in range(4) for c in range(10 + 4 * k, 13 + 4 * k)]
+    )
+    in_body = transform_points(conjugate(body.dual_quat_lab_body)[:, None, :], cells.reshape(-1, 4, 3))
+    assert np.nanmedian(np.linalg.norm(in_body - body.marker_offsets, axis=2)) < 1e-6
 
 
 def test_one_take_saved_twice_gives_the_same_poses(real_data: Path) -> None:

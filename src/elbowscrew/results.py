@@ -4,19 +4,17 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any, Final, Literal
 
 from elbowscrew.errors import UsageError
 from elbowscrew.io.exports import motive_columns_lines, row_tagged_lines
-from elbowscrew.io.staging import check_file, result_folder, write_file
+from elbowscrew.io.staging import result_folder, write_files
 from elbowscrew.io.summary import summary_from_analysis
 from elbowscrew.io.writing import write_tables
 from elbowscrew.model import Analysis
 from elbowscrew.simulate import SimulatedTrial
-
-FIGURE_FORMATS: Final = ("png", "svg", "pdf")
 
 # Without dates and program versions the same analysis gives the same bytes.
 _METADATA: Final[dict[str, dict[str, Any]]] = {
@@ -65,6 +63,9 @@ def save_analysis(
 
 
 def _write_figures(folder: Path, analysis: Analysis, formats: Sequence[str]) -> None:
+    import logging
+
+    logging.getLogger("matplotlib").setLevel(logging.ERROR)  # its words on fonts and caches are not the result
     from elbowscrew.plots.figures import FIGURES
     from elbowscrew.plots.style import publication_style, settle
 
@@ -97,7 +98,7 @@ def save_simulation(
     length_unit : {"m", "cm", "mm"}
         Unit in the export; the row-tagged layout has meters always.
     force : bool
-        Replace existing files.
+        Replace files of an earlier simulation.
 
     Returns
     -------
@@ -112,15 +113,19 @@ def save_simulation(
         If a file exists, or the disk does not take it.
     """
     export = Path(path)
+    if not export.name or export.name in (".", ".."):
+        msg = f"{str(path)!r} is no name of a file to write; give one such as trial.csv"
+        raise UsageError(msg)
     truth = export.with_suffix(".truth.json")
     if layout == "row-tagged" and length_unit != "m":
         msg = f"--length-unit {length_unit}: the row-tagged layout has meters always; leave the option out"
         raise UsageError(msg)
     if layout == "motive":
-        lines = motive_columns_lines(trial.recording, trial.markers, length_unit, export.stem)
+        take = " ".join(export.stem.encode("utf-8", "replace").decode("utf-8").split())
+        lines = motive_columns_lines(trial.recording, trial.markers, length_unit, take)
     else:
         lines = row_tagged_lines(trial.recording, trial.markers)
-    check_file(truth, force=force)
-    write_file(export, lines, force=force)
-    write_file(truth, [json.dumps(trial.truth, indent=1)], force=force)
+    statement = {"about": "truth of a synthetic trial", **trial.truth}
+    contents: dict[Path, Iterable[str]] = {export: lines, truth: [json.dumps(statement, indent=1)]}
+    write_files(contents, replaceable="synthetic" if force else None)
     return export, truth

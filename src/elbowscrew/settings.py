@@ -55,7 +55,7 @@ class Settings(BaseModel):
     law: Literal["cycloidal", "linear"] = Field("cycloidal", description="Law of motion in each phase")
     knots: Literal["law", "chord", "uniform", "angle"] = Field("law", description="Parameter of the keyframes")
     radius_mm: float | None = Field(
-        None, gt=0, description="Radius of gyration of the forearm's points; default: its markers, else 50 mm"
+        None, gt=0, le=1e5, description="Radius of gyration of the forearm's points; default: its markers, else 50 mm"
     )
     angle_unit: AngleUnit = Field("deg", description="Unit of angles in tables and figures")
     length_unit: LengthUnit = Field("mm", description="Unit of lengths in tables and figures")
@@ -113,12 +113,16 @@ def settings_from(config: Path | None = None, options: Mapping[str, Any] | None 
 def _read_toml(config: Path) -> dict[str, Any]:
     try:
         with config.open("rb") as stream:
-            table = {option_name(key): value for key, value in tomllib.load(stream).items()}
+            given = tomllib.load(stream)
+            table = {option_name(key): value for key, value in given.items()}
+            if len(table) < len(given):
+                msg = f"{config}: one setting stands twice under two spellings; keep one of {', '.join(given)}"
+                raise UsageError(msg)
             return {key: [value] if key in _LISTS and isinstance(value, str) else value for key, value in table.items()}
     except OSError as error:
         msg = f"{config}: cannot be read as a settings file: {error.strerror}"
         raise UsageError(msg) from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+    except (ValueError, RecursionError) as error:
         msg = f"{config}: not TOML: {error}. Write one `key = value` a line, text in quotes"
         raise UsageError(msg) from error
 

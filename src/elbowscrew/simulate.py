@@ -30,6 +30,7 @@ _JOINT_DIRECTION: Final = np.array([0.986, 0.104, -0.131])
 _FOREARM_CENTER: Final = np.array([0.018, -0.251, 0.037])
 _FOREARM_TURN: Final = np.array([0.09, 0.21, -0.06])
 _ARM_PLACE: Final = np.array([0.31, 1.24, -0.18])
+_MOST_FRAMES: Final = 10_000_000
 _ARM_TURN: Final = np.array([0.12, 0.55, -0.2])
 _ARM_MARKERS: Final = np.array([[38, 12, 31], [-41, 27, 8], [9, -44, -28], [-6, 5, -47]]) * 1e-3
 _FOREARM_MARKERS: Final = np.array([[35, 33, -9], [-37, 14, 25], [-11, -45, 19], [28, -21, -38]]) * 1e-3
@@ -90,17 +91,17 @@ class Simulation:
             Naming the option.
         """
         checks = {
-            "frames": self.frames >= 3,
+            "frames": self.frames >= 3 and self.total_frames <= _MOST_FRAMES,
             "inversion": 0 < self.inversion < self.frames - 1,
-            "rate": np.isfinite(self.rate_hz) and self.rate_hz > 0.0,
+            "rate": 1e-3 <= self.rate_hz <= 1e6,
             "top": 0.0 < self.top_deg < 360.0,
-            "slide": bool(np.isfinite(self.slide_mm)),
-            "marker-noise": np.isfinite(self.marker_noise_mm) and self.marker_noise_mm >= 0.0,
+            "slide": abs(self.slide_mm) <= 1e5,
+            "marker-noise": 0.0 <= self.marker_noise_mm <= 1e5,
             "gaps": self.gaps >= 0 and self.gaps * (self.gap_frames + 2) <= self.total_frames - 2,
             "gap-frames": self.gap_frames >= 1,
             "repetitions": self.repetitions >= 1,
-            "rest-before": np.isfinite(self.rest_before_s) and self.rest_before_s >= 0.0,
-            "rest-after": np.isfinite(self.rest_after_s) and self.rest_after_s >= 0.0,
+            "rest-before": 0.0 <= self.rest_before_s * self.rate_hz < _MOST_FRAMES,
+            "rest-after": 0.0 <= self.rest_after_s * self.rate_hz < _MOST_FRAMES,
             "seed": self.seed >= 0,
         }
         bad = [name for name, good in checks.items() if not good]
@@ -108,15 +109,18 @@ class Simulation:
             names = ", ".join(f"--{name}" for name in bad)
             msg = (
                 f"simulate: impossible value of {names}: the inversion must lie inside the frames, the top between 0 "
-                "and 360 deg, the gaps must fit into the trial, and nothing may be negative"
+                f"and 360 deg, the gaps must fit into the trial, frames are {_MOST_FRAMES} at most, and nothing may be "
+                "negative"
             )
             raise UsageError(msg)
 
     @property
     def total_frames(self) -> int:
         """Frames of the whole trial, rests included."""
-        rests = sum(round(rest * self.rate_hz) for rest in (self.rest_before_s, self.rest_after_s) if np.isfinite(rest))
-        return self.repetitions * (self.frames - 1) + 1 + rests
+        rests = (self.rest_before_s * self.rate_hz, self.rest_after_s * self.rate_hz)
+        return (
+            self.repetitions * (self.frames - 1) + 1 + sum(round(rest) for rest in rests if 0.0 <= rest < _MOST_FRAMES)
+        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -129,7 +129,7 @@ def test_a_folder_is_no_trial(take: Path, capsys: pytest.CaptureFixture[str]) ->
         (["--min-angle", "-1"], 2, "min-angle"),
         (["--min-angle", "nan"], 2, "min-angle"),
         (["--max-gap", "inf"], 2, "max-gap"),
-        (["--units", "mm"], 2, "contradicts"),
+        (["--units", "mm"], 4, "contradicts"),
         (["--config", "none.toml"], 2, "none.toml"),
         (["--inversion", "30", "--keyframes", "0,59"], 2, "inversion"),
         (["--arm", "Leg"], 4, "no such body; the file has 'Upper Arm'"),
@@ -137,6 +137,8 @@ def test_a_folder_is_no_trial(take: Path, capsys: pytest.CaptureFixture[str]) ->
         (["--reference", "60"], 4, "frames 0 to 59"),
         (["--inversion", "-3"], 4, "no such frame"),
         (["--keyframes", "0,30,1000"], 4, "no such frame"),
+        (["--rotation", "XYZ"], 4, "the file has quaternions"),
+        (["--radius", "1e308"], 2, "radius"),
         (["--min-angle", "150"], 5, "no rotation"),
         (["--output", "take.csv"], 6, "no folder"),
         (["--output", "/proc/elbowscrew"], 6, "cannot be written"),
@@ -219,6 +221,30 @@ def test_no_command_shows_the_help(capsys: pytest.CaptureFixture[str]) -> None:
     assert "analyze" in out
 
 
+@pytest.mark.parametrize("encoding", ["ascii", "cp1252"])
+def test_a_terminal_that_lacks_characters_gets_the_rest(take: Path, encoding: str) -> None:
+    result = command("analyze", str(take), "--figure-format", "none", env={**os.environ, "PYTHONIOENCODING": encoding})
+    assert (result.returncode, result.stderr) == (0, "")
+    assert "Mean axis" in result.stdout
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="POSIX shell")
+@pytest.mark.parametrize(
+    ("redirection", "code"), [("| true", 0), (">&-", 0), ("2>&-", 0), ("</dev/null 2>/dev/full", 0)]
+)
+def test_streams_that_nobody_reads_are_no_failure(take: Path, redirection: str, code: int) -> None:
+    script = f"set -o pipefail; {sys.executable} -m elbowscrew info take.csv --json {redirection}"
+    result = subprocess.run(["bash", "-c", script], cwd=take.parent, capture_output=True, text=True, check=False)
+    assert result.returncode == code
+    assert "Traceback" not in result.stderr
+
+
+def test_the_exit_code_does_not_depend_on_who_hears_the_error(take: Path) -> None:
+    for redirection in ("2>&-", "2>/dev/full"):
+        script = f"{sys.executable} -m elbowscrew info nothing.csv {redirection}"
+        assert subprocess.run(["bash", "-c", script], cwd=take.parent, check=False).returncode == 3
+
+
 def command(*arguments: str, **options: Any) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
         [sys.executable, "-m", "elbowscrew", *arguments], capture_output=True, text=True, check=False, **options
@@ -255,7 +281,7 @@ def test_an_interrupted_run_leaves_nothing(tmp_path: Path, sent: signal.Signals,
         cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
     )  # fmt: skip
     deadline = time.monotonic() + 60.0
-    while not list(tmp_path.glob(".out.*")) and process.poll() is None and time.monotonic() < deadline:
+    while not list(tmp_path.glob(".elbowscrew-*")) and process.poll() is None and time.monotonic() < deadline:
         time.sleep(0.002)
     process.send_signal(sent)
     process.communicate(timeout=60)

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from motive_files import bodies_of, write_columns
 from numpy.typing import NDArray
-from oracles import KnownTrial, known_trial
+from oracles import KnownTrial, known_trial, quaternion_xyzw
 
 from elbowscrew import read_recording
 from elbowscrew.errors import RecordingError, SettingError, UsageError
@@ -102,8 +102,6 @@ def test_interleaved_markers_do_not_disturb_and_are_the_offsets(tmp_path: Path) 
     labels: list[tuple[str, ...]] = []
     columns: list[Float] = []
     for body in bodies_of(TRIAL):
-        from oracles import quaternion_xyzw
-
         labels += [("Rigid Body", body.name, body.identifier, "Rotation", axis) for axis in "XYZW"]
         labels += [("Rigid Body", body.name, body.identifier, "Position", axis) for axis in "XYZ"]
         columns += [quaternion_xyzw(body.R), 1000 * body.p]
@@ -137,7 +135,7 @@ def test_a_missing_unit_must_be_given_and_a_stated_one_not_contradicted(tmp_path
         read_recording(silent)
     assert_poses(read_recording(silent, units="cm"), TRIAL)
     stated = write_columns(tmp_path / "b.csv", bodies_of(TRIAL))
-    with pytest.raises(UsageError, match="contradicts"):
+    with pytest.raises(SettingError, match="contradicts"):
         read_recording(stated, units="mm")
     with pytest.raises(UsageError, match="units"):
         read_recording(stated, units="inch")
@@ -148,13 +146,158 @@ def test_a_missing_euler_order_must_be_given(tmp_path: Path) -> None:
     with pytest.raises(SettingError, match="--rotation"):
         read_recording(silent)
     assert_poses(read_recording(silent, rotation="ZYX"), TRIAL)
-    with pytest.raises(UsageError, match="rotation"):
+    with pytest.raises(SettingError, match="rotation"):
         read_recording(silent, rotation="quaternion")
+    quaternions = write_columns(tmp_path / "q.csv", bodies_of(TRIAL))
+    with pytest.raises(SettingError, match="the file has quaternions"):
+        read_recording(quaternions, rotation="XYZ")
 
 
-def test_mirrored_version_1_1_is_not_read_as_if_it_were_not(tmp_path: Path) -> None:
-    path = write_columns(tmp_path / "a.csv", bodies_of(TRIAL), version="1.21", header={"Format Version": "1.1"})
-    with pytest.raises(RecordingError, match="mirrored"):
+MIRROR = np.diag([1.0, 1.0, -1.0])
+
+
+def mirrored_file(path: Path, *, markers: bool, version: str = "1.1", trial: KnownTrial = TRIAL) -> Path:
+    """Bodies written mirrored in z, as version 1.1 has them, their markers as they are."""
+    offsets = np.array([[0.03, 0.0, 0.01], [-0.02, 0.04, 0.0], [0.0, -0.05, 0.02]])
+    labels: list[tuple[str, ...]] = []
+    columns: list[Float] = []
+    for body in bodies_of(trial):
+        labels += [("Rigid Body", body.name, body.identifier, "Rotation", axis) for axis in "XYZW"]
+        labels += [("Rigid Body", body.name, body.identifier, "Position", axis) for axis in "XYZ"]
+        columns += [quaternion_xyzw(MIRROR @ body.R @ MIRROR), body.p @ MIRROR]
+        for k, offset in enumerate(offsets if markers else []):
+            labels += [("Rigid Body Marker", f"Marker {k + 1}", body.identifier, "Position", axis) for axis in "XYZ"]
+            columns.append(body.R @ offset + body.p)
+    lines = [f"Format Version,{version},Take Name,x,Capture Frame Rate,100,Export Frame Rate,99.999992", ""]
+    lines += [",".join(["", "", *(label[row] for label in labels)]) for row in range(4)]
+    lines.append(",".join(["Frame", "Time", *(label[4] for label in labels)]))
+    data = np.concatenate(columns, axis=1)
+    lines += [",".join([str(k), repr(66.49 + k / 100), *map(repr, row)]) for k, row in enumerate(data.tolist())]
+    path.write_text("\n".join(lines) + "\n")
+    return path
+
+
+def test_mirrored_bodies_of_version_1_1_are_corrected_against_their_markers(tmp_path: Path) -> None:
+    recording = read_recording(mirrored_file(tmp_path / "a.csv", markers=True), units="m")
+    assert_poses(recording, TRIAL)
+    assert [warning.code for warning in recording.warnings] == ["mirrored", "mirrored"]
+    assert recording.bodies[0].marker_offsets == pytest.approx(
+        np.array([[0.03, 0.0, 0.01], [-0.02, 0.04, 0.0], [0.0, -0.05, 0.02]]), abs=1e-9
+    )
+
+
+def test_without_markers_the_version_decides_and_says_so(tmp_path: Path) -> None:
+    recording = read_recording(mirrored_file(tmp_path / "a.csv", markers=False), units="m")
+    assert_poses(recording, TRIAL)
+    assert [warning.code for warning in recording.warnings] == ["mirrored-by-version"] * 2
+    plain = read_recording(mirrored_file(tmp_path / "b.csv", markers=False, version="1.2"), units="m")
+    assert not plain.warnings
+
+
+def test_markers_decide_against_the_version(tmp_path: Path) -> None:
+    recording = read_recording(mirrored_file(tmp_path / "a.csv", markers=True, version="1.21"), units="m")
+    assert_poses(recording, TRIAL)
+    assert [warning.code for warning in recording.warnings] == ["mirrored", "mirrored"]
+
+
+@pytest.mark.parametrize("decimal_comma", [False, True])
+@pytest.mark.parametrize("delimiter", [";", "\t"])
+def test_spreadsheets_other_delimiters_and_decimal_commas(tmp_path: Path, delimiter: str, decimal_comma: bool) -> None:
+    bodies = bodies_of(TRIAL)
+    bodies[1].lost = np.isin(np.arange(40), [3])
+    text = write_columns(tmp_path / "take.csv", bodies).read_text().replace(",", delimiter)
+    path = tmp_path / "resaved.csv"
+    path.write_text(text.replace(".", ",") if decimal_comma else text)
+    recording = read_recording(path)
+    assert recording.source is not None
+    assert recording.source.layout == "Motive columns 1.23"
+    assert recording.rate_hz == 100.0
+    bodies[1].lost = None
+    known = recording.bodies[1].tracked
+    assert np.flatnonzero(~known).tolist() == [3]
+    matrix = dq.matrix_from_dual_quat(recording.bodies[1].dual_quat_lab_body)
+    assert matrix[known, :3, :3] == pytest.approx(TRIAL.forearm_R[known], abs=1e-12)
+
+
+def test_a_blank_line_before_the_header_changes_nothing(tmp_path: Path) -> None:
+    path = write_columns(tmp_path / "take.csv", bodies_of(TRIAL), unit="Millimeters")
+    path.write_text("\n,,,\n" + path.read_text())
+    assert_poses(read_recording(path), TRIAL)
+
+
+@pytest.mark.parametrize(
+    ("line", "edit"),
+    [
+        (30, lambda cells: cells[:5] + cells[6:]),
+        (30, lambda cells: [*cells[:5], "0", *cells[5:]]),
+        (30, lambda cells: [*cells, "7"]),
+        (7, lambda cells: [*cells, "7"]),
+        (30, lambda cells: [*cells[:4], '"1', '2"', *cells[5:]]),
+    ],
+)
+@pytest.mark.parametrize("blank", [False, True])
+def test_cells_that_are_shifted_are_an_error(tmp_path: Path, line: int, edit: Any, blank: bool) -> None:
+    bodies = bodies_of(TRIAL)
+    bodies[1].lost = np.isin(np.arange(40), [20]) if blank else None
+    lines = write_columns(tmp_path / "good.csv", bodies).read_text().splitlines()
+    lines[line] = ",".join(edit(lines[line].split(",")))
+    path = tmp_path / "bad.csv"
+    path.write_text("\n".join(lines) + "\n")
+    with pytest.raises(RecordingError, match=r"bad\.csv:\d+: (expected 18|expected 19|column)"):
+        read_recording(path)
+
+
+def test_one_cell_missing_in_every_line_is_an_error(tmp_path: Path) -> None:
+    lines = good_lines(tmp_path)
+    lines[7:] = [",".join([*line.split(",")[:5], *line.split(",")[6:]]) for line in lines[7:]]
+    path = tmp_path / "bad.csv"
+    path.write_text("\n".join(lines) + "\n")
+    with pytest.raises(RecordingError, match=r"bad\.csv:8: expected 18 cells, found 17"):
+        read_recording(path)
+
+
+def test_a_header_whose_types_are_cut_is_refused(tmp_path: Path) -> None:
+    lines = good_lines(tmp_path)
+    lines[2] = ",".join(lines[2].split(",")[:10])
+    path = tmp_path / "bad.csv"
+    path.write_text("\n".join(lines) + "\n")
+    with pytest.raises(RecordingError, match="without type or name"):
+        read_recording(path)
+
+
+@pytest.mark.parametrize(("column", "text"), [(5, "99"), (5, "1e-200"), (6, "1e160"), (6, "-20000")])
+def test_a_pose_that_cannot_be_is_lost_with_a_warning(tmp_path: Path, column: int, text: str) -> None:
+    lines = good_lines(tmp_path)
+    cells = lines[20].split(",")
+    cells[column] = text
+    if text == "1e-200":
+        cells[2:5] = ["0", "0", "0"]
+    lines[20] = ",".join(cells)
+    path = tmp_path / "bad.csv"
+    path.write_text("\n".join(lines) + "\n")
+    recording = read_recording(path)
+    assert recording.bodies[0].loss_counts() == {"invalid": 1}
+    assert "invalid-pose" in [warning.code for warning in recording.warnings]
+
+
+def test_a_rate_that_the_times_contradict_is_not_used(tmp_path: Path) -> None:
+    path = write_columns(tmp_path / "a.csv", bodies_of(TRIAL), header={"Export Frame Rate": "1.000000"})
+    recording = read_recording(path)
+    assert recording.rate_hz == pytest.approx(100.0)
+    assert [warning.code for warning in recording.warnings] == ["frame-rate"]
+
+
+@pytest.mark.parametrize(
+    ("column", "text"), [(0, "1e300"), (0, "9223372036854775808"), (0, "1.5"), (1, "1e308"), (0, "")]
+)
+def test_frames_and_times_that_cannot_be_are_an_error(tmp_path: Path, column: int, text: str) -> None:
+    lines = good_lines(tmp_path)
+    cells = lines[20].split(",")
+    cells[column] = text
+    lines[20] = ",".join(cells)
+    path = tmp_path / "bad.csv"
+    path.write_text("\n".join(lines) + "\n")
+    with pytest.raises(RecordingError, match=r"bad\.csv:21: expected a whole frame number and a time"):
         read_recording(path)
 
 
@@ -180,7 +323,7 @@ def test_a_line_that_is_cut_is_an_error_with_its_place(tmp_path: Path) -> None:
     lines = good_lines(tmp_path)
     path = tmp_path / "bad.csv"
     path.write_text("\n".join(lines[:-1]) + "\n" + lines[-1][:60])
-    with pytest.raises(RecordingError, match=r"bad\.csv:47: expected 18 cells, found \d+: the line is cut"):
+    with pytest.raises(RecordingError, match=r"bad\.csv:47: expected 18 cells, found \d+: the line is cut or"):
         read_recording(path)
     path.write_text("\n".join(lines))
     assert [warning.code for warning in read_recording(path).warnings] == ["no-final-newline"]
@@ -222,7 +365,7 @@ def test_no_rigid_bodies_says_what_is_there(tmp_path: Path) -> None:
         (b"Format Version,1.23,Take Name,caf\xe9\n\n", "UTF-8"),
         (b"0,0.0,0,8,0.1,0.2\n1,0.01,0,8,0.1,0.2\n", "header is missing"),
         (b"time;x;y\n", "not an OptiTrack export"),
-        (b"Format Version;1.23;Take Name\n", "semicolon"),
+        (b"Format Version;1.23;Take Name\n", "header is cut"),
     ],
 )
 def test_what_is_no_export_is_refused_with_the_reason(tmp_path: Path, content: bytes, says: str) -> None:

@@ -10,7 +10,7 @@ from motive_files import bodies_of, write_row_tagged
 from oracles import known_trial
 
 from elbowscrew import read_recording
-from elbowscrew.errors import RecordingError, UsageError
+from elbowscrew.errors import RecordingError, SettingError
 from elbowscrew.geometry import dual_quaternion as dq
 
 TRIAL = known_trial(95.0, frames=30, inversion=14, seed=5)
@@ -55,6 +55,7 @@ def edited(tmp_path: Path, old: str, new: str) -> Path:
         ("frame,7,0.07000000,2", "frame,7,abc,2", "expected a number, found 'abc'"),
         ("frame,7,0.07000000,2,2", "frame,7,0.07000000,2,1", "twice in the frame"),
         ("frame,7,", "frame,7.5,", "whole number"),
+        ("frame,7,", "frame,1e19,", "whole number"),
         ("frame,7,", "fram,7,", "expected one of"),
     ],
 )
@@ -70,5 +71,19 @@ def test_a_wrong_frame_count_is_a_warning(tmp_path: Path) -> None:
 
 def test_the_unit_is_always_meters(tmp_path: Path) -> None:
     path = write_row_tagged(tmp_path / "take.csv", bodies_of(TRIAL))
-    with pytest.raises(UsageError, match="meters"):
+    with pytest.raises(SettingError, match="meters"):
         read_recording(path, units="mm")
+
+
+def test_bodies_may_be_named_by_a_number(tmp_path: Path) -> None:
+    path = write_row_tagged(tmp_path / "take.csv", bodies_of(TRIAL, ("1", "2")), quoted=False)
+    assert [body.name for body in read_recording(path).bodies] == ["1", "2"]
+
+
+def test_semicolons_and_decimal_commas(tmp_path: Path) -> None:
+    path = write_row_tagged(tmp_path / "take.csv", bodies_of(TRIAL), decimals=8)
+    plain = read_recording(path)
+    path.write_text(path.read_text().replace(",", ";").replace(".", ","))
+    resaved = read_recording(path)
+    for one, other in zip(plain.bodies, resaved.bodies, strict=True):
+        assert (one.dual_quat_lab_body == other.dual_quat_lab_body).all()

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
-import os
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
+from elbowscrew import plots
 from elbowscrew.errors import OutputError
-from elbowscrew.io.staging import result_folder, write_file
+from elbowscrew.io.staging import FIGURE_NAMES, result_folder, write_files
+
+OLD = '{"elbowscrew": "0.0.1"}'
 
 
 def earlier_result(folder: Path) -> Path:
     folder.mkdir()
-    (folder / "summary.json").write_text("old")
+    (folder / "summary.json").write_text(OLD)
     (folder / "figures").mkdir()
     (folder / "figures" / "theta.png").write_text("old")
     return folder
@@ -40,7 +43,7 @@ def test_a_failure_leaves_nothing_and_keeps_the_earlier_result(tmp_path: Path, e
 
     with pytest.raises(expected):
         fail_half_way()
-    assert (target / "summary.json").read_text() == "old"
+    assert (target / "summary.json").read_text() == OLD
     assert [path.name for path in tmp_path.iterdir()] == ["result"]
 
 
@@ -80,24 +83,91 @@ def test_an_empty_folder_is_taken_over_and_a_file_is_not(tmp_path: Path) -> None
     assert file.read_text() == "mine"
 
 
-def test_a_file_is_replaced_on_request_only(tmp_path: Path) -> None:
-    target = tmp_path / "out.csv"
-    write_file(target, ["one"], force=False)
+@pytest.mark.parametrize("name", ["figures/edited.ai", "figures/theta.tif", "notes/a.txt"])
+def test_files_of_the_user_inside_a_result_are_never_lost(tmp_path: Path, name: str) -> None:
+    target = earlier_result(tmp_path / "result")
+    (target / name).parent.mkdir(exist_ok=True)
+    (target / name).write_text("mine")
+    with pytest.raises(OutputError, match="not ours"), result_folder(target, force=True):
+        pass
+    assert (target / name).read_text() == "mine"
+
+
+def test_a_summary_of_something_else_is_no_result(tmp_path: Path) -> None:
+    target = tmp_path / "mine"
+    target.mkdir()
+    (target / "summary.json").write_text('{"my": "data"}')
+    with pytest.raises(OutputError, match="no elbowscrew result"), result_folder(target, force=True):
+        pass
+
+
+@pytest.mark.parametrize("force", [False, True])
+def test_what_appears_meanwhile_is_not_overwritten(tmp_path: Path, force: bool) -> None:
+    target = tmp_path / "result"
+
+    def run() -> None:
+        with result_folder(target, force=force) as staged:
+            (staged / "summary.json").write_text("new")
+            target.mkdir()
+            (target / "thesis.txt").write_text("mine")
+
+    with pytest.raises(OutputError, match="thesis"):
+        run()
+    assert [path.name for path in tmp_path.rglob("*")] == ["result", "thesis.txt"]
+
+
+def test_a_link_to_a_folder_is_followed(tmp_path: Path) -> None:
+    real = earlier_result(tmp_path / "real")
+    link = tmp_path / "link"
+    link.symlink_to(real)
+    with result_folder(link, force=True) as staged:
+        (staged / "summary.json").write_text(OLD + " ")
+    assert link.is_symlink()
+    assert (real / "summary.json").read_text() == OLD + " "
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["link", "real"]
+
+
+def test_folders_made_on_the_way_go_when_it_fails(tmp_path: Path) -> None:
+    def run() -> None:
+        with result_folder(tmp_path / "a" / "b" / "result", force=False):
+            raise OSError(28, "No space left on device")
+
+    with pytest.raises(OutputError, match="No space"):
+        run()
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_current_folder_is_no_result_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(OutputError, match="current folder"), result_folder(Path(), force=True):
+        pass
+
+
+def test_result_files_are_those_of_the_figures() -> None:
+    assert set(FIGURE_NAMES) == set(plots.FIGURES)
+
+
+def test_files_are_replaced_on_request_only_and_only_ours(tmp_path: Path) -> None:
+    one, two = tmp_path / "one.csv", tmp_path / "two.json"
+    write_files({one: ["synthetic 1"], two: ["synthetic 2"]}, replaceable=None)
     with pytest.raises(OutputError, match="--force"):
-        write_file(target, ["two"], force=False)
-    assert target.read_text() == "one\n"
-    write_file(target, ["two"], force=True)
-    assert target.read_text() == "two\n"
+        write_files({one: ["synthetic 3"]}, replaceable=None)
+    write_files({one: ["synthetic 3"]}, replaceable="synthetic")
+    assert one.read_text() == "synthetic 3\n"
+    one.write_text("a recording")
+    with pytest.raises(OutputError, match="no synthetic trial"):
+        write_files({two: ["new"], one: ["new"]}, replaceable="synthetic")
+    assert (one.read_text(), two.read_text()) == ("a recording", "synthetic 2\n")
     with pytest.raises(OutputError, match="no file"):
-        write_file(tmp_path, ["three"], force=True)
-    assert [path.name for path in tmp_path.iterdir()] == ["out.csv"]
+        write_files({tmp_path: ["x"]}, replaceable="synthetic")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["one.csv", "two.json"]
 
 
-def test_an_interrupted_file_leaves_nothing(tmp_path: Path) -> None:
-    def lines() -> object:
+def test_of_files_that_belong_together_all_appear_or_none(tmp_path: Path) -> None:
+    def lines() -> Iterator[str]:
         yield "one"
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        write_file(tmp_path / "out.csv", lines(), force=False)  # type: ignore[arg-type]
-    assert os.listdir(tmp_path) == []  # noqa: PTH208 - hidden files count too
+        write_files({tmp_path / "a.csv": ["whole"], tmp_path / "b.csv": lines()}, replaceable=None)
+    assert list(tmp_path.iterdir()) == []

@@ -169,6 +169,12 @@ def test_a_keyframe_in_a_filled_gap_is_used_with_a_warning() -> None:
     assert np.isnan(result.interpolated.rms_displacement[70])
 
 
+def test_a_polynomial_through_many_poses_is_refused() -> None:
+    with pytest.raises(SettingError, match="weighs them by up to"):
+        modeled(keyframes=tuple(range(0, 101, 2)), knots="uniform")
+    assert modeled(keyframes=tuple(range(0, 101, 2)), method="sclerp").keyframes.row.size == 51
+
+
 def test_a_blend_that_cancels_is_empty_and_warned_of() -> None:
     # A full turn: the last pose is minus the first, and half way the blend is nothing.
     result = modeled(trial(np.linspace(0.0, 2.0 * np.pi, 101)), law="linear", keyframes=(0, 100))

@@ -62,6 +62,12 @@ def test_a_single_body_is_the_forearm_of_a_still_arm() -> None:
     assert forearm.name == "Rigid Body 1"
 
 
+def test_a_single_body_that_calls_itself_arm_is_no_forearm_unasked() -> None:
+    with pytest.raises(SettingError, match="--forearm 'Upper Arm'"):
+        choose_bodies(recording("Upper Arm"), None, None)
+    assert choose_bodies(recording("Upper Arm"), None, "Upper Arm")[1].name == "Upper Arm"
+
+
 def test_a_still_arm_on_request() -> None:
     arm, forearm = choose_bodies(recording("table", "Forearm"), "none", None)
     assert arm is None

@@ -8,15 +8,44 @@ from collections.abc import Sequence
 from types import FrameType
 
 from elbowscrew._version import __version__
-from elbowscrew.cli.text import one_line
-from elbowscrew.errors import ElbowscrewError, OutputError, RecordingError, UsageError
+from elbowscrew.cli.text import NobodyReads, one_line
+from elbowscrew.errors import ElbowscrewError, OutputError, UsageError
 
 INTERRUPTED = 130
 
 
+class Terminated(BaseException):
+    """A signal asked the program to end."""
+
+    def __init__(self, number: int) -> None:
+        super().__init__(number)
+        self.number = number
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line and return the exit code; a defect of the program raises."""
-    given = list(sys.argv[1:] if arguments is None else arguments)
+    _mend_streams()
+    try:
+        code = _run(list(sys.argv[1:] if arguments is None else arguments))
+        sys.stdout.flush()
+    except ElbowscrewError as error:
+        return _report(str(error), error.exit_code)
+    except KeyboardInterrupt:
+        return _report("interrupted; nothing was left half-written", INTERRUPTED)
+    except Terminated as signal:
+        return _report("terminated; nothing was left half-written", 128 + signal.number)
+    except (NobodyReads, BrokenPipeError):
+        _forget_output()
+        return 0
+    except MemoryError:
+        return _report("not enough memory; take fewer frames, or export fewer columns", OutputError.exit_code)
+    except OSError as error:
+        _forget_output()
+        return _report(f"standard output cannot be written: {error.strerror or error}", OutputError.exit_code)
+    return code
+
+
+def _run(given: list[str]) -> int:
     if given == ["--version"]:
         sys.stdout.write(f"elbowscrew {__version__}\n")
         return 0
@@ -25,35 +54,24 @@ def main(arguments: Sequence[str] | None = None) -> int:
     from elbowscrew.cli.app import run
 
     _end_cleanly_when_terminated()
+    os.environ["MPLBACKEND"] = "agg"  # figures go to files, whatever the notebook or the shell prefers
     try:
         code = run(given or ["--help"])
-        sys.stdout.flush()
-    except ElbowscrewError as error:
-        return _report(str(error), error.exit_code)
     except TyperException as error:
         return _report_usage(error)
-    except KeyboardInterrupt:
-        return _report("interrupted; nothing was left half-written", INTERRUPTED)
-    except BrokenPipeError:
-        # Whoever read our output has read enough.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 0
-    except MemoryError:
-        return _report(
-            "the recording does not fit into memory; export fewer frames or columns", RecordingError.exit_code
-        )
-    except OSError as error:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return _report(f"standard output cannot be written: {error.strerror or error}", OutputError.exit_code)
     if code == INTERRUPTED:
-        return _report("interrupted; nothing was left half-written", INTERRUPTED)
+        raise KeyboardInterrupt
     if not given:
         return UsageError.exit_code
     return code if isinstance(code, int) else 0
 
 
 def _report(message: str, code: int) -> int:
-    sys.stderr.write(f"elbowscrew: error: {one_line(message)}\n")
+    try:
+        sys.stderr.write(f"elbowscrew: error: {one_line(message)}\n")
+        sys.stderr.flush()
+    except OSError:
+        return code  # nobody can be told
     return code
 
 
@@ -62,17 +80,33 @@ def _report_usage(error: Exception) -> int:
     path = context.command_path if context is not None else "elbowscrew"
     message = error.format_message() if hasattr(error, "format_message") else str(error)
     _report(f"{message.replace('Value error, ', '').rstrip('.')}. See `{path} --help`", UsageError.exit_code)
-    return int(getattr(error, "exit_code", 2))
+    return int(getattr(error, "exit_code", UsageError.exit_code))
+
+
+def _mend_streams() -> None:
+    """Give the program streams to write to even where there are none, or none that know all characters."""
+    for name in ("stdout", "stderr"):
+        stream = getattr(sys, name)
+        if stream is None:
+            setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: PTH123, SIM115
+        elif hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="replace")
+
+
+def _forget_output() -> None:
+    """Let the interpreter's own last flush go nowhere."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _end_cleanly_when_terminated() -> None:
-    """Let a SIGTERM unwind the stack, so that temporary files go."""
+    """Let signals that end the program unwind the stack, so that temporary files go."""
     import signal
 
     def stop(number: int, _frame: FrameType | None) -> None:
-        raise SystemExit(128 + number)
+        raise Terminated(number)
 
-    try:
-        signal.signal(signal.SIGTERM, stop)
-    except ValueError:  # not in the main thread
-        return
+    for name in ("SIGTERM", "SIGHUP"):
+        try:
+            signal.signal(getattr(signal, name), stop)
+        except (AttributeError, ValueError):  # not on this system, or not in the main thread
+            continue

@@ -8,11 +8,11 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from rich.console import Console
+from rich.console import Console, RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from elbowscrew.cli.text import one_line, printable
+from elbowscrew.cli.text import NobodyReads, one_line, printable
 
 
 def warnings(found: Iterable[Mapping[str, str]]) -> None:
@@ -23,14 +23,14 @@ def warnings(found: Iterable[Mapping[str, str]]) -> None:
 
 def json_object(value: Mapping[str, Any]) -> None:
     """Write one JSON object."""
-    sys.stdout.write(json.dumps(value, indent=2, ensure_ascii=True, allow_nan=False) + "\n")
+    emit(json.dumps(value, indent=2, ensure_ascii=True, allow_nan=False) + "\n")
 
 
 def files(folder: Path) -> None:
     """Name the files of a result on standard error."""
     for path in sorted(folder.rglob("*")):
         if path.is_file():
-            sys.stderr.write(f"{path}\n")
+            sys.stderr.write(f"{printable(str(path))}\n")
 
 
 def analysis_table(summary: Mapping[str, Any], folder: Path) -> None:
@@ -97,18 +97,33 @@ def info_table(summary: Mapping[str, Any]) -> None:
             ", ".join(f"{count} {reason}" for reason, count in body["lost_frames"].items()) or "–",
             str(body["markers"] or "–"),
         )
-    Console().print(table)
+    _print(table)
+
+
+def emit(text: str) -> None:
+    """Write to standard output; that nobody reads on is no error."""
+    try:
+        sys.stdout.write(text)
+        sys.stdout.flush()
+    except BrokenPipeError as error:
+        raise NobodyReads from error
+
+
+def _print(*parts: RenderableType) -> None:
+    console = Console(highlight=False)
+    with console.capture() as captured:
+        for part in parts:
+            console.print(part)
+    emit(captured.get())
 
 
 def _print_rows(title: str, rows: Iterable[tuple[str, str]]) -> None:
-    console = Console(highlight=False)
     table = Table(box=None, show_header=False, pad_edge=False)
     table.add_column(style="bold", no_wrap=True)
     table.add_column(overflow="fold")
     for name, value in rows:
         table.add_row(name, Text(printable(value)))
-    console.print(Text(title, style="bold"))
-    console.print(table)
+    _print(Text(title, style="bold"), table)
 
 
 def _body(body: Mapping[str, Any] | None) -> str:

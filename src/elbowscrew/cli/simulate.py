@@ -49,12 +49,16 @@ def simulate(
     length_unit: Annotated[
         options.Units, typer.Option(rich_help_panel=_OUTPUT, help="Unit of length in the file (row-tagged: m).")
     ] = "m",
-    force: Annotated[bool, typer.Option("--force", rich_help_panel=_OUTPUT, help="Replace existing files.")] = False,
+    force: Annotated[
+        bool, typer.Option("--force", rich_help_panel=_OUTPUT, help="Replace an earlier simulation.")
+    ] = False,
 ) -> None:
     """Write a synthetic elbow trial.
 
     The truth about it goes to <OUT>.truth.json.
     """
+    from elbowscrew.cli import render
+    from elbowscrew.cli.text import printable
     from elbowscrew.results import save_simulation
     from elbowscrew.simulate import Simulation, simulate_recording
 
@@ -78,4 +82,4 @@ def simulate(
     for path in save_simulation(
         simulate_recording(simulation), output, layout=layout, length_unit=length_unit, force=force
     ):
-        typer.echo(str(path))
+        render.emit(f"{printable(str(path))}\n")

@@ -1,6 +1,10 @@
 """Text that may come from files: nothing of it may speak to the terminal."""
 
 
+class NobodyReads(Exception):  # noqa: N818 - no error: whoever read our output has read enough
+    """Standard output was closed by its reader."""
+
+
 def printable(text: str) -> str:
     """Put a question mark in place of every character that is not printable, control characters above all."""
     return "".join(character if character.isprintable() else "?" for character in text)

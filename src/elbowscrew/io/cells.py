@@ -1,11 +1,12 @@
-"""Numbers out of comma-separated lines: only the columns in use, blank cells as NaN, anything else an error."""
+"""Numbers out of lines of text: only the columns in use, blank cells as NaN, anything else an error."""
 
 from __future__ import annotations
 
+import csv
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from itertools import islice
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +15,7 @@ from elbowscrew.errors import RecordingError
 from elbowscrew.io.source import TextSource
 
 _BLOCK_LINES: Final = 4096
+_BLOCK_CHARACTERS: Final = 1 << 22
 _NUMBER: Final = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
 
 
@@ -36,10 +38,10 @@ def parse_number(text: str) -> float:
     raise ValueError(msg)
 
 
-def read_columns(
+def read_blocks(
     source: TextSource, first_line: int, columns: Sequence[int], width: int, max_rows: int | None = None
-) -> NDArray[np.float64]:
-    """Read some columns of the lines from `first_line` on.
+) -> Iterator[NDArray[np.float64]]:
+    """Read some columns of the lines from `first_line` on, some thousand lines at a time.
 
     Parameters
     ----------
@@ -53,8 +55,8 @@ def read_columns(
     max_rows : int, optional
         Stop after so many lines.
 
-    Returns
-    -------
+    Yields
+    ------
     ndarray, shape (rows, len(columns))
         Lines without any content are left out.
 
@@ -64,49 +66,99 @@ def read_columns(
         For a cell that is neither blank nor a number, or a line that has been cut; with line and column.
     """
     lines = islice(source.lines(), first_line, None if max_rows is None else first_line + max_rows)
-    blocks: list[NDArray[np.float64]] = []
     number = first_line + 1
-    while block := list(islice(lines, _BLOCK_LINES)):
-        blocks.append(_parse_block(source, block, number, columns, width))
+    exact = False
+    while block := _take(lines):
+        width, values = _parse_block(source, block, number, columns, width, exact=exact)
+        exact = exact or len(values) > 0
+        yield values
         number += len(block)
-    return np.concatenate(blocks) if blocks else np.empty((0, len(columns)))
+
+
+def _take(lines: Iterator[str]) -> list[str]:
+    block, characters = [], 0
+    for line in lines:
+        block.append(line)
+        characters += len(line)
+        if len(block) == _BLOCK_LINES or characters > _BLOCK_CHARACTERS:
+            break
+    return block
 
 
 def _parse_block(
-    source: TextSource, block: list[str], number: int, columns: Sequence[int], width: int
-) -> NDArray[np.float64]:
-    """Parse a block at once where all its cells are plain numbers, else cell by cell."""
-    if min(line.count(",") for line in block) >= width - 1:
+    source: TextSource, block: list[str], number: int, columns: Sequence[int], width: int, *, exact: bool
+) -> tuple[int, NDArray[np.float64]]:
+    """Parse a block at once where all its cells are plain numbers, else cell by cell; give the width found, too.
+
+    A cell more or less would shift all that follow it: every line must have as many as the first, and that at least
+    as many as the header.
+    """
+    delimiter = source.delimiter
+    quoted = any('"' in line for line in block)
+    counts = {line.count(delimiter) + 1 for line in block}
+    if not quoted and len(counts) == 1 and ((found := counts.pop()) == width or (found > width and not exact)):
+        plain = [line.replace(",", ".") for line in block] if source.decimal_comma else block
         try:
-            values = np.loadtxt(block, delimiter=",", usecols=columns, comments=None, quotechar='"', ndmin=2)
+            values = np.loadtxt(plain, delimiter=delimiter, usecols=columns, comments=None, ndmin=2)
         except ValueError:
             pass  # a blank or a faulty cell: the slow way tells which
         else:
             if values.shape[0] == len(block) and np.isfinite(values).all():
-                return np.asarray(values, dtype=np.float64)
+                return found, np.asarray(values, dtype=np.float64)
     rows = []
     for offset, line in enumerate(block):
-        if not line.strip(', \t"'):
+        place = f"{source.path}:{number + offset}"
+        try:
+            cells = source.cells(line) if quoted else line.split(delimiter)
+        except csv.Error as error:
+            msg = f"{place}: not a line of a CSV file: {error}; export the take again"
+            raise RecordingError(msg) from error
+        if not any(cell.strip() for cell in cells):
             continue
-        cells = line.split(",")
-        if len(cells) < width:
+        while len(cells) > width and exact and not cells[-1].strip():
+            cells.pop()
+        if len(cells) < width or (exact and len(cells) != width):
             msg = (
-                f"{source.path}:{number + offset}: expected {width} cells, found {len(cells)}: the line is cut; "
+                f"{place}: expected {width} cells, found {len(cells)}: the line is cut or its cells are shifted; "
                 "export the take again, or delete the line"
             )
             raise RecordingError(msg)
+        width, exact = len(cells), True
+        rows.append(_numbers(source, cells, columns, place))
+    return width, np.array(rows, dtype=np.float64).reshape(len(rows), len(columns))
+
+
+def _numbers(source: TextSource, cells: list[str], columns: Sequence[int], place: str) -> list[float]:
+    row = []
+    for column in columns:
+        text = cells[column].replace(",", ".") if source.decimal_comma else cells[column]
         try:
-            rows.append([parse_number(cells[column]) for column in columns])
+            row.append(parse_number(text))
         except ValueError as error:
-            bad = next(column for column in columns if not _is_number(cells[column]))
-            msg = f"{source.path}:{number + offset}: column {bad + 1}: {error}"
+            msg = f"{place}: column {column + 1}: {error}; export the take again, or blank the cell"
             raise RecordingError(msg) from error
-    return np.array(rows, dtype=np.float64).reshape(len(rows), len(columns))
+    return row
 
 
-def _is_number(text: str) -> bool:
-    try:
-        parse_number(text)
-    except ValueError:
-        return False
-    return True
+class Growing:
+    """An array that grows by blocks of rows, in place: reading needs little more memory than what is kept."""
+
+    def __init__(self, row_shape: tuple[int, ...] = (), dtype: Any = np.float64) -> None:
+        self._rows = 0
+        self._store: NDArray[Any] = np.empty((0, *row_shape), dtype=dtype)
+
+    def append(self, block: NDArray[Any]) -> None:
+        """Add rows at the end."""
+        needed = self._rows + len(block)
+        if needed > len(self._store):
+            self._resize(max(needed, len(self._store) + len(self._store) // 8))
+        self._store[self._rows : needed] = block
+        self._rows = needed
+
+    def finish(self) -> NDArray[Any]:
+        """Give the array, with no row to spare."""
+        self._resize(self._rows)
+        return self._store
+
+    def _resize(self, rows: int) -> None:
+        self._store.resize((rows, *self._store.shape[1:]), refcheck=False)

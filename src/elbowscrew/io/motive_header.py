@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import islice
@@ -12,6 +13,7 @@ from elbowscrew.errors import RecordingError
 from elbowscrew.io.source import TextSource
 
 _HEADER_LINES: Final = 25
+_LAST_NUMBER: Final = re.compile(r"\d+$", re.ASCII)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -35,20 +37,30 @@ class Header:
     lines: int
 
     @property
+    def width(self) -> int:
+        """Cells of a whole line."""
+        return len(self.columns)
+
+    @property
     def version(self) -> str:
-        """The number of the export format."""
-        return self.pairs.get("Format Version", "")
+        """The number of the export format; a spreadsheet may have made its point a comma."""
+        return self.pairs.get("Format Version", "").replace(",", ".")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BodyColumns:
-    """Where one rigid body stands: its columns by label, its markers' columns."""
+    """Where one rigid body stands: its columns by label, and the X, Y, Z of its markers by number.
+
+    The fitted ones are the Rigid Body Marker columns, the seen ones the Marker columns that bear the body's name.
+    """
 
     name: str
     identifier: str
     rotation: dict[str, int]
     position: dict[str, int]
-    markers: tuple[tuple[int, int, int], ...]
+    error: int | None
+    fitted: dict[int, tuple[int, ...]]
+    seen: dict[int, tuple[int, ...]]
 
 
 def parse_header(source: TextSource) -> Header:
@@ -57,7 +69,7 @@ def parse_header(source: TextSource) -> Header:
     The axis row is the first whose first cell is `Frame`; the field row stands above it; the rows before that hold
     types, names, ids and perhaps parents, in this order or as tagged in their second cell.
     """
-    rows = list(csv.reader(islice(source.lines(), _HEADER_LINES)))
+    rows = [_cells(source, number, line) for number, line in enumerate(islice(source.lines(), _HEADER_LINES), start=1)]
     axis_row = next((k for k, row in enumerate(rows) if row and row[0].strip().casefold() == "frame"), None)
     if axis_row is None or axis_row < 2:
         msg = (
@@ -65,8 +77,8 @@ def parse_header(source: TextSource) -> Header:
             "export the take again"
         )
         raise RecordingError(msg)
-    cells = iter(cell.strip() for cell in rows[0])
-    pairs = {}
+    cells = iter(next(row for row in rows if any(row)))
+    pairs: dict[str, str] = {}
     for key in cells:
         if not key:
             break
@@ -85,7 +97,22 @@ def parse_header(source: TextSource) -> Header:
         )
         for k in range(width)
     )
+    nameless = next((c for c in columns[2:] if c.field in ("rotation", "position") and not (c.kind and c.name)), None)
+    if nameless is not None:
+        msg = (
+            f"{source.path}:{axis_row + 1}: the header is cut: column {nameless.index + 1} ({nameless.field}) is "
+            "without type or name; export the take again"
+        )
+        raise RecordingError(msg)
     return Header(pairs=pairs, columns=columns, lines=axis_row + 1)
+
+
+def _cells(source: TextSource, number: int, line: str) -> list[str]:
+    try:
+        return source.cells(line)
+    except csv.Error as error:
+        msg = f"{source.path}:{number}: not a line of a CSV file: {error}"
+        raise RecordingError(msg) from error
 
 
 def _trimmed_width(row: Sequence[str]) -> int:
@@ -114,12 +141,9 @@ def _label_rows(source: TextSource, rows: list[list[str]], axis_row: int) -> dic
 def body_columns(source: TextSource, header: Header) -> tuple[BodyColumns, ...]:
     """Group the columns of the rigid bodies by id and name, taking every column by its label."""
     groups: dict[tuple[str, str], list[ColumnKey]] = {}
-    markers: dict[str, dict[str, dict[str, int]]] = {}
     for column in header.columns:
         if column.kind.casefold() == "rigid body":
             groups.setdefault((column.identifier, column.name), []).append(column)
-        elif column.kind.casefold() == "rigid body marker" and column.field == "position" and column.identifier:
-            markers.setdefault(column.identifier, {}).setdefault(column.name, {})[column.axis] = column.index
     if not groups:
         kinds = sorted({column.kind for column in header.columns[2:] if column.kind})
         found = ", ".join(kinds) if kinds else "no data columns at all"
@@ -139,12 +163,44 @@ def body_columns(source: TextSource, header: Header) -> tuple[BodyColumns, ...]:
                 "export the take again"
             )
             raise RecordingError(msg)
-        own = markers.get(identifier, {})
-        triples = tuple((m["X"], m["Y"], m["Z"]) for m in own.values() if {"X", "Y", "Z"} <= set(m))
         bodies.append(
-            BodyColumns(name=name, identifier=identifier, rotation=rotation, position=position, markers=triples)
+            BodyColumns(
+                name=name,
+                identifier=identifier,
+                rotation=rotation,
+                position=position,
+                error=next((column.index for column in columns if "error" in column.field), None),
+                fitted=_marker_columns(header.columns, "rigid body marker", identifier=identifier),
+                seen=_marker_columns(header.columns, "marker", body=name),
+            )
         )
     return tuple(bodies)
+
+
+def _marker_columns(
+    columns: tuple[ColumnKey, ...], kind: str, *, identifier: str | None = None, body: str | None = None
+) -> dict[int, tuple[int, ...]]:
+    """X, Y and Z columns of a body's markers, by the number their names end in; none if the numbers are not clear.
+
+    Fitted markers bear the body's identifier, seen ones its name.
+    """
+    labelled: dict[str, dict[str, int]] = {}
+    for column in columns:
+        if column.kind.casefold() != kind or column.field != "position":
+            continue
+        if column.identifier == identifier if body is None else _is_marker_of(body, column.name):
+            labelled.setdefault(column.name, {})[column.axis] = column.index
+    numbered = {
+        int(number[0]): tuple(axes[axis] for axis in "XYZ")
+        for name, axes in labelled.items()
+        if (number := _LAST_NUMBER.search(name)) and {"X", "Y", "Z"} <= set(axes)
+    }
+    return numbered if len(numbered) == len(labelled) else {}
+
+
+def _is_marker_of(body: str, marker: str) -> bool:
+    rest = marker.removeprefix(body)
+    return rest != marker and re.fullmatch(r"[:_\- ]\s*Marker\s*\d+", rest) is not None
 
 
 def _labelled(source: TextSource, columns: list[ColumnKey], field: str, body: str) -> dict[str, int]:

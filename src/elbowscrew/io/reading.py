@@ -63,16 +63,16 @@ def read_recording(path: str | os.PathLike[str], *, units: str | None = None, ro
     RecordingError
         If the file cannot be read safely; the message says where and why.
     SettingError
-        If the file lacks a statement that `units` or `rotation` must supply.
+        If the file lacks a statement that `units` or `rotation` must supply, or they contradict it.
     UsageError
-        If `units` or `rotation` is no possible one, or contradicts the file.
+        If `units` is no possible one.
     """
     if units is not None and units not in METERS:
         msg = f"units: expected one of {', '.join(METERS)}, found {units!r}"
         raise UsageError(msg)
     source = open_source(Path(path))
     first_line = next((line for line in islice(source.lines(), 20) if line.strip(", ;\t")), "")
-    first_cell = first_line.split(",")[0].strip().strip('"').strip().casefold()
+    first_cell = first_line.split(source.delimiter)[0].strip().strip('"').strip().casefold()
     for entry in FORMATS:
         if entry.recognizes(first_cell):
             return entry.read(source, units, rotation)
@@ -80,8 +80,6 @@ def read_recording(path: str | os.PathLike[str], *, units: str | None = None, ro
 
 
 def _refusal(source: TextSource, first_line: str, first_cell: str) -> str:
-    if ";" in first_line and first_cell.startswith("format version"):
-        return f"{source.path}: separated by semicolons, as a spreadsheet does; save it as comma-separated CSV"
     try:
         parse_number(first_cell)
     except ValueError:

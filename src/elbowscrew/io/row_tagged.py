@@ -10,15 +10,16 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowscrew.errors import RecordingError, UsageError
+from elbowscrew.errors import RecordingError, SettingError
 from elbowscrew.io.cells import parse_number
 from elbowscrew.io.source import TextSource
-from elbowscrew.model import QualityWarning, Recording, RigidBody, Source, TrackingLoss
+from elbowscrew.model import QualityWarning, Recording, RigidBody, Source, TrackingLoss, invalid_warning
 
 TAGS: Final = ("comment", "info", "righthanded", "lefthanded", "frame", "trackable", "rigidbody")
 _DEFINITIONS: Final = ("trackable", "rigidbody")
 _BODY_CELLS: Final = 11  # id, x, y, z, qx, qy, qz, qw, yaw, pitch, roll
 _OLD_VERSION: Final = "1.0"
+_LATEST_TIME_S: Final = 1e10
 
 
 @dataclass(slots=True)
@@ -42,7 +43,7 @@ def read(source: TextSource, units: str | None, rotation: str | None) -> Recordi
     """
     if units not in (None, "m") or rotation not in (None, "quaternion"):
         msg = "units and rotation: the row-tagged layout has always meters and quaternions; leave both options out"
-        raise UsageError(msg)
+        raise SettingError(msg)
     parsed = _parse(source)
     _validate(source, parsed)
     return _build(source, parsed)
@@ -59,7 +60,7 @@ def _parse(source: TextSource) -> _Parsed:
                 parsed.left_handed = True
             elif tag == "frame":
                 _parse_frame(parsed, row)
-            elif tag in _DEFINITIONS and _is_definition(row):
+            elif tag in _DEFINITIONS and not parsed.frame:  # after the first frame they are extended rows
                 identifier, count = _integer(row[2]), _integer(row[3])
                 offsets = [_finite(cell) for cell in row[4 : 4 + 3 * count]]
                 if identifier in parsed.names or len(offsets) != 3 * count:
@@ -79,29 +80,24 @@ def _parse(source: TextSource) -> _Parsed:
 
 def _rows(source: TextSource) -> Iterator[tuple[int, list[str]]]:
     for number, line in enumerate(source.lines(), start=1):
-        if line.strip(", \t"):
+        if line.strip(source.delimiter + " \t"):
             try:
-                row = [cell.strip() for cell in next(csv.reader([line]))]
+                row = source.cells(line)
             except csv.Error as error:
                 msg = f"{source.path}:{number}: not a line of a CSV file: {error}"
                 raise RecordingError(msg) from error
+            if source.decimal_comma:
+                row = [row[0], *(cell.replace(",", ".") if _looks_decimal(cell) else cell for cell in row[1:])]
             yield number, row
 
 
-def _is_definition(row: list[str]) -> bool:
-    """Tell a definition, with a name in its second cell, from an extended row, with frame, time and then the name."""
-    if len(row) < 4:
-        raise IndexError
-    try:
-        parse_number(row[3])
-    except ValueError:
-        return False
-    return True
+def _looks_decimal(cell: str) -> bool:
+    return cell.count(",") == 1 and cell.replace(",", "").lstrip("+-").isdecimal()
 
 
 def _integer(text: str) -> int:
     value = _finite(text)
-    if value != int(value):
+    if abs(value) >= 2**53 or value != int(value):
         msg = f"expected a whole number, found {text[:40]!r}"
         raise ValueError(msg)
     return int(value)
@@ -129,6 +125,9 @@ def _parse_frame(parsed: _Parsed, row: list[str]) -> None:
             raise ValueError(msg)
         seen.add(identifier)
         parsed.poses.setdefault(identifier, []).append((index, [_finite(cell) for cell in cells[1:8]]))
+    if abs(time_s) > _LATEST_TIME_S:
+        msg = f"expected a time in seconds, found {time_s:g}"
+        raise ValueError(msg)
     parsed.frame.append(frame)
     parsed.time_s.append(time_s)
 
@@ -157,12 +156,13 @@ def _build(source: TextSource, parsed: _Parsed) -> Recording:
     frame = np.array(parsed.frame, dtype=np.int64)
     time_s = np.array(parsed.time_s)
     bodies = [_body(parsed, identifier, frame.size) for identifier in parsed.names]
+    invalid = {body.name: int((body.loss == TrackingLoss.INVALID).sum()) for body in bodies}
+    warnings = [invalid_warning(name, count) for name, count in invalid.items() if count]
     span = time_s[-1] - time_s[0]
     rate = float((frame[-1] - frame[0]) / span) if span > 0.0 else 0.0
     if not rate > 0.0:
         msg = f"{source.path}: frame numbers and times do not increase from the first to the last row"
         raise RecordingError(msg)
-    warnings = []
     stated = parsed.info.get("framecount", "")
     if stated and stated != str(frame.size):
         message = f"the file states {stated} frames and has {frame.size}"
@@ -202,4 +202,5 @@ def _body(parsed: _Parsed, identifier: int, frames: int) -> RigidBody:
         identifier=str(identifier),
         loss=loss,
         marker_offsets=markers or None,
+        only_plausible=True,
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import hashlib
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -12,6 +13,7 @@ from elbowscrew.errors import RecordingError
 
 _HEAD_BYTES: Final = 65536
 _MAX_LINE: Final = 1 << 24
+csv.field_size_limit(_MAX_LINE)
 
 # Signatures of files that are taken for a CSV export by mistake.
 _NOT_TEXT: Final = {
@@ -33,11 +35,30 @@ class TextSource:
         Of the bytes as they are on disk.
     ends_with_newline : bool
         False hints that the file may have been cut.
+    delimiter : str
+        Comma, or what a spreadsheet put in its place: semicolon or tab.
     """
 
     path: Path
     sha256: str
     ends_with_newline: bool
+    delimiter: str
+
+    @property
+    def decimal_comma(self) -> bool:
+        """Whether a comma in a number is its decimal point: it can be where it does not separate cells."""
+        return self.delimiter != ","
+
+    def cells(self, line: str) -> list[str]:
+        """Split a line into its cells, stripped.
+
+        Raises
+        ------
+        csv.Error
+            If the quotes of the line do not fit.
+        """
+        row = next(csv.reader([line], delimiter=self.delimiter, strict=True), [])
+        return [cell.strip() for cell in row]
 
     def lines(self) -> Iterator[str]:
         """Yield the lines without their ends, be these LF, CRLF or CR.
@@ -76,6 +97,9 @@ def open_source(path: Path) -> TextSource:
         If it is missing, a folder, unreadable, empty or binary.
     """
     try:
+        if path.exists() and not path.is_file() and not path.is_dir():
+            msg = f"{path}: not a regular file; give an exported CSV file"
+            raise RecordingError(msg)
         with path.open("rb") as stream:
             head = stream.read(_HEAD_BYTES)
             stream.seek(0)
@@ -85,13 +109,14 @@ def open_source(path: Path) -> TextSource:
                 stream.seek(-1, 2)
                 last = stream.read(1)
     except FileNotFoundError as error:
-        msg = f"{path}: no such file"
+        msg = f"{path}: no such file; check the name and the folder"
         raise RecordingError(msg) from error
     except IsADirectoryError as error:
         msg = f"{path}: a folder, not a recording; give one exported CSV file"
         raise RecordingError(msg) from error
-    except OSError as error:
-        msg = f"{path}: cannot be read: {error.strerror or error}"
+    except (OSError, ValueError) as error:  # a NUL in the name is a ValueError
+        reason = getattr(error, "strerror", None) or error
+        msg = f"{path}: cannot be read: {reason}; check the file and its permissions"
         raise RecordingError(msg) from error
     if not head.strip(b"\xef\xbb\xbf\r\n\t ,;"):
         msg = f"{path}: the file is empty; export the take again"
@@ -103,4 +128,13 @@ def open_source(path: Path) -> TextSource:
     if b"\0" in head:
         msg = f"{path}: a binary file, not text; export the take as CSV"
         raise RecordingError(msg)
-    return TextSource(path=path, sha256=digest, ends_with_newline=last in (b"\n", b"\r"))
+    return TextSource(path=path, sha256=digest, ends_with_newline=last in (b"\n", b"\r"), delimiter=_delimiter_of(head))
+
+
+def _delimiter_of(head: bytes) -> str:
+    """Tell the delimiter by the first line with any content that more than one cell shows."""
+    for line in head.splitlines():
+        counts = {mark: line.count(mark.encode()) for mark in (",", ";", "\t")}
+        if any(counts.values()):
+            return max(counts, key=lambda mark: counts[mark])
+    return ","

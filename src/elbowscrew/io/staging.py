@@ -2,18 +2,28 @@
 
 from __future__ import annotations
 
+import json
 import os
 import shutil
 import tempfile
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Final
 
 from elbowscrew.errors import OutputError
 
-RESULT_FILES: Final = ("screw.csv", "interpolation.csv", "summary.json", "report.html", "figures")
-"""All that a result folder holds at its top level."""
+FIGURE_NAMES: Final = ("theta", "euler_parameters", "axis", "error")
+FIGURE_FORMATS: Final = ("png", "svg", "pdf")
+RESULT_FILES: Final = (
+    "screw.csv",
+    "interpolation.csv",
+    "summary.json",
+    *(f"figures/{name}.{kind}" for name in FIGURE_NAMES for kind in FIGURE_FORMATS),
+)
+"""All that a result folder may hold."""
+
+_PREFIX: Final = ".elbowscrew-"
 
 
 @contextmanager
@@ -23,7 +33,7 @@ def result_folder(target: Path, *, force: bool) -> Iterator[Path]:
     Parameters
     ----------
     target : Path
-        The result folder. An empty folder is taken over; its parents are made.
+        The result folder. An empty folder is taken over; its parents are made; a link is followed.
     force : bool
         Replace an earlier result, but never a folder that holds anything else.
 
@@ -34,18 +44,22 @@ def result_folder(target: Path, *, force: bool) -> Iterator[Path]:
         result is as it was.
     """
     check_result_folder(target, force=force)
-    staged = None
+    staged, made = None, []
     try:
-        target.parent.mkdir(parents=True, exist_ok=True)
-        staged = Path(tempfile.mkdtemp(prefix=f".{target.name[:100]}.", suffix=".partial", dir=target.parent))
+        place = target.resolve()
+        made = _make_parents(place)
+        staged = Path(tempfile.mkdtemp(prefix=_PREFIX, suffix=".partial", dir=place.parent))
         staged.chmod(0o777 & ~_umask())
         yield staged
-        _swap(staged, target)
+        check_result_folder(target, force=force)  # somebody may have put something there meanwhile
+        _move_into_place(staged, place)
+        made = []
     except OSError as error:
         raise _output_error(target, error) from error
     finally:
         if staged is not None:
             shutil.rmtree(staged, ignore_errors=True)
+        _remove_empty(made)
 
 
 def check_result_folder(target: Path, *, force: bool) -> None:
@@ -56,68 +70,127 @@ def check_result_folder(target: Path, *, force: bool) -> None:
         if not target.is_dir():
             msg = f"{target}: exists and is no folder; give another --output"
             raise OutputError(msg)
-        present = {entry.name for entry in target.iterdir()}
+        if target.resolve() == Path.cwd():
+            msg = f"{target}: is the current folder; give --output a folder of its own"
+            raise OutputError(msg)
+        present = {path.relative_to(target).as_posix() for path in target.rglob("*")} - {"figures"}
+        if not present:
+            return
+        strangers = sorted(present - set(RESULT_FILES))
+        if strangers or not _is_summary(target / "summary.json"):
+            what = f"holds {strangers[0]!r}, which is not ours" if strangers else "holds files but no elbowscrew result"
+            msg = f"{target}: the folder {what}; give another --output"
+            raise OutputError(msg)
     except OSError as error:
         raise _output_error(target, error) from error
-    if not present:
-        return
-    strangers = sorted(present - set(RESULT_FILES))
-    if strangers or "summary.json" not in present:
-        what = f"holds {strangers[0]!r}, which is not ours" if strangers else "holds files but no elbowscrew result"
-        msg = f"{target}: the folder {what}; give another --output"
-        raise OutputError(msg)
     if not force:
         msg = f"{target}: a result is there already; give --force to replace it, or another --output"
         raise OutputError(msg)
 
 
-def write_file(target: Path, lines: Iterable[str], *, force: bool) -> None:
-    """Write lines to a file that appears whole or not at all.
+def _is_summary(path: Path) -> bool:
+    try:
+        summary = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError, RecursionError):
+        return False
+    return isinstance(summary, dict) and "elbowscrew" in summary
+
+
+def write_files(contents: Mapping[Path, Iterable[str]], *, replaceable: str | None) -> None:
+    """Write files that belong together: all of them appear, each whole, or none.
+
+    Parameters
+    ----------
+    contents : mapping of Path to iterable of str
+        Lines of each file, without line ends.
+    replaceable : str or None
+        None to replace nothing; else an existing file is replaced if its first 4096 bytes hold this word, which tells
+        that it is one of ours.
 
     Raises
     ------
     OutputError
-        If the file exists and `force` is false, or the disk does not take it.
+        If a file exists that may not be replaced, or the disk does not take them.
     """
-    check_file(target, force=force)
-    staged = None
+    for target in contents:
+        _check_file(target, replaceable)
+    staged: dict[Path, Path] = {}
+    made: list[Path] = []
+    target = next(iter(contents))
     try:
-        target.parent.mkdir(parents=True, exist_ok=True)
-        handle, name = tempfile.mkstemp(prefix=f".{target.name[:100]}.", suffix=".partial", dir=target.parent)
-        staged = Path(name)
-        with os.fdopen(handle, "w", encoding="utf-8", newline="") as stream:
-            stream.writelines(line + "\n" for line in lines)
-        staged.chmod(0o666 & ~_umask())
-        staged.replace(target)
+        for target, lines in contents.items():
+            place = target.resolve()
+            made += _make_parents(place)
+            handle, name = tempfile.mkstemp(prefix=_PREFIX, suffix=".partial", dir=place.parent)
+            staged[target] = Path(name)
+            with os.fdopen(handle, "w", encoding="utf-8", newline="") as stream:
+                stream.writelines(line + "\n" for line in lines)
+            staged[target].chmod(0o666 & ~_umask())
+        for target, temporary in staged.items():
+            _check_file(target, replaceable)
+            temporary.replace(target.resolve())
+        made = []
     except OSError as error:
         raise _output_error(target, error) from error
     finally:
-        if staged is not None:
-            staged.unlink(missing_ok=True)
+        for temporary in staged.values():
+            temporary.unlink(missing_ok=True)
+        _remove_empty(made)
 
 
-def check_file(target: Path, *, force: bool) -> None:
-    """Raise `OutputError` if the file may not be put there."""
-    if os.path.lexists(target) and not (force and target.is_file()):
-        remedy = "give --force to replace it, or another name" if target.is_file() else "it is no file"
-        msg = f"{target}: exists already; {remedy}"
-        raise OutputError(msg)
+def _check_file(target: Path, replaceable: str | None) -> None:
+    try:
+        if not os.path.lexists(target):
+            return
+        if not target.is_file():
+            msg = f"{target}: exists already and is no file; give another name"
+            raise OutputError(msg)
+        if replaceable is None:
+            msg = f"{target}: exists already; give --force to replace it, or another name"
+            raise OutputError(msg)
+        with target.open("rb") as stream:
+            if replaceable.encode() not in stream.read(4096):
+                msg = f"{target}: exists already and is no synthetic trial of ours; give another name"
+                raise OutputError(msg)
+    except OSError as error:
+        raise _output_error(target, error) from error
 
 
-def _swap(staged: Path, target: Path) -> None:
-    """Move the staged folder into place; an earlier result steps aside and is removed after, or comes back."""
-    if not target.is_dir():
-        staged.rename(target)
+def _make_parents(place: Path) -> list[Path]:
+    """Make the folders above a place, and say which are new, the innermost first."""
+    missing = []
+    for parent in place.parents:
+        if parent.exists():
+            break
+        missing.append(parent)
+    place.parent.mkdir(parents=True, exist_ok=True)
+    return missing
+
+
+def _remove_empty(folders: Iterable[Path]) -> None:
+    for folder in folders:
+        with suppress(OSError):
+            folder.rmdir()
+
+
+def _move_into_place(staged: Path, place: Path) -> None:
+    """Move the staged folder to its place; an earlier result steps aside, and is removed after or comes back."""
+    if not place.is_dir() or not any(place.iterdir()):
+        if os.name == "nt" and place.is_dir():
+            place.rmdir()
+        staged.rename(place)  # over an empty folder, never over one that has just been filled
         return
     aside = staged.with_suffix(".replaced")
-    target.rename(aside)
+    place.rename(aside)
     try:
-        staged.rename(target)
+        staged.rename(place)
     except BaseException:
         with suppress(OSError):
-            aside.rename(target)
+            aside.rename(place)
         raise
-    shutil.rmtree(aside, ignore_errors=True)
+    for name in RESULT_FILES:
+        (aside / name).unlink(missing_ok=True)
+    _remove_empty([aside / "figures", aside])
 
 
 def _umask() -> int:

@@ -1,6 +1,6 @@
 """What flows through the program: recordings in, results out; frozen, in SI units and radians."""
 
-from elbowscrew.model.recording import QualityWarning, Recording, RigidBody, Source, TrackingLoss
+from elbowscrew.model.recording import QualityWarning, Recording, RigidBody, Source, TrackingLoss, invalid_warning
 from elbowscrew.model.results import (
     Analysis,
     BodyPoints,
@@ -24,4 +24,5 @@ __all__ = [
     "ScrewMotion",
     "Source",
     "TrackingLoss",
+    "invalid_warning",
 ]

@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import IntEnum
+from typing import Final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,6 +15,11 @@ from elbowscrew.geometry import dual_quaternion, quaternion
 
 Float = NDArray[np.float64]
 Bool = NDArray[np.bool_]
+
+
+# Exports print six decimals, so that a norm is off by 1e-6; a digit or a cell gone wrong shows above this.
+_NORM_TOLERANCE: Final = 5e-3
+_FARTHEST_M: Final = 1e4
 
 
 class TrackingLoss(IntEnum):
@@ -28,6 +34,10 @@ class TrackingLoss(IntEnum):
     """A quaternion of zeros, or no rotation at the very origin: what is written for a body that was not solved."""
     FROZEN = 4
     """The pose repeats the one before to the last digit."""
+    INVALID = 5
+    """No pose can be so: a quaternion far from unit length, a place kilometers away."""
+    LEAP = 6
+    """The pose leaps out of the motion and back: a flip, a swap or a spike."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -36,6 +46,15 @@ class QualityWarning:
 
     code: str
     message: str
+
+
+def invalid_warning(body: str, frames: int) -> QualityWarning:
+    """Say that a body has poses that cannot be."""
+    message = (
+        f"body {body!r} has in {frames} frames a quaternion far from unit length or a place over "
+        f"{_FARTHEST_M / 1000:g} km away: taken as lost"
+    )
+    return QualityWarning(code="invalid-pose", message=message)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -52,6 +71,10 @@ class RigidBody:
         `TrackingLoss` of each frame.
     marker_offsets : ndarray, shape (M, 3), optional
         The markers in the body's frame, meters.
+    reported_error : ndarray, shape (N,), optional
+        Mean marker error as the file has it, meters.
+    marker_residual : ndarray, shape (N,), optional
+        RMS distance between the markers seen and the body's own, meters: how rigid the cluster was.
     """
 
     name: str
@@ -59,6 +82,8 @@ class RigidBody:
     dual_quat_lab_body: Float
     loss: NDArray[np.uint8]
     marker_offsets: Float | None = None
+    reported_error: Float | None = None
+    marker_residual: Float | None = None
 
     @classmethod
     def from_quaternions(
@@ -70,10 +95,12 @@ class RigidBody:
         identifier: str = "",
         loss: NDArray[np.uint8] | None = None,
         marker_offsets: ArrayLike | None = None,
+        only_plausible: bool = False,
     ) -> RigidBody:
         """Build a body from Euler parameters (N, 4), scalar first and of any length but 0, and positions (N, 3) in m.
 
-        Frames with NaN, or with a quaternion of zeros, have no pose.
+        Frames with NaN, or with a quaternion of zeros, have no pose; with `only_plausible`, as for a file, nor have
+        those with a quaternion that is not of unit length within 0.5 %, or farther away than 10 km.
         """
         q = np.asarray(quat, dtype=np.float64)
         d = np.asarray(position, dtype=np.float64)
@@ -81,10 +108,15 @@ class RigidBody:
             msg = f"body {name!r}: expected quaternions (N, 4) and positions (N, 3), found {q.shape} and {d.shape}"
             raise ValueError(msg)
         reason = np.zeros(q.shape[0], dtype=np.uint8) if loss is None else loss.copy()
-        blank = ~(np.isfinite(q).all(axis=1) & np.isfinite(d).all(axis=1))
+        blank: Bool = ~np.isfinite(np.concatenate([q, d], axis=1)).all(axis=1)
         zero = ~blank & (q == 0.0).all(axis=1)
         reason[(reason == TrackingLoss.NONE) & blank] = TrackingLoss.BLANK
         reason[(reason == TrackingLoss.NONE) & zero] = TrackingLoss.ZERO
+        if only_plausible:
+            size = quaternion.norm(np.where(blank[:, None], 1.0, q))
+            reach = np.abs(np.where(blank[:, None], 0.0, d)).max(axis=1, initial=0.0)
+            invalid = (np.abs(size - 1.0) > _NORM_TOLERANCE) | (reach > _FARTHEST_M)
+            reason[(reason == TrackingLoss.NONE) & invalid] = TrackingLoss.INVALID
         lost = (reason != TrackingLoss.NONE)[:, None]
         pose = dual_quaternion.dual_quat_from_pose(
             quaternion.normalize(np.where(lost, np.nan, q)), np.where(lost, np.nan, d)

@@ -8,6 +8,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowscrew.errors import SettingError
 from elbowscrew.geometry import dlb, lagrange_weights, sclerp, sdlb
 from elbowscrew.model import Keyframes
 from elbowscrew.motion.laws import Law
@@ -16,8 +17,19 @@ Float = NDArray[np.float64]
 Method = Callable[[Float, Float, Float], Float]
 
 
+_LARGEST_WEIGHT: Final = 100.0
+
+
 def _dlb(poses: Float, knots: Float, parameter: Float) -> Float:
-    return dlb(poses, lagrange_weights(parameter, knots), shortest_path=False)
+    weights = lagrange_weights(parameter, knots)
+    largest = float(np.abs(weights).max(initial=0.0))
+    if not largest <= _LARGEST_WEIGHT:
+        msg = (
+            f"--keyframes: a polynomial through {knots.size} poses weighs them by up to {largest:.2g}, and "
+            "their noise with them; give fewer keyframes, or --method sclerp"
+        )
+        raise SettingError(msg)
+    return dlb(poses, weights, shortest_path=False)
 
 
 def _between_neighbors(two_poses: Callable[..., Float]) -> Method:

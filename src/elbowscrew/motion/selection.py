@@ -38,6 +38,10 @@ def choose_bodies(recording: Recording, arm: str | None, forearm: str | None) ->
     bodies = recording.bodies
     still = arm is not None and arm.casefold() == STILL_ARM and not _named(bodies, arm)
     if len(bodies) == 1 and arm is None:
+        name = bodies[0].name
+        if forearm is None and segment_of(name) == "arm":
+            msg = f"the only body in the file is {name!r}: give --forearm {name!r} if it is the forearm nevertheless"
+            raise SettingError(msg)
         return None, bodies[0] if forearm is None else _find(bodies, forearm, "forearm")
     distal = _find(bodies, forearm, "forearm") if forearm is not None else None
     proximal = _find(bodies, arm, "arm") if arm is not None and not still else None

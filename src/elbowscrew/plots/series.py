@@ -99,7 +99,7 @@ def _plot_error(ax: Axes, analysis: Analysis, values: Float, name: str, unit: st
 
 
 def _over_time(ax: Axes, time_s: Float) -> Axes:
-    margin = 0.01 * (time_s[-1] - time_s[0])
+    margin = 0.01 * (time_s[-1] - time_s[0]) or 0.01
     ax.set_xlim(time_s[0] - margin, time_s[-1] + margin)
     ax.set_xlabel("Time (s)")
     return ax
