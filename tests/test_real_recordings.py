@@ -119,9 +119,8 @@ def test_mirrored_bodies_of_version_1_1_are_corrected(real_data: Path) -> None:
     body = recording.bodies[0]
     assert body.marker_offsets is not None
     # The body's markers, columns 11 on in the file, are at rest in the body.
-    cells = np.genfromtxt(
-        path, delimiter=",", skip_header=7, usecols=[c for k in range(4) for c in range(10 + 4 * k, 13 + 4 * k)]
-    )
+    columns = [first + axis for first in range(10, 26, 4) for axis in range(3)]
+    cells = np.genfromtxt(path, delimiter=",", skip_header=7, usecols=columns)
     in_body = transform_points(conjugate(body.dual_quat_lab_body)[:, None, :], cells.reshape(-1, 4, 3))
     assert np.nanmedian(np.linalg.norm(in_body - body.marker_offsets, axis=2)) < 1e-6
 

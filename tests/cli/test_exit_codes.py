@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import signal
 import subprocess
 import sys
@@ -229,13 +230,11 @@ def test_a_terminal_that_lacks_characters_gets_the_rest(take: Path, encoding: st
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="POSIX shell")
-@pytest.mark.parametrize(
-    ("redirection", "code"), [("| true", 0), (">&-", 0), ("2>&-", 0), ("</dev/null 2>/dev/full", 0)]
-)
-def test_streams_that_nobody_reads_are_no_failure(take: Path, redirection: str, code: int) -> None:
+@pytest.mark.parametrize("redirection", ["| true", ">&-", "2>&-", "2>/dev/full"])
+def test_streams_that_nobody_reads_are_no_failure(take: Path, redirection: str) -> None:
     script = f"set -o pipefail; {sys.executable} -m elbowscrew info take.csv --json {redirection}"
     result = subprocess.run(["bash", "-c", script], cwd=take.parent, capture_output=True, text=True, check=False)
-    assert result.returncode == code
+    assert result.returncode == 0
     assert "Traceback" not in result.stderr
 
 
