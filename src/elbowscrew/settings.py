@@ -15,7 +15,7 @@ from elbowscrew.errors import UsageError
 from elbowscrew.tables import AngleUnit, LengthUnit
 
 _LISTS: Final = ("keyframes", "figure-format")
-_UNIT_SUFFIXES: Final = ("_deg", "_mm", "_s", "_percent")
+_UNIT_SUFFIXES: Final = ("_deg_s", "_m_s", "_deg", "_mm", "_s", "_percent")
 
 STILL_ARM: Final = "none"
 """The value of ``arm`` that says: the file has no arm, it stands still."""
@@ -23,9 +23,8 @@ STILL_ARM: Final = "none"
 
 def option_name(field: str) -> str:
     """Give a field's name on the command line and in TOML: ``min_angle_deg`` is ``min-angle``."""
-    for suffix in _UNIT_SUFFIXES:
-        field = field.removesuffix(suffix)
-    return field.replace("_", "-")
+    suffix = next((suffix for suffix in _UNIT_SUFFIXES if field.endswith(suffix)), "")
+    return field.removesuffix(suffix).replace("_", "-")
 
 
 class Settings(BaseModel):
@@ -46,6 +45,8 @@ class Settings(BaseModel):
     express_in: Literal["forearm", "arm", "lab"] = Field("forearm", description="Frame the screw is written in")
     max_gap_s: float = Field(0.1, ge=0, description="Longest gap that is filled, in seconds")
     frozen: Literal["lost", "keep"] = Field("lost", description="Poses that repeat: lost tracking, or kept")
+    max_turn_deg_s: float = Field(3000.0, gt=0, description="Fastest turn of a body, in degrees a second")
+    max_speed_m_s: float = Field(15.0, gt=0, description="Fastest motion of a body, in meters a second")
     min_tracked_percent: float = Field(50.0, ge=0, le=100, description="Least share of frames tracked")
     min_angle_deg: float = Field(10.0, gt=0, lt=180, description="Least angle that gives an axis, in degrees")
     inversion: int | None = Field(None, description="Frame where the motion turns back")

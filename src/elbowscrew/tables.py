@@ -32,6 +32,7 @@ class Quantity(Enum):
     NUMBER = "number"
     ANGLE = "angle"
     LENGTH = "length"
+    LABEL = "label"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -69,6 +70,8 @@ SCREW_COLUMNS: Final = (
     *_components(("point_x", "point_y", "point_z"), "axis_point", Quantity.LENGTH),
     *_DISPLACEMENT,
     _column("filled", "filled", Quantity.INTEGER),
+    _column("arm_loss", "arm_loss", Quantity.LABEL),
+    _column("forearm_loss", "forearm_loss", Quantity.LABEL),
 )
 
 INTERPOLATION_COLUMNS: Final = (
@@ -109,7 +112,7 @@ def columns(
                 named[f"{column.name}_{length_unit}"] = length_in(values, length_unit)
             case Quantity.INTEGER:
                 named[column.name] = values.astype(np.int64)
-            case Quantity.NUMBER:
+            case Quantity.NUMBER | Quantity.LABEL:
                 named[column.name] = values
     return named
 

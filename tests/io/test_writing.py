@@ -15,7 +15,7 @@ from elbowscrew.io.writing import write_csv, write_tables
 
 SCREW_NAMES = (
     "frame time_s valid theta_deg slide_mm axis_x axis_y axis_z point_x_mm point_y_mm point_z_mm "
-    "e0 e1 e2 e3 d_x_mm d_y_mm d_z_mm filled"
+    "e0 e1 e2 e3 d_x_mm d_y_mm d_z_mm filled arm_loss forearm_loss"
 ).split()
 INTERPOLATION_NAMES = (
     "frame time_s phase t theta_deg slide_mm e0 e1 e2 e3 d_x_mm d_y_mm d_z_mm "
@@ -46,6 +46,8 @@ def test_the_columns_are_the_contract(tmp_path: Path) -> None:
     lost = frame["valid"] == 0
     assert lost.sum() == 24
     assert frame.loc[lost, "theta_deg"].isna().all()
+    assert (frame["forearm_loss"] == np.where(lost, "blank", "")).all()
+    assert (frame["arm_loss"] == "").all()
 
 
 def test_units_change_names_and_values_together(tmp_path: Path) -> None:

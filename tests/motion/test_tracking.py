@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from typing import Any
+
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -10,53 +13,177 @@ from poses import random_poses
 from elbowscrew import Recording, RigidBody, Settings, analyze
 from elbowscrew.errors import AnalysisError, RecordingError
 from elbowscrew.geometry import dual_quat_from_screw, sclerp
+from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.model import TrackingLoss
 from elbowscrew.motion.clock import elapsed_time
 from elbowscrew.motion.gaps import fill_gaps
+from elbowscrew.motion.quality import body_quality, check_bodies, clock_quality, clock_warnings
 from elbowscrew.motion.tracking import check_tracking
 
 Float = NDArray[np.float64]
 
 
-def body(pose: Float) -> RigidBody:
-    return RigidBody(name="b", dual_quat_lab_body=pose, loss=np.zeros(len(pose), dtype=np.uint8))
+def body(pose: Float, name: str = "b") -> RigidBody:
+    lost = ~np.isfinite(pose).all(axis=1)
+    return RigidBody(name=name, dual_quat_lab_body=pose, loss=np.where(lost, TrackingLoss.BLANK, 0).astype(np.uint8))
+
+
+def checked(pose: Float, rate_hz: float = 100.0, **settings: Any) -> tuple[RigidBody, list[str]]:
+    one = body(pose)
+    taken = Recording.from_bodies([one], rate_hz=rate_hz)
+    found = check_tracking(one, taken, elapsed_time(taken), Settings(**settings))
+    return found.body, [warning.code for warning in found.warnings]
 
 
 def test_repeated_poses_are_lost_but_the_first() -> None:
-    pose = random_poses((10,), 1)
+    pose = series(20)
     pose[4] = pose[3]
     pose[5] = -pose[3]
-    checked, warnings = check_tracking(body(pose), keep_frozen=False)
-    assert np.flatnonzero(checked.loss == TrackingLoss.FROZEN).tolist() == [4, 5]
-    assert np.isnan(checked.dual_quat_lab_body[4:6]).all()
-    assert [warning.code for warning in warnings] == ["frozen"]
-    kept, none = check_tracking(body(pose), keep_frozen=True)
+    found, codes = checked(pose)
+    assert np.flatnonzero(found.loss == TrackingLoss.FROZEN).tolist() == [4, 5]
+    assert np.isnan(found.dual_quat_lab_body[4:6]).all()
+    assert codes == ["frozen"]
+    kept, codes = checked(pose, frozen="keep")
     assert kept.tracked.all()
-    assert none == ()
+    assert codes == []
 
 
 def test_a_pose_that_comes_back_after_a_gap_is_no_repetition() -> None:
-    pose = random_poses((6,), 2)
-    pose[4] = pose[2]
-    pose[3] = np.nan
-    lost = body(pose)
-    lost.loss[3] = TrackingLoss.BLANK
-    assert check_tracking(lost, keep_frozen=False)[0].tracked.sum() == 5
+    pose = series(40)
+    pose[22] = pose[20]
+    pose[21] = np.nan
+    assert checked(pose)[0].tracked.sum() == 39
 
 
 def test_a_body_that_never_moves_is_a_fixed_reference() -> None:
     pose = np.repeat(random_poses((1,), 3), 8, axis=0)
     pose[3] *= -1.0
-    checked, warnings = check_tracking(body(pose), keep_frozen=False)
-    assert checked.tracked.all()
-    assert [warning.code for warning in warnings] == ["fixed-body"]
+    found, codes = checked(pose)
+    assert found.tracked.all()
+    assert codes == ["fixed-body"]
 
 
 def test_a_body_that_was_never_solved_is_not_tracked() -> None:
-    pose = np.tile([1.0, 0, 0, 0, 0, 0, 0, 0], (8, 1))
-    checked, warnings = check_tracking(body(pose), keep_frozen=False)
-    assert not checked.tracked.any()
-    assert [warning.code for warning in warnings] == ["never-solved"]
+    found, codes = checked(np.tile([1.0, 0, 0, 0, 0, 0, 0, 0], (8, 1)))
+    assert not found.tracked.any()
+    assert codes == ["never-solved"]
+
+
+IDENTITY = np.array([1.0, 0, 0, 0, 0, 0, 0, 0])
+
+
+@pytest.mark.parametrize("rows", [[0], [1], [20], [20, 21, 22], [39], [0, 39]])
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+@pytest.mark.parametrize("place", [None, [0.05, 0.0, 0.0]])
+def test_an_identity_out_of_the_motion_is_not_tracked(rows: list[int], sign: float, place: Any) -> None:
+    pose = dq.multiply(dq.dual_quat_from_pose([1.0, 0, 0, 0], [0.3, 1.0, 0.2]), series(40))
+    pose = dq.multiply(pose, dual_quat_from_screw(0.3, 0.0, [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]))
+    pose[rows] = sign * (IDENTITY if place is None else dq.dual_quat_from_pose([1.0, 0, 0, 0], place))
+    found, codes = checked(pose)
+    assert np.flatnonzero(~found.tracked).tolist() == rows
+    assert codes == ["identity-pose"]
+    assert (found.loss[rows] == TrackingLoss.ZERO).all()
+
+
+def test_an_identity_the_motion_passes_is_a_measurement() -> None:
+    # A body that starts, turns and ends in its own reference frame, at the origin, as synthetic ones do.
+    angle = 2.0 * np.sin(np.linspace(0.0, 2.0 * np.pi, 81))
+    pose = dual_quat_from_screw(angle, 0.0, [0.0, 0.6, 0.8], [0.1, -0.08, 0.06])
+    pose[[0, 40, 80]] = IDENTITY
+    assert checked(pose)[0].tracked.all()
+
+
+def flipped(pose: Float, rows: slice) -> Float:
+    """Turn the body by half a turn about its own x axis, as a symmetric marker set does."""
+    out = pose.copy()
+    out[rows] = dq.multiply(pose[rows], [0.0, 1.0, 0, 0, 0, 0, 0, 0])
+    return out
+
+
+@pytest.mark.parametrize("rows", [slice(30, 31), slice(30, 50), slice(0, 5), slice(195, 200)])
+def test_flips_that_come_back_are_lost_and_the_rest_is_as_it_was(rows: slice) -> None:
+    pose = series(200)
+    found, codes = checked(flipped(pose, rows))
+    assert np.flatnonzero(found.loss == TrackingLoss.LEAP).tolist() == list(range(200))[rows]
+    assert codes == ["leap"]
+    clean = analyze(Recording.from_bodies([body(pose)], rate_hz=100), Settings(reference=20))
+    other = analyze(Recording.from_bodies([body(flipped(pose, rows))], rate_hz=100), Settings(reference=20))
+    kept = other.screw.valid
+    assert other.screw.angle[kept] == pytest.approx(clean.screw.angle[kept], abs=1e-12)
+
+
+def test_a_spike_of_place_alone_is_lost() -> None:
+    pose = series(100)
+    pose[40] = dq.multiply(dq.dual_quat_from_pose([1.0, 0, 0, 0], [0.0, 0.3, 0.0]), pose[40])
+    found, codes = checked(pose)
+    assert np.flatnonzero(~found.tracked).tolist() == [40]
+    assert codes == ["leap"]
+
+
+def test_a_leap_that_does_not_come_back_is_told_and_kept() -> None:
+    pose = flipped(series(400), slice(200, 400))
+    found, codes = checked(pose)
+    assert found.tracked.all()
+    assert codes == ["leap-unresolved"]
+
+
+def test_the_limits_of_a_step_can_be_changed() -> None:
+    angle = np.linspace(0.0, 6.0, 40)
+    pose = dual_quat_from_screw(angle, 0.0, [0.0, 0.6, 0.8], [0.0, 0.0, 0.0])  # 8.8 deg a frame: 881 deg/s
+    assert checked(pose)[1] == []
+    assert "leap" in checked(pose, max_turn_deg_s=500.0)[1]
+    assert checked(pose, max_turn_deg_s=900.0)[1] == []
+
+
+def test_a_motion_that_goes_on_behind_a_gap_is_no_leap() -> None:
+    pose = series(400)
+    pose[100:200] = np.nan
+    assert checked(pose)[1] == []
+
+
+def test_bodies_that_exchange_their_places_are_told() -> None:
+    one, other = series(300), dq.multiply(dq.dual_quat_from_pose([1.0, 0, 0, 0], [0.4, 0.1, 0.0]), series(300)[::-1])
+    swapped_one, swapped_other = one.copy(), other.copy()
+    swapped_one[120:140], swapped_other[120:140] = other[120:140], one[120:140]
+    taken = Recording.from_bodies([body(swapped_one, "A"), body(swapped_other, "B")], rate_hz=100)
+    found, warnings = check_bodies(taken, taken.bodies, Settings())
+    swaps = [warning for warning in warnings if warning.code == "swapped-bodies"]
+    assert [warning.frames for warning in swaps] == [(120, 140)]
+    for body_found in found:
+        assert np.flatnonzero(~body_found.body.tracked).tolist() == list(range(120, 140))
+
+
+def test_quality_tells_the_figures_of_a_body() -> None:
+    pose = series(100)
+    pose[10:20] *= -1.0
+    pose[50:55] = np.nan
+    residual = np.full(100, 2e-4)
+    residual[70] = 8e-3
+    one = replace(body(pose), marker_residual=residual, marker_offsets=np.array([[0.1, 0, 0], [0.0, 0.02, 0]]))
+    taken = Recording.from_bodies([one], rate_hz=100)
+    (found,), warnings = check_bodies(taken, taken.bodies, Settings())
+    quality = body_quality(one, found, taken)
+    assert quality.tracked_share == pytest.approx(0.95)
+    assert quality.lost_frames == {"blank": 5}
+    assert quality.sign_flips == 2
+    assert quality.fastest_turn == pytest.approx(2.0 / 99 * 100)
+    assert quality.marker_residual is not None
+    assert (quality.marker_residual.median, quality.marker_residual.largest) == pytest.approx((2e-4, 8e-3))
+    assert quality.pivot_offset == pytest.approx(np.hypot(0.05, 0.01))
+    codes = {warning.code: warning for warning in warnings}
+    assert set(codes) == {"sign-flips", "marker-residual", "pivot-offset"}
+    assert codes["marker-residual"].frames == (70,)
+    assert codes["sign-flips"].severity == "note"
+
+
+def test_the_clock_tells_of_frames_that_are_missing() -> None:
+    frame = np.r_[0:20, 30:50]
+    taken = recording(frame, frame / 100.0)
+    quality = clock_quality(taken)
+    assert (quality.missing_frames, quality.frame_gaps, quality.repeated_frames) == (10, 1, 0)
+    assert [warning.code for warning in clock_warnings(taken)] == ["missing-frames"]
+    twice = recording(np.array([0, 1, 1, 2, 3]), np.array([0.0, 0.01, 0.02, 0.03, 0.04]))
+    assert [warning.code for warning in clock_warnings(twice)] == ["frame-numbers"]
 
 
 def test_a_quaternion_of_zeros_is_no_pose() -> None:

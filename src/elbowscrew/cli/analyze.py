@@ -43,6 +43,16 @@ def analyze(
         Literal["lost", "keep"] | None,
         typer.Option(rich_help_panel=_BODIES, help="Poses that repeat to the last digit.", show_default="lost"),
     ] = None,
+    max_turn: Annotated[
+        float | None,
+        typer.Option(
+            metavar="DEG/S", rich_help_panel=_BODIES, help="Fastest turn; more is a leap.", show_default="3000"
+        ),
+    ] = None,
+    max_speed: Annotated[
+        float | None,
+        typer.Option(metavar="M/S", rich_help_panel=_BODIES, help="Fastest motion; more is a leap.", show_default="15"),
+    ] = None,
     min_tracked: Annotated[
         float | None,
         typer.Option(metavar="PERCENT", rich_help_panel=_BODIES, help="Least share of frames.", show_default="50"),
@@ -152,6 +162,8 @@ def analyze(
             "units": units,
             "rotation": rotation,
             "frozen": frozen,
+            "max_turn": max_turn,
+            "max_speed": max_speed,
             "min_tracked": min_tracked,
             "reference": reference,
             "reference_window": reference_window,

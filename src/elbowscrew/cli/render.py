@@ -15,9 +15,11 @@ from rich.text import Text
 from elbowscrew.cli.text import NobodyReads, one_line, printable
 
 
-def warnings(found: Iterable[Mapping[str, str]]) -> None:
-    """Write one line a warning."""
+def warnings(found: Iterable[Mapping[str, Any]]) -> None:
+    """Write one line a warning; notes are for those who look at the recording."""
     for warning in found:
+        if warning["severity"] != "warning":
+            continue
         sys.stderr.write(f"elbowscrew: warning: {one_line(warning['message'])} [{warning['code']}]\n")
 
 
@@ -87,17 +89,26 @@ def info_table(summary: Mapping[str, Any]) -> None:
     ]
     _print_rows(printable(source["name"] or ""), rows)
     table = Table(box=None, pad_edge=False, header_style="bold")
-    for column in ("Body", "Id", "Tracked", "Lost frames", "Markers"):
-        table.add_column(column, justify="right" if column in ("Tracked", "Markers") else "left", overflow="fold")
+    for column in ("Body", "Tracked", "Lost frames", "Fastest", "Fit, mm", "Error, mm"):
+        table.add_column(column, overflow="fold")
     for body in trial["bodies"]:
         table.add_row(
             Text(printable(body["name"])),
-            Text(printable(body["id"])),
             f"{100.0 * body['tracked_share']:.1f} %",
             ", ".join(f"{count} {reason}" for reason, count in body["lost_frames"].items()) or "–",
-            str(body["markers"] or "–"),
+            f"{body['fastest_turn_deg_s']:.0f} deg/s, {body['fastest_speed_m_s']:.1f} m/s",
+            _spread(body["marker_residual_mm"]),
+            _spread(body["reported_error_mm"]),
         )
     _print(table)
+    notes = [warning for warning in summary["warnings"] if warning["severity"] == "note"]
+    if notes:
+        _print(Text("Notes", style="bold"), *(Text(one_line(f"{note['message']} [{note['code']}]")) for note in notes))
+
+
+def _spread(spread: Mapping[str, float] | None) -> str:
+    """Median and maximum."""
+    return "–" if spread is None else f"{spread['median']:.2f}, max {spread['largest']:.2f}"
 
 
 def emit(text: str) -> None:

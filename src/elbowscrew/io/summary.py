@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import platform
-from dataclasses import replace
+from collections.abc import Iterable
+from dataclasses import asdict
 from importlib.metadata import version
 from typing import Any, Final
 
@@ -12,9 +13,10 @@ from numpy.typing import NDArray
 
 from elbowscrew._version import __version__
 from elbowscrew.errors import SettingError
-from elbowscrew.model import Analysis, Recording, RigidBody
+from elbowscrew.model import Analysis, BodyQuality, QualityWarning, Recording, Spread
+from elbowscrew.motion.quality import body_quality, check_bodies, clock_quality
 from elbowscrew.motion.selection import choose_bodies
-from elbowscrew.motion.tracking import check_tracking
+from elbowscrew.settings import Settings
 
 Float = NDArray[np.float64]
 
@@ -33,23 +35,49 @@ def summary_from_analysis(analysis: Analysis) -> dict[str, Any]:
         "trial": {**recording_summary(analysis.recording), **_trial(analysis)},
         "motion": _motion(analysis),
         "interpolation": _interpolation(analysis),
-        "warnings": [{"code": warning.code, "message": warning.message} for warning in analysis.warnings],
+        "warnings": warnings_summary(analysis.warnings),
         "versions": {"python": platform.python_version(), **{name: version(name) for name in _LIBRARIES}},
     }
 
 
 def summary_from_recording(recording: Recording) -> dict[str, Any]:
     """What a file holds, ready for JSON: source, clock, bodies with their tracking, and who is arm and forearm."""
-    checked = [check_tracking(body, keep_frozen=False) for body in recording.bodies]
-    tracked = replace(recording, bodies=tuple(body for body, _ in checked))
-    warnings = (*recording.warnings, *(warning for _, found in checked for warning in found))
+    checked, warnings = check_bodies(recording, recording.bodies, Settings())
+    quality = [body_quality(raw, found, recording) for raw, found in zip(recording.bodies, checked, strict=True)]
     return {
         "elbowscrew": __version__,
         "source": source_summary(recording),
-        "trial": recording_summary(tracked),
+        "trial": {**recording_summary(recording), "bodies": [quality_summary(body) for body in quality]},
         "roles": _roles(recording),
-        "warnings": [{"code": warning.code, "message": warning.message} for warning in warnings],
+        "warnings": warnings_summary((*recording.warnings, *warnings)),
     }
+
+
+def warnings_summary(warnings: Iterable[QualityWarning]) -> list[dict[str, Any]]:
+    """Warnings, those that matter first."""
+    return [asdict(warning) for warning in sorted(warnings, key=lambda warning: warning.severity != "warning")]
+
+
+def quality_summary(quality: BodyQuality) -> dict[str, Any]:
+    """Figures of one body, units in the names."""
+    return {
+        "name": quality.name,
+        "id": quality.identifier,
+        "tracked_share": quality.tracked_share,
+        "lost_frames": dict(quality.lost_frames),
+        "sign_flips": quality.sign_flips,
+        "leaps": quality.leaps,
+        "fastest_turn_deg_s": float(np.degrees(quality.fastest_turn)),
+        "fastest_speed_m_s": quality.fastest_speed,
+        "marker_residual_mm": _spread_mm(quality.marker_residual),
+        "reported_error_mm": _spread_mm(quality.reported_error),
+        "pivot_offset_mm": None if quality.pivot_offset is None else 1000.0 * quality.pivot_offset,
+        "markers": quality.markers,
+    }
+
+
+def _spread_mm(spread: Spread | None) -> dict[str, float] | None:
+    return None if spread is None else {name: 1000.0 * value for name, value in asdict(spread).items()}
 
 
 def _roles(recording: Recording) -> dict[str, str | None]:
@@ -78,33 +106,23 @@ def source_summary(recording: Recording) -> dict[str, Any]:
 
 
 def recording_summary(recording: Recording) -> dict[str, Any]:
-    """Frames, rate and bodies of a recording."""
+    """Frames, rate and clock of a recording."""
     return {
         "frames": int(recording.frame.size),
         "first_frame": int(recording.frame[0]),
         "last_frame": int(recording.frame[-1]),
         "rate_hz": recording.rate_hz,
         "duration_s": float(recording.time_s[-1] - recording.time_s[0]),
-        "bodies": [body_summary(body) for body in recording.bodies],
-    }
-
-
-def body_summary(body: RigidBody) -> dict[str, Any]:
-    """Name, id, share tracked and reasons of loss of one body."""
-    return {
-        "name": body.name,
-        "id": body.identifier,
-        "tracked_share": float(body.tracked.mean()),
-        "lost_frames": body.loss_counts(),
-        "markers": None if body.marker_offsets is None else len(body.marker_offsets),
+        "clock": asdict(clock_quality(recording)),
     }
 
 
 def _trial(analysis: Analysis) -> dict[str, Any]:
     screw = analysis.screw
     return {
-        "arm": None if analysis.arm is None else body_summary(analysis.arm),
-        "forearm": body_summary(analysis.forearm),
+        "bodies": [{"name": body.name, "id": body.identifier} for body in analysis.recording.bodies],
+        "arm": None if analysis.arm is None else quality_summary(analysis.quality[0]),
+        "forearm": quality_summary(analysis.quality[-1]),
         "measured_frames": int(screw.valid.sum()),
         "filled_frames": int(screw.filled.sum()),
         "missing_share": float(1.0 - screw.valid.mean()),

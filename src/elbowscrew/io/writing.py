@@ -36,5 +36,7 @@ def _texts(values: NDArray[Any]) -> list[str]:
         return ["" if value is None else str(value) for value in values.tolist()]
     if values.dtype.kind == "i":
         return [str(value) for value in values.tolist()]
+    if values.dtype.kind == "U":
+        return list(values.tolist())
     # Adding 0.0 turns -0.0 into 0.0; repr is the shortest text that reads back as the same number.
     return ["" if value != value else repr(value) for value in (values + 0.0).tolist()]

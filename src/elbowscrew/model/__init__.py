@@ -1,5 +1,6 @@
 """What flows through the program: recordings in, results out; frozen, in SI units and radians."""
 
+from elbowscrew.model.quality import BodyQuality, ClockQuality, Spread
 from elbowscrew.model.recording import QualityWarning, Recording, RigidBody, Source, TrackingLoss, invalid_warning
 from elbowscrew.model.results import (
     Analysis,
@@ -14,6 +15,8 @@ from elbowscrew.model.results import (
 __all__ = [
     "Analysis",
     "BodyPoints",
+    "BodyQuality",
+    "ClockQuality",
     "InterpolatedMotion",
     "JointMotion",
     "Keyframes",
@@ -23,6 +26,7 @@ __all__ = [
     "RigidBody",
     "ScrewMotion",
     "Source",
+    "Spread",
     "TrackingLoss",
     "invalid_warning",
 ]

@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import IntEnum
-from typing import Final
+from typing import Final, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -42,10 +42,24 @@ class TrackingLoss(IntEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class QualityWarning:
-    """Something about the recording or the analysis that the reader of a result must know."""
+    """Something about the recording or the analysis that the reader of a result must know.
+
+    Attributes
+    ----------
+    code, message : str
+    severity : {"warning", "note"}
+        A note tells of what is harmless or has been put right without loss.
+    frames : tuple of int
+        The first frames concerned, ten at most.
+    count : int
+        How many are concerned; 0 where it is not a matter of frames.
+    """
 
     code: str
     message: str
+    severity: Literal["warning", "note"] = "warning"
+    frames: tuple[int, ...] = ()
+    count: int = 0
 
 
 def invalid_warning(body: str, frames: int) -> QualityWarning:
@@ -137,6 +151,11 @@ class RigidBody:
     def tracked(self) -> Bool:
         """Frames with a measured pose, shape (N,)."""
         return np.equal(self.loss, TrackingLoss.NONE)
+
+    def loss_labels(self) -> NDArray[np.str_]:
+        """Give the reason of each lost frame in a word, shape (N,); empty for tracked ones."""
+        words = ["", *(reason.name.lower() for reason in TrackingLoss if reason != TrackingLoss.NONE)]
+        return np.array(words)[self.loss]
 
     def loss_counts(self) -> dict[str, int]:
         """Count the lost frames by reason, as in ``{"blank": 12}``."""

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowscrew import tables
+from elbowscrew.model.quality import BodyQuality
 from elbowscrew.model.recording import QualityWarning, Recording, RigidBody
 
 if TYPE_CHECKING:
@@ -54,6 +55,8 @@ class ScrewMotion:
     frame, time_s : ndarray, shape (N,)
     valid, filled : ndarray of bool, shape (N,)
         Pose measured; pose of a short gap filled in.
+    arm_loss, forearm_loss : ndarray of str, shape (N,)
+        Why the body has no measured pose; empty where it has.
     angle : ndarray, shape (N,)
         Rotation theta, radians, continuous in time, positive where it is largest.
     slide : ndarray, shape (N,)
@@ -68,6 +71,8 @@ class ScrewMotion:
     time_s: Float
     valid: Bool
     filled: Bool
+    arm_loss: NDArray[np.str_]
+    forearm_loss: NDArray[np.str_]
     angle: Float
     slide: Float
     axis_direction: Float
@@ -212,6 +217,8 @@ class Analysis:
     interpolated : InterpolatedMotion
     points : BodyPoints
         What the RMS displacement is averaged over.
+    quality : tuple of BodyQuality
+        Of the arm, if there is one, and of the forearm.
     warnings : tuple of QualityWarning
         Those of the recording and those of the analysis.
     """
@@ -226,4 +233,5 @@ class Analysis:
     keyframes: Keyframes
     interpolated: InterpolatedMotion
     points: BodyPoints
+    quality: tuple[BodyQuality, ...]
     warnings: tuple[QualityWarning, ...]

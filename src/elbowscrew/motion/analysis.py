@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +12,7 @@ from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat
 from elbowscrew.model import (
     Analysis,
     BodyPoints,
+    BodyQuality,
     InterpolatedMotion,
     JointMotion,
     Keyframes,
@@ -34,9 +35,9 @@ from elbowscrew.motion.keyframes import choose_rows, keyframes_at, row_of_frame
 from elbowscrew.motion.laws import LAWS
 from elbowscrew.motion.mean_axis import mean_axis_of
 from elbowscrew.motion.modeling import METHODS, ModeledPoses, model_motion
+from elbowscrew.motion.quality import body_quality, check_bodies
 from elbowscrew.motion.relative import displacement, expressed, frame_change, joint_from_bodies
 from elbowscrew.motion.selection import choose_bodies
-from elbowscrew.motion.tracking import check_tracking
 from elbowscrew.settings import Settings
 
 Float = NDArray[np.float64]
@@ -80,7 +81,7 @@ def analyze(recording: Recording, settings: Settings | None = None) -> Analysis:
     211
     """
     wanted = settings or Settings()
-    arm, forearm, warnings = _tracked_bodies(recording, wanted)
+    arm, forearm, quality, warnings = _tracked_bodies(recording, wanted)
     elapsed = elapsed_time(recording)
     joint = joint_from_bodies(
         arm,
@@ -102,6 +103,8 @@ def analyze(recording: Recording, settings: Settings | None = None) -> Analysis:
         time_s=recording.time_s,
         valid=joint.measured,
         filled=joint.filled,
+        arm_loss=np.zeros(recording.frame.size, dtype="U1") if arm is None else arm.loss_labels(),
+        forearm_loss=forearm.loss_labels(),
         angle=series.angle,
         slide=series.slide,
         axis_direction=series.direction,
@@ -134,35 +137,35 @@ def analyze(recording: Recording, settings: Settings | None = None) -> Analysis:
         keyframes=keyframes,
         interpolated=_compared(modeled, D, series, joint, keyframes, points, screw, wanted),
         points=points,
+        quality=quality,
         warnings=warnings,
     )
 
 
-def _tracked_bodies(
-    recording: Recording, settings: Settings
-) -> tuple[RigidBody | None, RigidBody, tuple[QualityWarning, ...]]:
+class _Bodies(NamedTuple):
+    arm: RigidBody | None
+    forearm: RigidBody
+    quality: tuple[BodyQuality, ...]
+    warnings: tuple[QualityWarning, ...]
+
+
+def _tracked_bodies(recording: Recording, settings: Settings) -> _Bodies:
     arm, forearm = choose_bodies(recording, settings.arm, settings.forearm)
-    warnings = recording.warnings
-    checked: list[RigidBody | None] = []
-    for body in (arm, forearm):
-        if body is None:
-            checked.append(None)
-            continue
-        tracked, found = check_tracking(body, keep_frozen=settings.frozen == "keep")
-        share = 100.0 * float(tracked.tracked.mean()) if tracked.loss.size else 0.0
-        if share < settings.min_tracked_percent or not tracked.tracked.any():
-            reasons = ", ".join(f"{count} {reason}" for reason, count in tracked.loss_counts().items())
+    chosen = (forearm,) if arm is None else (arm, forearm)
+    checked, warnings = check_bodies(recording, chosen, settings)
+    for found in checked:
+        body = found.body
+        share = 100.0 * float(body.tracked.mean()) if body.loss.size else 0.0
+        if share < settings.min_tracked_percent or not body.tracked.any():
+            reasons = ", ".join(f"{count} {reason}" for reason, count in body.loss_counts().items())
             msg = (
-                f"body {body.name!r} is tracked in {share:.1f} % of {tracked.loss.size} frames ({reasons}); at least "
+                f"body {body.name!r} is tracked in {share:.1f} % of {body.loss.size} frames ({reasons}); at least "
                 f"{settings.min_tracked_percent:g} % are needed (--min-tracked)"
             )
             raise AnalysisError(msg)
-        checked.append(tracked)
-        warnings += found
-    proximal, distal = checked
-    if distal is None:  # the forearm is always a body
-        raise AssertionError
-    return proximal, distal, warnings
+    quality = tuple(body_quality(raw, found, recording) for raw, found in zip(chosen, checked, strict=True))
+    proximal = None if arm is None else checked[0].body
+    return _Bodies(proximal, checked[-1].body, quality, (*recording.warnings, *warnings))
 
 
 def _measured_series(D: Float, joint: JointMotion, settings: Settings) -> HelicalSeries:
