@@ -6,10 +6,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from elbowscrew import Recording, RigidBody, Settings, analyze, read_recording
 from elbowscrew.errors import RecordingError, SettingError
 from elbowscrew.geometry.dual_quaternion import conjugate, transform_points
+
+Float = NDArray[np.float64]
 
 HINGES = [
     # file, arm, forearm, range deg, dispersion deg, median slide mm, its 5 and 95 % mm
@@ -131,3 +134,64 @@ def test_one_take_saved_twice_gives_the_same_poses(real_data: Path) -> None:
     assert shared.size > 1000
     for one, other in zip(plain.bodies, excel.bodies, strict=True):
         assert one.dual_quat_lab_body[rows] == pytest.approx(other.dual_quat_lab_body[others], abs=1e-9, nan_ok=True)
+
+
+def gimbal_markers(path: Path) -> tuple[list[str], Float]:
+    """Frames and times as text, and the markers of a stripped Tracking Tools file followed from frame to frame.
+
+    Every row has frame, time, 0, the number of markers, and x, y, z, 0 for each, in an order that changes.
+    """
+    head: list[str] = []
+    positions: list[Float] = []
+    for line in path.read_text().splitlines():
+        cells = line.split(",")
+        head.append(f"{cells[0]},{cells[1]}")
+        values = [float(cell) for cell in cells[4:] if cell]
+        seen = np.array(values[: 4 * (len(values) // 4)]).reshape(-1, 4)[:, :3]
+        if not positions:
+            positions.append(seen)
+            last = seen.copy()
+            continue
+        distance = np.linalg.norm(seen[:, None] - last[None], axis=2)
+        found = np.full_like(last, np.nan)
+        for k in np.argsort(distance.min(axis=1)):
+            nearest = int(np.argmin(distance[k]))
+            if distance[k, nearest] < 0.03 and np.isnan(found[nearest, 0]):
+                found[nearest] = last[nearest] = seen[k]
+        positions.append(found)
+    return head, np.array(positions)
+
+
+@pytest.mark.parametrize(
+    ("name", "arm", "forearm", "top", "mean_deg", "largest_deg", "slide_mm"),
+    [
+        ("Rotation", (0, 3, 4), (2, 5, 6), 41.6, 0.54, 2.2, (0.09, 0.49)),
+        ("Abduction", (4, 5, 7), (0, 1, 2), 24.0, 2.9, 4.5, (-3.3, 0.6)),
+    ],
+)
+def test_gimbal_by_way_of_a_plain_table(
+    real_data: Path, tmp_path: Path, name: str, arm: tuple[int, ...], forearm: tuple[int, ...], top: float,
+    mean_deg: float, largest_deg: float, slide_mm: tuple[float, float],
+) -> None:  # fmt: skip
+    """The recipe of docs/plain-table.md; the figures are of angles above 15 deg.
+
+    The index gives Abduction's slide along the line of the axis markers, -0.6 to 3.3 mm; here the angle is positive.
+    """
+    head, positions = gimbal_markers(real_data / "real" / f"tt2011_gimbal_{name}_stripped.csv")
+    lines = [",".join(["frame,time_s", *(f"marker{k}_{axis}_m" for k in range(positions.shape[1]) for axis in "xyz")])]
+    for k, row in enumerate(positions.reshape(len(positions), -1).tolist()):
+        lines.append(",".join([head[k], *("" if value != value else repr(value) for value in row)]))
+    path = tmp_path / "gimbal.csv"
+    path.write_text("\n".join(lines) + "\n")
+    settings = Settings(
+        arm_markers=tuple(f"marker{k}" for k in arm),
+        forearm_markers=tuple(f"marker{k}" for k in forearm),
+        min_angle_deg=15,
+    )
+    analysis = analyze(read_recording(path, markers=settings.markers), settings)
+    assert np.degrees(np.nanmax(analysis.screw.angle)) == pytest.approx(top, abs=0.06)
+    deviation = np.degrees(analysis.mean_axis.deviation)
+    assert np.nanmean(deviation) == pytest.approx(mean_deg, abs=0.05)
+    assert np.nanmax(deviation) == pytest.approx(largest_deg, abs=0.06)
+    assert 1000 * np.nanmin(analysis.screw.slide) == pytest.approx(slide_mm[0], abs=0.06)
+    assert 1000 * np.nanmax(analysis.screw.slide) == pytest.approx(slide_mm[1], abs=0.06)

@@ -14,7 +14,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 from elbowscrew.errors import UsageError
 from elbowscrew.tables import AngleUnit, LengthUnit
 
-_LISTS: Final = ("keyframes", "figure-format")
+_LISTS: Final = ("keyframes", "figure-format", "arm-markers", "forearm-markers")
 _UNIT_SUFFIXES: Final = ("_deg_s", "_m_s", "_deg", "_mm", "_s", "_percent")
 
 STILL_ARM: Final = "none"
@@ -40,6 +40,11 @@ class Settings(BaseModel):
 
     arm: str | None = Field(None, description="Name or id of the upper arm's body; 'none' if it stands still")
     forearm: str | None = Field(None, description="Name or id of the forearm's body")
+    arm_markers: tuple[str, ...] | None = Field(None, min_length=1, description="Markers of the arm: names or patterns")
+    forearm_markers: tuple[str, ...] | None = Field(
+        None, min_length=1, description="Markers of the forearm: names or patterns"
+    )
+    pose_method: Literal["svd", "dual-qr"] = Field("svd", description="Poses from markers")
     reference: int | None = Field(None, description="Frame all displacements are counted from")
     reference_window: int = Field(1, ge=1, description="Take the mean of so many frames from the reference on")
     express_in: Literal["forearm", "arm", "lab"] = Field("forearm", description="Frame the screw is written in")
@@ -67,6 +72,11 @@ class Settings(BaseModel):
     rotation: Literal["quaternion", "XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX"] | None = Field(
         None, description="Rotation type of a file that states none"
     )
+
+    @property
+    def markers(self) -> tuple[str, ...]:
+        """All markers wanted of the recording."""
+        return (*(self.arm_markers or ()), *(self.forearm_markers or ()))
 
     @property
     def figure_formats(self) -> tuple[str, ...]:

@@ -364,7 +364,7 @@ def test_no_rigid_bodies_says_what_is_there(tmp_path: Path) -> None:
         ("Format Version,1.23".encode("utf-16"), "UTF-16"),
         (b"Format Version,1.23,Take Name,caf\xe9\n\n", "UTF-8"),
         (b"0,0.0,0,8,0.1,0.2\n1,0.01,0,8,0.1,0.2\n", "header is missing"),
-        (b"time;x;y\n", "not an OptiTrack export"),
+        (b"time;x;y\n", "no format that is read"),
         (b"Format Version;1.23;Take Name\n", "header is cut"),
     ],
 )

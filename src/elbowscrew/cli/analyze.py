@@ -33,6 +33,20 @@ def analyze(
     forearm: Annotated[
         str | None, typer.Option(metavar="NAME", rich_help_panel=_BODIES, help="Forearm: name or id.")
     ] = None,
+    arm_markers: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAMES", rich_help_panel=_BODIES, help="Markers of the arm, or patterns; with commas."),
+    ] = None,
+    forearm_markers: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAMES", rich_help_panel=_BODIES, help="Markers of the forearm, or patterns; with commas."
+        ),
+    ] = None,
+    pose_method: Annotated[
+        Literal["svd", "dual-qr"] | None,
+        typer.Option(rich_help_panel=_BODIES, help="Poses from markers.", show_default="svd"),
+    ] = None,
     units: Annotated[
         options.Units | None, typer.Option(rich_help_panel=_BODIES, help="Unit of length, if the file states none.")
     ] = None,
@@ -159,6 +173,9 @@ def analyze(
         {
             "arm": arm,
             "forearm": forearm,
+            "arm_markers": options.names(arm_markers),
+            "forearm_markers": options.names(forearm_markers),
+            "pose_method": pose_method,
             "units": units,
             "rotation": rotation,
             "frozen": frozen,
@@ -184,7 +201,7 @@ def analyze(
     )
     target = output if output is not None else Path(f"{trial.stem}_elbowscrew")
     check_result_folder(target, force=force)  # before the work, not after it
-    recording = read_recording(trial, units=settings.units, rotation=settings.rotation)
+    recording = read_recording(trial, units=settings.units, rotation=settings.rotation, markers=settings.markers)
     analysis = analyze_recording(recording, settings)
     save_analysis(analysis, target, force=force, figure_formats=settings.figure_formats)
     summary = summary_from_analysis(analysis)

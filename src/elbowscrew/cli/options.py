@@ -35,3 +35,10 @@ def frame_numbers(text: str | None) -> tuple[int, ...] | None:
     except ValueError as error:
         msg = f"--keyframes {text!r}: expected frame numbers with commas between them, as in 0,211,449"
         raise UsageError(msg) from error
+
+
+def names(given: list[str] | None) -> tuple[str, ...] | None:
+    """Split names at their commas; an option may be given more than once."""
+    if not given:
+        return None
+    return tuple(name.strip() for text in given for name in text.split(",") if name.strip())

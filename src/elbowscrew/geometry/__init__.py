@@ -3,9 +3,9 @@
 Nothing here knows of time, files, units or names of bodies.
 """
 
-from elbowscrew.geometry import dual_quaternion, quaternion
+from elbowscrew.geometry import dual_matrix, dual_quaternion, quaternion
 from elbowscrew.geometry.interpolation import dlb, lagrange_weights, sclerp, sdlb
-from elbowscrew.geometry.registration import pose_from_points
+from elbowscrew.geometry.registration import FittedPose, fit_poses, fit_poses_dual_qr, pose_from_points
 from elbowscrew.geometry.screw import (
     Screw,
     dual_quat_from_screw,
@@ -15,10 +15,14 @@ from elbowscrew.geometry.screw import (
 )
 
 __all__ = [
+    "FittedPose",
     "Screw",
     "dlb",
+    "dual_matrix",
     "dual_quat_from_screw",
     "dual_quaternion",
+    "fit_poses",
+    "fit_poses_dual_qr",
     "lagrange_weights",
     "line_through",
     "point_nearest_origin",

@@ -1,40 +1,138 @@
-"""Pose of a body from the positions of its markers."""
+"""Pose of a body from the positions of its markers: by least squares, or the paper's way."""
 
 from __future__ import annotations
+
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from elbowscrew.geometry.dual_quaternion import dual_quat_from_pose
+from elbowscrew.geometry import dual_matrix
+from elbowscrew.geometry.dual_matrix import DualMatrix
+from elbowscrew.geometry.dual_quaternion import dual_quat_from_pose, transform_points
 from elbowscrew.geometry.quaternion import quat_from_rotation_matrix
 
+Float = NDArray[np.float64]
 
-def pose_from_points(body_points: ArrayLike, points: ArrayLike) -> NDArray[np.float64]:
-    """Least-squares pose of rigid point sets, by singular value decomposition with the reflection guard.
+# Markers this much closer to a line (or to a plane) than long give no pose: their spread across it is noise.
+_FLATNESS: Final = 1e-3
+
+
+class FittedPose(NamedTuple):
+    """Poses fitted to markers.
+
+    Attributes
+    ----------
+    dual_quat : ndarray, shape (..., 8)
+        NaN where the markers seen do not fix a pose.
+    deviation : ndarray, shape (...)
+        How far the markers are from rigid: `fit_poses` gives the RMS distance, in the unit of length,
+        `fit_poses_dual_qr` the distance of the triangular factor from the identity, a pure number.
+    """
+
+    dual_quat: Float
+    deviation: Float
+
+
+def pose_from_points(body_points: ArrayLike, points: ArrayLike) -> Float:
+    """Least-squares poses, shape (..., 8), of the same markers in the body and as seen; see `fit_poses`."""
+    return fit_poses(body_points, points).dual_quat
+
+
+def fit_poses(body_points: ArrayLike, points: ArrayLike) -> FittedPose:
+    """Least-squares poses of rigid point sets, by singular value decomposition with the reflection guard.
 
     Parameters
     ----------
     body_points : array_like, shape (M, 3)
-        The markers in the body's own frame; at least three, not on one line.
+        The markers in the body's own frame.
     points : array_like, shape (..., M, 3)
-        The same markers as seen, all of them.
+        The same markers as seen; NaN for those not seen. At least three, not on one line, must be seen.
 
     Returns
     -------
-    ndarray, shape (..., 8)
-        Unit dual quaternions that map body coordinates to the seen ones with the least sum of squared distances.
+    FittedPose
 
     References
     ----------
     Arun, Huang and Blostein 1987; Söderkvist and Wedin 1993.
     """
-    body = np.asarray(body_points, dtype=np.float64)
     seen = np.asarray(points, dtype=np.float64)
-    body_mean, seen_mean = body.mean(axis=-2), seen.mean(axis=-2)
-    covariance = np.swapaxes(seen - seen_mean[..., None, :], -1, -2) @ (body - body_mean)
-    U, _, Vt = np.linalg.svd(covariance)
+    body, target, weight, centers = _centered(body_points, seen)
+    U, _, Vt = np.linalg.svd(np.swapaxes(target, -1, -2) @ body)
     guard = np.ones(U.shape[:-1])
     guard[..., 2] = np.sign(np.linalg.det(U @ Vt))
     rotation = (U * guard[..., None, :]) @ Vt
-    position = seen_mean - (rotation @ body_mean[:, None])[..., 0]
-    return dual_quat_from_pose(quat_from_rotation_matrix(rotation), position)
+    spread = np.linalg.svd(body, compute_uv=False)
+    fixed = (weight.sum(axis=-1) >= 3) & (spread[..., 1] > _FLATNESS * spread[..., 0])
+    position = centers[1] - (rotation @ centers[0][..., None])[..., 0]
+    pose = _masked(rotation, position, fixed)
+    square = np.sum((seen - transform_points(pose[..., None, :], body_points)) ** 2, axis=-1)
+    counted = np.isfinite(square)
+    mean = np.where(counted, square, 0.0).sum(axis=-1) / np.maximum(counted.sum(axis=-1), 1)
+    return FittedPose(pose, np.where(fixed, np.sqrt(mean), np.nan))
+
+
+def fit_poses_dual_qr(body_points: ArrayLike, points: ArrayLike) -> FittedPose:
+    """Poses by the dual pseudoinverse and dual QR decomposition of line vectors through the centroid.
+
+    It favors the body's first axis, and needs at least four markers that are not in one plane.
+
+    Parameters and result as in `fit_poses`, but for the deviation: Frobenius norm of ``R - I``.
+
+    References
+    ----------
+    P 22-29.
+    """
+    seen = np.asarray(points, dtype=np.float64)
+    body, target, weight, (body_center, center) = _centered(body_points, seen)
+    spread = np.linalg.svd(body, compute_uv=False)
+    fixed = (weight.sum(axis=-1) >= 4) & (spread[..., 2] > _FLATNESS * spread[..., 0])
+    # Where the markers do not fix a pose, any regular set stands in, and the result is taken out again.
+    stand_in = np.zeros_like(body)
+    stand_in[..., :3, :] = np.eye(3)
+    body = np.where(fixed[..., None, None], body, stand_in)
+    before = _line_vectors(body, body_center)
+    after = _line_vectors(target, center)
+    Q, R = dual_matrix.qr(dual_matrix.multiply(after, dual_matrix.pseudoinverse(before)))
+    deviation = np.sqrt(np.sum((R.real - np.eye(3)) ** 2, axis=(-1, -2)))
+    rotation = np.where(fixed[..., None, None], Q.real, np.eye(3))
+    # Q = R + eps [d]x R: the translation stands in Q_dual Q_real^T.
+    cross = Q.dual @ np.swapaxes(Q.real, -1, -2)
+    position = 0.5 * np.stack(
+        [
+            cross[..., 2, 1] - cross[..., 1, 2],
+            cross[..., 0, 2] - cross[..., 2, 0],
+            cross[..., 1, 0] - cross[..., 0, 1],
+        ],
+        axis=-1,
+    )
+    mirrored = np.linalg.det(np.where(np.isfinite(rotation), rotation, np.eye(3))) < 0.0
+    fixed &= ~mirrored
+    return FittedPose(_masked(rotation, position, fixed), np.where(fixed, deviation, np.nan))
+
+
+def _centered(body_points: ArrayLike, seen: Float) -> tuple[Float, Float, Float, tuple[Float, Float]]:
+    """Markers about their centroids, those not seen at zero: body, seen, weights (..., M) and the two centroids."""
+    weight: Float = np.min(np.isfinite(seen).astype(np.float64), axis=-1)
+    body = np.broadcast_to(np.asarray(body_points, dtype=np.float64), seen.shape)
+    target = np.where(weight[..., None] > 0.0, seen, 0.0)
+    count = np.maximum(weight.sum(axis=-1), 1.0)[..., None]
+    centers = (np.sum(weight[..., None] * body, axis=-2) / count, np.sum(target, axis=-2) / count)
+    return (
+        weight[..., None] * (body - centers[0][..., None, :]),
+        weight[..., None] * (target - centers[1][..., None, :]),
+        weight,
+        centers,
+    )
+
+
+def _line_vectors(centered: Float, center: Float) -> DualMatrix:
+    """Line vectors from the centroid to the markers, as columns (P 23, 26)."""
+    moments = np.cross(center[..., None, :], centered)
+    return dual_matrix.transpose(DualMatrix(centered, moments))
+
+
+def _masked(rotation: Float, position: Float, fixed: NDArray[np.bool_]) -> Float:
+    pose = dual_quat_from_pose(quat_from_rotation_matrix(rotation), position)
+    return np.where(fixed[..., None], pose, np.nan)

@@ -10,36 +10,45 @@ from numpy.typing import NDArray
 from elbowscrew.errors import RecordingError, SettingError
 from elbowscrew.geometry import quaternion
 from elbowscrew.io.cells import Growing, parse_number, read_blocks
+from elbowscrew.io.clock import check_frames, is_rate, rate_of
 from elbowscrew.io.motive_bodies import BodyBuilder, sample_bodies
-from elbowscrew.io.motive_header import BodyColumns, Header, body_columns, parse_header
+from elbowscrew.io.motive_header import BodyColumns, Header, body_columns, marker_columns, parse_header
+from elbowscrew.io.options import ReadOptions
 from elbowscrew.io.source import TextSource
-from elbowscrew.model import QualityWarning, Recording, Source
+from elbowscrew.model import Marker, QualityWarning, Recording, Source
 from elbowscrew.tables import METERS
 
 Float = NDArray[np.float64]
 
 _UNIT_NAMES: Final = {"meters": "m", "centimeters": "cm", "millimeters": "mm"}
-_LATEST_TIME_S: Final = 1e10
-_LOWEST_HZ: Final = 1e-3
-_HIGHEST_HZ: Final = 1e6
 _KNOWN_VERSIONS: Final = ("1.1", "1.2", "1.21", "1.22", "1.23", "1.24", "1.25")
 
 
-def read(source: TextSource, units: str | None, rotation: str | None) -> Recording:
+def recognizes(cells: list[str]) -> bool:
+    """Tell by the first cell."""
+    return cells[0] == "format version"
+
+
+def read(source: TextSource, options: ReadOptions) -> Recording:
     """Read a file of the column layout; see `elbowscrew.io.reading.read_recording`."""
     header = parse_header(source)
-    bodies = body_columns(source, header)
-    unit = _length_unit(source, header, units)
-    order = _rotation_type(source, header, bodies, rotation)
+    wanted = marker_columns(source, header, options)
+    bodies = body_columns(source, header, needed=not wanted)
+    unit = _length_unit(source, header, options.units)
+    order = _rotation_type(source, header, bodies, options.rotation) if bodies else ""
     samples = sample_bodies(source, header, bodies, METERS[unit], order)
     builders = [BodyBuilder(body, METERS[unit], order, sample) for body, sample in zip(bodies, samples, strict=True)]
-    columns = sorted({0, 1}.union(*(builder.columns for builder in builders)))
+    columns = sorted({0, 1}.union(*(builder.columns for builder in builders), *wanted.values()))
+    place = {column: k for k, column in enumerate(columns)}
     frames, times = Growing(dtype=np.int64), Growing()
+    positions = {name: Growing((3,)) for name in wanted}
     line = header.lines
     for block in read_blocks(source, header.lines, columns, header.width):
-        frame, time_s = _frames(source, line, block)
-        frames.append(frame)
-        times.append(time_s)
+        check_frames(source, line, block)
+        frames.append(block[:, 0].astype(np.int64))
+        times.append(block[:, 1])
+        for name, triple in wanted.items():
+            positions[name].append(METERS[unit] * block[:, [place[k] for k in triple]])
         for builder in builders:
             builder.append(block, columns)
         line += len(block)
@@ -55,6 +64,7 @@ def read(source: TextSource, units: str | None, rotation: str | None) -> Recordi
         frame=frame,
         time_s=time_s,
         rate_hz=rate,
+        markers=tuple(Marker(name=name, position=kept.finish()) for name, kept in positions.items()),
         source=Source(
             path=str(source.path),
             sha256=source.sha256,
@@ -113,19 +123,6 @@ def _rotation_type(source: TextSource, header: Header, bodies: tuple[BodyColumns
     return order
 
 
-def _frames(source: TextSource, line: int, block: Float) -> tuple[NDArray[np.int64], Float]:
-    frame, time_s = block[:, 0], block[:, 1]
-    bad = ~((np.abs(frame) < 2**53) & (np.abs(time_s) < _LATEST_TIME_S)) | (np.nan_to_num(frame) % 1.0 != 0.0)
-    if bad.any():
-        row = int(np.flatnonzero(bad)[0])
-        msg = (
-            f"{source.path}:{line + row + 1}: expected a whole frame number and a time, found {frame[row]:g} and "
-            f"{time_s[row]:g} (nan is a blank cell)"
-        )
-        raise RecordingError(msg)
-    return frame.astype(np.int64), time_s
-
-
 def _rate(
     source: TextSource, header: Header, frame: NDArray[np.int64], time_s: Float
 ) -> tuple[float, list[QualityWarning]]:
@@ -134,14 +131,13 @@ def _rate(
         rate = parse_number(stated.replace(",", "."))
     except ValueError:
         rate = float("nan")
-    span = time_s[-1] - time_s[0]
-    counted = float((frame[-1] - frame[0]) / span) if span > 0.0 else float("nan")
-    plausible = [value for value in (counted, rate) if _LOWEST_HZ <= value <= _HIGHEST_HZ]
+    counted = rate_of(frame, time_s)
+    plausible = [value for value in (counted, rate) if is_rate(value)]
     if not plausible:
         msg = f"{source.path}: neither the header nor the times give a possible frame rate; export the take again"
         raise RecordingError(msg)
     # A time rounded to milliseconds at either end is no disagreement.
-    if len(plausible) == 2 and abs(counted - rate) <= rate * (0.01 + 2e-3 / span):
+    if len(plausible) == 2 and abs(counted - rate) <= rate * (0.01 + 2e-3 / (time_s[-1] - time_s[0])):
         return rate, []
     if np.isfinite(rate) and counted == plausible[0]:
         message = f"the header states {rate:g} frames a second, the time column gives {counted:.4g}: the latter is used"

@@ -10,6 +10,7 @@ from itertools import islice
 from typing import Final
 
 from elbowscrew.errors import RecordingError
+from elbowscrew.io.options import ReadOptions
 from elbowscrew.io.source import TextSource
 
 _HEADER_LINES: Final = 25
@@ -138,18 +139,25 @@ def _label_rows(source: TextSource, rows: list[list[str]], axis_row: int) -> dic
     return dict(zip(("type", "name", "id"), candidates, strict=False))
 
 
-def body_columns(source: TextSource, header: Header) -> tuple[BodyColumns, ...]:
-    """Group the columns of the rigid bodies by id and name, taking every column by its label."""
+def body_columns(source: TextSource, header: Header, *, needed: bool = True) -> tuple[BodyColumns, ...]:
+    """Group the columns of the rigid bodies by id and name, taking every column by its label.
+
+    Raises
+    ------
+    RecordingError
+        If there is none but one is needed, or one is not whole.
+    """
     groups: dict[tuple[str, str], list[ColumnKey]] = {}
     for column in header.columns:
         if column.kind.casefold() == "rigid body":
             groups.setdefault((column.identifier, column.name), []).append(column)
-    if not groups:
+    if not groups and needed:
         kinds = sorted({column.kind for column in header.columns[2:] if column.kind})
         found = ", ".join(kinds) if kinds else "no data columns at all"
+        or_markers = ", or give --arm-markers and --forearm-markers" if "Marker" in kinds else ""
         msg = (
             f"{source.path}: no rigid bodies in the file (found: {found}); in Motive, solve the bodies and tick "
-            "'Rigid Bodies' in the export"
+            f"'Rigid Bodies' in the export{or_markers}"
         )
         raise RecordingError(msg)
     bodies = []
@@ -175,6 +183,28 @@ def body_columns(source: TextSource, header: Header) -> tuple[BodyColumns, ...]:
             )
         )
     return tuple(bodies)
+
+
+def marker_columns(source: TextSource, header: Header, options: ReadOptions) -> dict[str, tuple[int, ...]]:
+    """X, Y and Z columns of the markers asked for, by name.
+
+    Raises
+    ------
+    RecordingError
+        If two markers of one name are asked for: they cannot be told apart.
+    """
+    labelled: dict[str, dict[str, int]] = {}
+    for column in header.columns:
+        if column.kind.casefold() == "marker" and column.field == "position" and options.wants(column.name):
+            if column.axis in labelled.setdefault(column.name, {}):
+                msg = (
+                    f"{source.path}: marker {column.name!r} stands twice in the file; name the markers apart in Motive"
+                )
+                raise RecordingError(msg)
+            labelled[column.name][column.axis] = column.index
+    return {
+        name: tuple(axes[axis] for axis in "XYZ") for name, axes in labelled.items() if {"X", "Y", "Z"} <= set(axes)
+    }
 
 
 def _marker_columns(

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
 from typing import Final
 
 from elbowscrew.errors import RecordingError, UsageError
-from elbowscrew.io import motive_columns, row_tagged
+from elbowscrew.io import c3d, motive_columns, plain_table, row_tagged, trc
 from elbowscrew.io.cells import parse_number
-from elbowscrew.io.source import TextSource, open_source
+from elbowscrew.io.options import ReadOptions
+from elbowscrew.io.source import TextSource, first_bytes, open_source
 from elbowscrew.model import Recording
 from elbowscrew.tables import METERS
 
@@ -25,34 +26,44 @@ class Format:
     ----------
     name : str
     recognizes : callable
-        Told the first cell of the file, in lower case and without quotes.
+        Told the cells of the first line with any content, in lower case.
     read : callable
-        Told the source, the unit of length and the rotation type the user gave, if any.
     """
 
     name: str
-    recognizes: Callable[[str], bool]
-    read: Callable[[TextSource, str | None, str | None], Recording]
+    recognizes: Callable[[list[str]], bool]
+    read: Callable[[TextSource, ReadOptions], Recording]
 
 
 FORMATS: Final = (
-    Format(name="row-tagged", recognizes=lambda cell: cell in row_tagged.TAGS, read=row_tagged.read),
-    Format(name="Motive columns", recognizes=lambda cell: cell == "format version", read=motive_columns.read),
+    Format(name="Motive columns", recognizes=motive_columns.recognizes, read=motive_columns.read),
+    Format(name="plain table", recognizes=plain_table.recognizes, read=plain_table.read),
+    Format(name="TRC", recognizes=trc.recognizes, read=trc.read),
+    Format(name="row-tagged", recognizes=row_tagged.recognizes, read=row_tagged.read),
 )
-"""A new format is one module with a `read` and one entry here; the first that recognizes the file reads it."""
+"""A new text format is one module with `recognizes` and `read` and one entry here; the first that fits reads it."""
 
 
-def read_recording(path: str | os.PathLike[str], *, units: str | None = None, rotation: str | None = None) -> Recording:
-    """Read an OptiTrack export.
+def read_recording(
+    path: str | os.PathLike[str],
+    *,
+    units: str | None = None,
+    rotation: str | None = None,
+    markers: Sequence[str] = (),
+) -> Recording:
+    """Read a recording.
 
     Parameters
     ----------
     path : path-like
-        Motive's column layout (1.2 to 1.25) or the row-tagged layout (1.0, 1.1) of Tracking Tools.
+        An OptiTrack export (Motive's column layout 1.1 to 1.25, the row-tagged layout 1.0 and 1.1), a plain table, a
+        TRC file, or a C3D file (with the extra ``[c3d]``).
     units : {"m", "cm", "mm"}, optional
         Unit of length, for a file that states none. A file's own statement is not overruled.
     rotation : str, optional
         "quaternion" or an Euler order such as "XYZ", for a file that states none.
+    markers : sequence of str, optional
+        Names of markers to read, or patterns such as "Arm*"; none by default.
 
     Returns
     -------
@@ -63,29 +74,34 @@ def read_recording(path: str | os.PathLike[str], *, units: str | None = None, ro
     RecordingError
         If the file cannot be read safely; the message says where and why.
     SettingError
-        If the file lacks a statement that `units` or `rotation` must supply, or they contradict it.
+        If the file lacks a statement that `units` or `rotation` must supply, or they contradict it; if it has markers
+        only and none are asked for.
     UsageError
         If `units` is no possible one.
     """
     if units is not None and units not in METERS:
         msg = f"units: expected one of {', '.join(METERS)}, found {units!r}"
         raise UsageError(msg)
-    source = open_source(Path(path))
+    options = ReadOptions(units=units, rotation=rotation, markers=tuple(markers))
+    place = Path(path)
+    if c3d.recognizes(first_bytes(place, 2)):
+        return c3d.read(place, options)
+    source = open_source(place)
     first_line = next((line for line in islice(source.lines(), 20) if line.strip(", ;\t")), "")
-    first_cell = first_line.split(source.delimiter)[0].strip().strip('"').strip().casefold()
+    cells = [cell.strip().strip('"').strip().casefold() for cell in first_line.split(source.delimiter)]
     for entry in FORMATS:
-        if entry.recognizes(first_cell):
-            return entry.read(source, units, rotation)
-    raise RecordingError(_refusal(source, first_line, first_cell))
+        if entry.recognizes(cells):
+            return entry.read(source, options)
+    raise RecordingError(_refusal(source, cells[0]))
 
 
-def _refusal(source: TextSource, first_line: str, first_cell: str) -> str:
+def _refusal(source: TextSource, first_cell: str) -> str:
     try:
         parse_number(first_cell)
     except ValueError:
         return (
-            f"{source.path}:1: not an OptiTrack export: expected 'Format Version' or a row tag such as 'comment' in "
-            f"the first cell, found {first_cell[:40]!r}"
+            f"{source.path}:1: no format that is read: expected 'Format Version', a row tag such as 'comment', or "
+            f"'frame,time_s' in the first cells, found {first_cell[:40]!r}"
         )
     return (
         f"{source.path}:1: the header is missing (the file begins with a number), so nothing says what the columns "

@@ -12,6 +12,8 @@ from numpy.typing import NDArray
 
 from elbowscrew.errors import RecordingError, SettingError
 from elbowscrew.io.cells import parse_number
+from elbowscrew.io.clock import LAST_FRAME, LATEST_TIME_S, counted_rate
+from elbowscrew.io.options import ReadOptions
 from elbowscrew.io.source import TextSource
 from elbowscrew.model import QualityWarning, Recording, RigidBody, Source, TrackingLoss, invalid_warning
 
@@ -19,7 +21,6 @@ TAGS: Final = ("comment", "info", "righthanded", "lefthanded", "frame", "trackab
 _DEFINITIONS: Final = ("trackable", "rigidbody")
 _BODY_CELLS: Final = 11  # id, x, y, z, qx, qy, qz, qw, yaw, pitch, roll
 _OLD_VERSION: Final = "1.0"
-_LATEST_TIME_S: Final = 1e10
 
 
 @dataclass(slots=True)
@@ -35,13 +36,18 @@ class _Parsed:
     poses: dict[int, list[tuple[int, list[float]]]] = field(default_factory=dict)
 
 
-def read(source: TextSource, units: str | None, rotation: str | None) -> Recording:
+def recognizes(cells: list[str]) -> bool:
+    """Tell by the tag in the first cell."""
+    return cells[0] in TAGS
+
+
+def read(source: TextSource, options: ReadOptions) -> Recording:
     """Read a file of the row-tagged layout; see `elbowscrew.io.reading.read_recording`.
 
     Positions are meters, quaternions x, y, z, w. A body that is missing from a frame's row was not tracked; the
     extended rows, which repeat its last pose then, are not used.
     """
-    if units not in (None, "m") or rotation not in (None, "quaternion"):
+    if options.units not in (None, "m") or options.rotation not in (None, "quaternion"):
         msg = "units and rotation: the row-tagged layout has always meters and quaternions; leave both options out"
         raise SettingError(msg)
     parsed = _parse(source)
@@ -97,7 +103,7 @@ def _looks_decimal(cell: str) -> bool:
 
 def _integer(text: str) -> int:
     value = _finite(text)
-    if abs(value) >= 2**53 or value != int(value):
+    if abs(value) >= LAST_FRAME or value != int(value):
         msg = f"expected a whole number, found {text[:40]!r}"
         raise ValueError(msg)
     return int(value)
@@ -125,7 +131,7 @@ def _parse_frame(parsed: _Parsed, row: list[str]) -> None:
             raise ValueError(msg)
         seen.add(identifier)
         parsed.poses.setdefault(identifier, []).append((index, [_finite(cell) for cell in cells[1:8]]))
-    if abs(time_s) > _LATEST_TIME_S:
+    if abs(time_s) > LATEST_TIME_S:
         msg = f"expected a time in seconds, found {time_s:g}"
         raise ValueError(msg)
     parsed.frame.append(frame)
@@ -158,11 +164,7 @@ def _build(source: TextSource, parsed: _Parsed) -> Recording:
     bodies = [_body(parsed, identifier, frame.size) for identifier in parsed.names]
     invalid = {body.name: int((body.loss == TrackingLoss.INVALID).sum()) for body in bodies}
     warnings = [invalid_warning(name, count) for name, count in invalid.items() if count]
-    span = time_s[-1] - time_s[0]
-    rate = float((frame[-1] - frame[0]) / span) if span > 0.0 else 0.0
-    if not rate > 0.0:
-        msg = f"{source.path}: frame numbers and times do not increase from the first to the last row"
-        raise RecordingError(msg)
+    rate = counted_rate(source.path, frame, time_s)
     stated = parsed.info.get("framecount", "")
     if stated and stated != str(frame.size):
         message = f"the file states {stated} frames and has {frame.size}"

@@ -88,6 +88,17 @@ class TextSource:
             raise RecordingError(msg) from error
 
 
+def first_bytes(path: Path, count: int) -> bytes:
+    """Read the first bytes of a file; none if it is no regular file or cannot be read, which `open_source` tells."""
+    try:
+        if not path.is_file():
+            return b""
+        with path.open("rb") as stream:
+            return stream.read(count)
+    except (OSError, ValueError):
+        return b""
+
+
 def open_source(path: Path) -> TextSource:
     """Check that a file is there and is text.
 

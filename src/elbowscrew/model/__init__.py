@@ -1,7 +1,16 @@
 """What flows through the program: recordings in, results out; frozen, in SI units and radians."""
 
 from elbowscrew.model.quality import BodyQuality, ClockQuality, Spread
-from elbowscrew.model.recording import QualityWarning, Recording, RigidBody, Source, TrackingLoss, invalid_warning
+from elbowscrew.model.recording import (
+    Marker,
+    QualityWarning,
+    Recording,
+    RigidBody,
+    Source,
+    TrackingLoss,
+    invalid_warning,
+    marker_matches,
+)
 from elbowscrew.model.results import (
     Analysis,
     BodyPoints,
@@ -20,6 +29,7 @@ __all__ = [
     "InterpolatedMotion",
     "JointMotion",
     "Keyframes",
+    "Marker",
     "MeanAxis",
     "QualityWarning",
     "Recording",
@@ -29,4 +39,5 @@ __all__ = [
     "Spread",
     "TrackingLoss",
     "invalid_warning",
+    "marker_matches",
 ]

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import IntEnum
+from fnmatch import fnmatchcase
 from typing import Final, Literal
 
 import numpy as np
@@ -164,6 +165,20 @@ class RigidBody:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Marker:
+    """One marker: its name and its positions in the laboratory, shape (N, 3), meters; NaN where not seen."""
+
+    name: str
+    position: Float
+
+
+def marker_matches(name: str, patterns: Iterable[str]) -> bool:
+    """Whether a name is one of the names, or fits one of the patterns (``*``, ``?``, ``[...]``), in any case."""
+    folded = name.casefold()
+    return any(folded == pattern.casefold() or fnmatchcase(folded, pattern.casefold()) for pattern in patterns)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Source:
     """Where a recording came from."""
 
@@ -189,12 +204,15 @@ class Recording:
         Times of the file, seconds.
     rate_hz : float
         Frames per second.
+    markers : tuple of Marker
+        Those that were asked for.
     """
 
     bodies: tuple[RigidBody, ...]
     frame: NDArray[np.int64]
     time_s: Float
     rate_hz: float
+    markers: tuple[Marker, ...] = ()
     source: Source | None = None
     warnings: tuple[QualityWarning, ...] = ()
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowscrew.errors import AnalysisError
+from elbowscrew.errors import AnalysisError, SettingError
 from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat
 from elbowscrew.model import (
     Analysis,
@@ -33,6 +34,7 @@ from elbowscrew.motion.difference import (
 from elbowscrew.motion.helical import HelicalSeries, helical_series
 from elbowscrew.motion.keyframes import choose_rows, keyframes_at, row_of_frame
 from elbowscrew.motion.laws import LAWS
+from elbowscrew.motion.marker_poses import body_from_markers
 from elbowscrew.motion.mean_axis import mean_axis_of
 from elbowscrew.motion.modeling import METHODS, ModeledPoses, model_motion
 from elbowscrew.motion.quality import body_quality, check_bodies
@@ -142,6 +144,25 @@ def analyze(recording: Recording, settings: Settings | None = None) -> Analysis:
     )
 
 
+def _chosen_bodies(recording: Recording, settings: Settings) -> tuple[RigidBody | None, RigidBody]:
+    """Choose arm and forearm among the bodies of the file and those built from markers."""
+    built = {
+        role: body_from_markers(recording, f"{role} markers", patterns, settings.pose_method)
+        for role, patterns in (("arm", settings.arm_markers), ("forearm", settings.forearm_markers))
+        if patterns is not None
+    }
+    for role, body in built.items():
+        if getattr(settings, role) is not None:
+            msg = f"--{role} and --{role}-markers both say what the {role} is; give one of them (for {body.name!r})"
+            raise SettingError(msg)
+    names = {role: built[role].name if role in built else getattr(settings, role) for role in ("arm", "forearm")}
+    bodies = (*recording.bodies, *built.values())
+    if not bodies:
+        msg = "the recording has no rigid bodies and no markers were chosen: give --arm-markers and --forearm-markers"
+        raise SettingError(msg)
+    return choose_bodies(replace(recording, bodies=bodies), names["arm"], names["forearm"])
+
+
 class _Bodies(NamedTuple):
     arm: RigidBody | None
     forearm: RigidBody
@@ -150,7 +171,7 @@ class _Bodies(NamedTuple):
 
 
 def _tracked_bodies(recording: Recording, settings: Settings) -> _Bodies:
-    arm, forearm = choose_bodies(recording, settings.arm, settings.forearm)
+    arm, forearm = _chosen_bodies(recording, settings)
     chosen = (forearm,) if arm is None else (arm, forearm)
     checked, warnings = check_bodies(recording, chosen, settings)
     for found in checked:

@@ -1,0 +1,64 @@
+"""Frame numbers, times and rates that a file may have."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowscrew.errors import RecordingError
+from elbowscrew.io.source import TextSource
+
+Float = NDArray[np.float64]
+
+LATEST_TIME_S: Final = 1e10
+LAST_FRAME: Final = 2**53
+_LOWEST_HZ: Final = 1e-3
+_HIGHEST_HZ: Final = 1e6
+
+
+def check_frames(source: TextSource, line: int, block: Float) -> None:
+    """Check the first two columns of a block that begins behind a line.
+
+    Raises
+    ------
+    RecordingError
+        If one is no whole frame number or no time.
+    """
+    frame, time_s = block[:, 0], block[:, 1]
+    bad = ~((np.abs(frame) < LAST_FRAME) & (np.abs(time_s) < LATEST_TIME_S)) | (np.nan_to_num(frame) % 1.0 != 0.0)
+    if bad.any():
+        row = int(np.flatnonzero(bad)[0])
+        msg = (
+            f"{source.path}:{line + row + 1}: expected a whole frame number and a time, found {frame[row]:g} and "
+            f"{time_s[row]:g} (nan is a blank cell); export the take again"
+        )
+        raise RecordingError(msg)
+
+
+def is_rate(value: float) -> bool:
+    """Whether a number can be a frame rate, in hertz."""
+    return _LOWEST_HZ <= value <= _HIGHEST_HZ
+
+
+def rate_of(frame: NDArray[np.int64], time_s: Float) -> float:
+    """Frames a second from the first row to the last; NaN if they do not increase."""
+    span = time_s[-1] - time_s[0]
+    return float((frame[-1] - frame[0]) / span) if span > 0.0 else float("nan")
+
+
+def counted_rate(path: Path, frame: NDArray[np.int64], time_s: Float) -> float:
+    """Frames a second, of a file that states no rate.
+
+    Raises
+    ------
+    RecordingError
+        If frame numbers and times do not give a possible one.
+    """
+    rate = rate_of(frame, time_s)
+    if not is_rate(rate):
+        msg = f"{path}: frame numbers and times do not increase from the first to the last row as a clock does"
+        raise RecordingError(msg)
+    return rate

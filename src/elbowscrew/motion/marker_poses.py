@@ -1,0 +1,97 @@
+"""Rigid bodies out of markers, for recordings without solved bodies."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowscrew.errors import SettingError
+from elbowscrew.geometry import FittedPose, fit_poses, fit_poses_dual_qr
+from elbowscrew.geometry.dual_quaternion import conjugate, transform_points
+from elbowscrew.model import Recording, RigidBody, TrackingLoss, marker_matches
+
+Float = NDArray[np.float64]
+
+_REFINEMENTS: Final = 2
+
+POSE_METHODS: Final[dict[str, tuple[Callable[[Float, Float], FittedPose], int]]] = {
+    "svd": (fit_poses, 3),
+    "dual-qr": (fit_poses_dual_qr, 4),
+}
+"""Each with the fewest markers it needs."""
+
+
+def body_from_markers(recording: Recording, name: str, patterns: tuple[str, ...], method: str) -> RigidBody:
+    """Build a rigid body from some of a recording's markers, its origin at their centroid.
+
+    Parameters
+    ----------
+    recording : Recording
+        Read with these markers.
+    name : str
+        Name of the body.
+    patterns : tuple of str
+        Names of the markers, or patterns that fit them.
+    method : {"svd", "dual-qr"}
+
+    Raises
+    ------
+    SettingError
+        If too few markers fit, or no frame sees all of them.
+
+    References
+    ----------
+    P 22-29.
+    """
+    fit, fewest = POSE_METHODS[method]
+    chosen = [marker for marker in recording.markers if marker_matches(marker.name, patterns)]
+    if len(chosen) < fewest:
+        found = ", ".join(marker.name for marker in chosen) or "none"
+        msg = f"{name}: {', '.join(patterns)!r} fits {len(chosen)} markers ({found}); {method} needs {fewest}"
+        raise SettingError(msg)
+    seen = np.stack([marker.position for marker in chosen], axis=1)
+    shape = cluster_shape(seen)
+    if shape is None:
+        names = ", ".join(marker.name for marker in chosen)
+        msg = f"{name}: in no frame all of its markers are seen ({names}); leave out those that are seldom seen"
+        raise SettingError(msg)
+    fitted = fit(shape, seen)
+    lost = ~np.isfinite(fitted.dual_quat).all(axis=1)
+    residual = fitted.deviation if method == "svd" else fit_poses(shape, seen).deviation
+    return RigidBody(
+        name=name,
+        dual_quat_lab_body=fitted.dual_quat,
+        loss=np.where(lost, TrackingLoss.BLANK, TrackingLoss.NONE).astype(np.uint8),
+        marker_offsets=shape,
+        marker_residual=residual,
+    )
+
+
+def cluster_shape(seen: Float) -> Float | None:
+    """Mean shape of a marker cluster, shape (M, 3), about its centroid and turned as in the first whole frame.
+
+    Parameters
+    ----------
+    seen : ndarray, shape (N, M, 3)
+        NaN where not seen.
+
+    Returns
+    -------
+    ndarray or None
+        None if no frame sees all markers.
+    """
+    whole = seen[np.isfinite(seen).all(axis=(1, 2))]
+    if not len(whole):
+        return None
+    shape: Float = whole[0] - whole[0].mean(axis=0)
+    for _ in range(_REFINEMENTS):
+        pose = fit_poses(shape, whole).dual_quat
+        if not np.isfinite(pose).all():
+            return shape
+        in_body = transform_points(conjugate(pose)[:, None, :], whole)
+        shape = in_body.mean(axis=0)
+        shape = shape - shape.mean(axis=0)
+    return shape
