@@ -26,12 +26,11 @@ def markers_of(R: Float, p: Float) -> Float:
 
 ARM, FOREARM = markers_of(TRIAL.arm_R, TRIAL.arm_p), markers_of(TRIAL.forearm_R, TRIAL.forearm_p)
 MARKERS = {f"UA{k + 1}": ARM[:, k] for k in range(4)} | {f"FA{k + 1}": FOREARM[:, k] for k in range(4)}
+Change = dict[tuple[int, int], str]
 CHOICE: dict[str, Any] = {"arm_markers": ("ua?",), "forearm_markers": ("FA1", "FA2", "FA[34]")}
 
 
-def table(
-    path: Path, *, bodies: bool, markers: bool, unit: str = "m", change: dict[tuple[int, int], str] | None = None
-) -> Path:
+def table(path: Path, *, bodies: bool, markers: bool, unit: str = "m", change: Change | None = None) -> Path:
     scale = {"m": 1.0, "cm": 100.0, "mm": 1000.0}[unit]
     names, columns = ["frame", "time_s"], [np.arange(80.0)[:, None], np.arange(80.0)[:, None] / 100]
     if bodies:

@@ -1,0 +1,141 @@
+"""Feed mutated files of every format to the readers and the analysis: run ``python benchmarks/fuzz_readers.py COUNT``.
+
+Coverage-guided by atheris (``pip install atheris``). The only error a file may cause is ElbowscrewError, every file
+must be done with in seconds, and what comes back must be whole: finite poses of unit length where a frame counts as
+tracked, NaN where not, numbers in the analysis where it says so.
+"""
+
+from __future__ import annotations
+
+import random
+import sys
+import tempfile
+import warnings
+from pathlib import Path
+
+import atheris
+import numpy as np
+
+with atheris.instrument_imports(include=["elbowscrew"]):
+    from elbowscrew import analyze, read_recording
+    from elbowscrew.errors import ElbowscrewError
+    from elbowscrew.results import save_simulation
+    from elbowscrew.settings import Settings
+    from elbowscrew.simulate import simulate_recording
+
+FRAMES = 12
+SCRATCH = Path(tempfile.mkdtemp(prefix="elbowscrew-fuzz-"))
+TARGET = SCRATCH / "mutant.csv"
+outcomes: dict[str, int] = {}
+
+
+def seeds(folder: Path) -> None:
+    """Small good files of every text format."""
+    trial = simulate_recording(frames=FRAMES, inversion=6, top_deg=40, gaps=1, gap_frames=1)
+    save_simulation(trial, folder / "motive.csv", length_unit="mm")
+    save_simulation(trial, folder / "tagged.csv", layout="row-tagged")
+    motive = (folder / "motive.csv").read_text()
+    (folder / "v11.csv").write_text(motive.replace("Format Version,1.23", "Format Version,1.1"))
+    (folder / "semicolon.csv").write_text(motive.replace(",", ";").replace(".", ","))
+    (folder / "euler.csv").write_text(
+        motive.replace("Quaternion", "YXZ").replace(
+            "Rotation,Rotation,Rotation,Rotation", "Rotation,Rotation,Rotation,"
+        )
+    )
+    names = [f"{name}_e{k}" for name in ("arm", "forearm") for k in range(4)]
+    names += [f"{name}_{axis}_m" for name in ("arm", "forearm") for axis in "xyz"]
+    rows = [",".join(["frame,time_s", *names])]
+    for k in range(FRAMES):
+        half = 0.03 * k
+        rows.append(f"{k},{k / 100},1,0,0,0,{np.cos(half)!r},{np.sin(half)!r},0,0,0.1,0.2,{0.3 + k * 1e-4},0.4,{k},0.6")
+    (folder / "table.csv").write_text("\n".join(rows) + "\n")
+    trc = [
+        "PathFileType\t4\t(X/Y/Z)\tt.trc",
+        "DataRate\tUnits",
+        "100\tmm",
+        "Frame#\tTime\tm1\t\t\tm2\t\t",
+        "\t\tX1\tY1\tZ1",
+    ]
+    trc += [f"{k + 1}\t{k / 100}\t1\t2\t{k}\t4\t5\t{k}" for k in range(FRAMES)]
+    (folder / "markers.trc").write_text("\n".join(trc) + "\n")
+    for path in folder.glob("*.truth.json"):
+        path.unlink()
+
+
+def one(data: bytes) -> None:
+    """Read and analyze one file."""
+    total = sum(outcomes.values())
+    if total and total % 10_000 == 0:
+        print(total, outcomes, flush=True)  # libFuzzer ends the process itself: there is no later moment
+    TARGET.write_bytes(data)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")  # a warning of NumPy is a number that nobody looked at
+        try:
+            recording = read_recording(TARGET, units=None, markers=("m1",))
+        except ElbowscrewError as error:
+            outcomes[type(error).__name__] = outcomes.get(type(error).__name__, 0) + 1
+            check_message(str(error))
+            return
+        for body in recording.bodies:
+            size = np.linalg.norm(body.dual_quat_lab_body[:, :4], axis=1)
+            assert np.allclose(size[body.tracked], 1.0)
+            assert np.isnan(body.dual_quat_lab_body[~body.tracked]).all()
+        try:
+            analysis = analyze(recording, Settings(min_tracked_percent=0, min_angle_deg=1))
+        except ElbowscrewError as error:
+            kind = f"analysis: {type(error).__name__}"
+            outcomes[kind] = outcomes.get(kind, 0) + 1
+            return
+        assert np.isfinite(analysis.screw.angle[analysis.screw.valid]).all()
+        outcomes["analyzed"] = outcomes.get("analyzed", 0) + 1
+
+
+def check_message(message: str) -> None:
+    """An error is one line, but for what the file's own name has."""
+    assert "\n" not in message
+
+
+TOKENS = tuple(
+    """|nan|inf|-1e400|1e308|-0|0|1|1e-320|99999999999999999999|-5|0.5|x|"|"1,2"|1,5| 1 |1e5|frame|Rigid Body|Rotation|W
+    Frame|6.5|\x00|\xff""".encode("latin-1").split(b"|")
+)
+
+
+def mutate(data: bytes, max_size: int, seed: int) -> bytes:
+    """Half the time change whole cells and lines, so that mutants get past the header; else let atheris."""
+    rng = random.Random(seed)  # noqa: S311 - no secret
+    if rng.random() < 0.5:
+        return bytes(atheris.Mutate(data, max_size))
+    lines = data.split(b"\n")
+    for _ in range(rng.randint(1, 3)):
+        row = rng.randrange(len(lines))
+        delimiter = rng.choice([b",", b",", b",", b";", b"\t"])
+        cells = lines[row].split(delimiter)
+        column = rng.randrange(len(cells))
+        action = rng.randrange(6)
+        if action <= 2:
+            cells[column] = rng.choice(TOKENS)
+        elif action == 3:
+            del cells[column]
+        elif action == 4:
+            cells.insert(column, rng.choice(TOKENS))
+        else:
+            lines.insert(row, lines[rng.randrange(len(lines))])
+            continue
+        lines[row] = delimiter.join(cells)
+    return b"\n".join(lines)[:max_size]
+
+
+def main() -> None:
+    """Run atheris from the seeds."""
+    count = sys.argv[1] if len(sys.argv) > 1 else "10000"
+    corpus = SCRATCH / "corpus"
+    corpus.mkdir()
+    seeds(corpus)
+    arguments = [sys.argv[0], f"-runs={count}", "-max_len=32768", "-timeout=10", "-print_final_stats=1", str(corpus)]
+    atheris.Setup([*arguments, *sys.argv[2:]], one, custom_mutator=mutate)
+    atheris.Fuzz()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,76 @@
+"""A reader needs little more memory than what is kept of a file, whatever its width."""
+
+from __future__ import annotations
+
+import tracemalloc
+from pathlib import Path
+
+import numpy as np
+import pytest
+from motive_files import bodies_of
+from oracles import known_trial, quaternion_xyzw
+
+from elbowscrew import read_recording
+from elbowscrew.errors import RecordingError
+
+ROWS, MARKERS = 40_000, 40
+
+
+@pytest.fixture(scope="module")
+def wide_take(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Two bodies and forty markers that nobody asks for, and whose cells are no numbers."""
+    trial = known_trial(90.0, frames=200, inversion=100)
+    labels: list[tuple[str, ...]] = []
+    cells: list[list[str]] = [[] for _ in range(200)]
+    for body in bodies_of(trial):
+        labels += [("Rigid Body", body.name, body.identifier, "Rotation", axis) for axis in "XYZW"]
+        labels += [("Rigid Body", body.name, body.identifier, "Position", axis) for axis in "XYZ"]
+        data = np.concatenate([quaternion_xyzw(body.R), body.p], axis=1)
+        for k, row in enumerate(data.tolist()):
+            cells[k] += [f"{value:.6f}" for value in row]
+    for k in range(MARKERS):
+        labels += [("Marker", f"Unlabeled {k}", f"{k}", "Position", axis) for axis in "XYZ"]
+    rest = ",".join(["not-read"] * (3 * MARKERS))
+    path = tmp_path_factory.mktemp("wide") / "wide.csv"
+    with path.open("w") as stream:
+        stream.write("Format Version,1.23,Export Frame Rate,100,Rotation Type,Quaternion,Length Units,Meters\n\n")
+        for row, title in enumerate(("Type", "Name", "ID", "")):
+            stream.write(",".join(["", title, *(label[row] for label in labels)]) + "\n")
+        stream.write(",".join(["Frame", "Time (Seconds)", *(label[4] for label in labels)]) + "\n")
+        stream.writelines(f"{k},{k / 100:.6f},{','.join(cells[k % 200])},{rest}\n" for k in range(ROWS))
+    return path
+
+
+def test_memory_is_bounded_by_the_columns_kept(wide_take: Path) -> None:
+    kept = ROWS * (2 + 2 * 7) * 8  # frame, time, and seven cells a body, in float64
+    block = 8 << 20  # some thousand lines of text, whatever the length of the file
+    read_recording(wide_take)  # imports are not the reader's memory
+    tracemalloc.start()
+    try:
+        recording = read_recording(wide_take)
+        peak = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    assert recording.frame.size == ROWS
+    assert peak < 1.5 * kept + block
+
+
+def test_columns_that_are_not_in_use_are_not_read(wide_take: Path) -> None:
+    assert all(body.tracked.all() for body in read_recording(wide_take).bodies)
+    with pytest.raises(RecordingError, match="expected a number, found 'not-read'"):
+        read_recording(wide_take, markers=("Unlabeled 7",))
+
+
+def test_an_endless_line_is_refused_without_reading_it_all(tmp_path: Path) -> None:
+    path = tmp_path / "endless.csv"
+    with path.open("w") as stream:
+        stream.write("Format Version,1.23\n\n")
+        for _ in range(40):
+            stream.write("x" * (1 << 20))
+    tracemalloc.start()
+    try:
+        with pytest.raises(RecordingError, match=r"endless\.csv:3: a line of over"):
+            read_recording(path)
+        assert tracemalloc.get_traced_memory()[1] < 100 << 20
+    finally:
+        tracemalloc.stop()
