@@ -10,7 +10,17 @@ from hypothesis.extra.numpy import arrays
 from numpy.typing import NDArray
 from poses import poses, random_poses
 
-from elbowscrew.geometry import dlb, dual_quat_from_screw, lagrange_weights, sclerp, sdlb
+from elbowscrew.geometry import (
+    catmull_rom,
+    chain,
+    dib,
+    dlb,
+    dual_quat_from_screw,
+    lagrange_weights,
+    nlerp,
+    sclerp,
+    sdlb,
+)
 from elbowscrew.geometry import dual_quaternion as dq
 
 Float = NDArray[np.float64]
@@ -79,3 +89,94 @@ def test_a_blend_that_cancels_is_undefined() -> None:
 def test_equal_knots_are_refused() -> None:
     with pytest.raises(ValueError, match="differ"):
         lagrange_weights(0.5, [0.0, 0.0, 1.0])
+
+
+@given(poses(), poses(), st.floats(0, 1))
+def test_iterative_blending_of_two_poses_is_sclerp(a: Float, b: Float, t: float) -> None:
+    if abs(a[:4] @ b[:4]) < 0.05:
+        return
+    found = dib(np.stack([a, b]), np.array([1.0 - t, t]))
+    assert found.residual <= 1e-12
+    scale = 1.0 + np.abs(dq.pose_from_dual_quat(np.stack([a, b]))[1]).max()
+    assert dq.align_signs(found.dual_quat, a) == pytest.approx(dq.align_signs(sclerp(a, b, t), a), abs=1e-9 * scale)
+
+
+def test_iterative_blending_solves_its_fixed_point_equation() -> None:
+    from scipy.optimize import fsolve
+
+    keys = random_poses((4,), 9)
+    keys = sclerp(keys[0], keys, 0.4)
+    keys = dq.align_signs(keys, keys[0])
+    for weights in (np.full(4, 0.25), np.array([0.6, 0.6, -0.3, 0.1])):
+        found = dib(keys, weights)
+        assert found.residual < 1e-12
+
+        def equation(x: Float, weights: Float = weights) -> Float:
+            guess = dq.multiply(keys[0], dq.exp(x))
+            return np.asarray(weights @ dq.log(dq.canonical(dq.multiply(dq.conjugate(guess), keys))))
+
+        solved = dq.multiply(keys[0], dq.exp(fsolve(equation, np.zeros(6), xtol=1e-14)))
+        assert dq.align_signs(found.dual_quat, solved) == pytest.approx(solved, abs=1e-10)
+
+
+def test_iterative_blending_reports_that_it_was_stopped() -> None:
+    keys = random_poses((3,), 10)
+    found = dib(keys, np.full((5, 3), 1 / 3), max_iterations=1)
+    assert found.iterations == 1
+    assert found.residual.shape == (5,)
+    assert (found.residual > 1e-12).all()
+
+
+@given(poses(), poses())
+def test_iterative_blending_does_not_depend_on_the_frame(left: Float, right: Float) -> None:
+    keys = sclerp(random_poses((), 3), random_poses((3,), 3), 0.3)
+    weights = np.array([0.2, 0.5, 0.3])
+    inside = dq.multiply(left, dq.multiply(dib(keys, weights).dual_quat, right))
+    outside = dib(dq.multiply(left, dq.multiply(keys, right)), weights, tolerance=1e-13).dual_quat
+    assert dq.align_signs(outside, inside) == pytest.approx(inside, rel=1e-8, abs=1e-6)
+
+
+KNOTS = np.array([0.0, 0.15, 0.5, 0.6, 1.0])
+
+
+def test_catmull_rom_meets_its_keyframes_with_continuous_velocity() -> None:
+    keys = random_poses((5,), 11)
+    assert dq.align_signs(catmull_rom(keys, KNOTS, KNOTS), keys) == pytest.approx(keys, abs=1e-12)
+    h = 1e-6
+    for knot in KNOTS[1:-1]:
+        before, here, after = catmull_rom(keys, KNOTS, np.array([knot - h, knot, knot + h]))
+        assert (after - here) / h == pytest.approx((here - before) / h, abs=2e-3)
+    assert catmull_rom(keys, KNOTS, np.zeros((2, 3))).shape == (2, 3, 8)
+
+
+def test_catmull_rom_of_a_uniform_screw_is_that_screw() -> None:
+    line = ([0.0, 0.6, 0.8], [0.1, -0.08, 0.06])
+    keys = dual_quat_from_screw(2.0 * KNOTS, 0.3 * KNOTS, *line)
+    t = np.linspace(-0.1, 1.1, 41)
+    expected = dual_quat_from_screw(2.0 * t, 0.3 * t, *line)
+    assert catmull_rom(keys, KNOTS, t) == pytest.approx(expected, abs=1e-12)
+    with pytest.raises(ValueError, match="increasing"):
+        catmull_rom(keys, KNOTS[::-1], t)
+
+
+def test_nlerp_goes_the_way_of_slerp() -> None:
+    from scipy.spatial.transform import Rotation, Slerp
+
+    a, b = random_poses((2,), 12)[:, :4]
+    half = nlerp(a, b, 0.5)
+    theirs = Slerp([0, 1], Rotation.from_quat(np.stack([a, b]), scalar_first=True))(0.5).as_quat(scalar_first=True)
+    assert abs(half @ theirs) == pytest.approx(1.0)
+    assert nlerp(a, -b, 0.3) == pytest.approx(nlerp(a, b, 0.3))
+    assert nlerp(a, b, np.zeros((2, 3))).shape == (2, 3, 4)
+    assert np.isnan(nlerp(a, -a, 0.5, shortest_path=False)).all()
+
+
+def test_a_chain_puts_every_link_into_the_root() -> None:
+    links = random_poses((6, 4), 13)
+    found = chain(links)
+    matrices = dq.matrix_from_dual_quat(links)
+    expected = matrices[:, 0]
+    for k in range(1, 4):
+        expected = expected @ matrices[:, k]
+    assert dq.matrix_from_dual_quat(found[:, 3]) == pytest.approx(expected, abs=1e-12)
+    assert found[:, 0] == pytest.approx(links[:, 0])

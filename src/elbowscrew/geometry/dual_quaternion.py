@@ -7,23 +7,15 @@ The conventions are stated in ``docs/conventions.md``.
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from elbowscrew.geometry import quaternion
 from elbowscrew.geometry._small_angle import divide, length, sinc, sinc_slope
+from elbowscrew.geometry.dual_number import DualNumber
 
 _QUATERNION_CONJUGATE = np.array([1.0, -1.0, -1.0, -1.0, 1.0, -1.0, -1.0, -1.0])
 _DUAL_CONJUGATE = np.array([1.0, 1.0, 1.0, 1.0, -1.0, -1.0, -1.0, -1.0])
-
-
-class DualNumber(NamedTuple):
-    """A dual number ``real + eps dual``; both parts have the same shape (...)."""
-
-    real: NDArray[np.float64]
-    dual: NDArray[np.float64]
 
 
 def multiply(left: ArrayLike, right: ArrayLike) -> NDArray[np.float64]:

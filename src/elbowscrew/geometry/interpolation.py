@@ -7,10 +7,12 @@ knows which of ``Q`` and ``-Q`` belongs to the motion, as in a measured series m
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from elbowscrew.geometry import dual_quaternion
+from elbowscrew.geometry import dual_quaternion, quaternion
 from elbowscrew.geometry._small_angle import VANISHING_NORM, length
 
 
@@ -128,3 +130,172 @@ def dlb(poses: ArrayLike, weights: ArrayLike, *, shortest_path: bool = True) -> 
     blend = (w[..., None, :] @ Q)[..., 0, :]
     vanishing = length(blend[..., :4]) < VANISHING_NORM
     return np.where(vanishing[..., None], np.nan, dual_quaternion.normalize(blend))
+
+
+class IterativeBlend(NamedTuple):
+    """Result of `dib`.
+
+    Attributes
+    ----------
+    dual_quat : ndarray, shape (..., 8)
+    iterations : int
+        Steps taken, for all poses together.
+    residual : ndarray, shape (...)
+        Length of the last step: of its rotation (rad) and of its translation relative to the size of the poses.
+    """
+
+    dual_quat: NDArray[np.float64]
+    iterations: int
+    residual: NDArray[np.float64]
+
+
+def dib(
+    poses: ArrayLike,
+    weights: ArrayLike,
+    *,
+    tolerance: float = 1e-12,
+    max_iterations: int = 100,
+    shortest_path: bool = True,
+) -> IterativeBlend:
+    """Dual quaternion iterative blending: from DLB on, ``B <- B exp(sum_i w_i log(B* Q_i))`` until the step is small.
+
+    The result is the weighted mean on the group itself: it does not depend on the frame, and between two poses it is
+    ScLERP.
+
+    Parameters
+    ----------
+    poses, weights : array_like
+        As in `dlb`.
+    tolerance : float
+        Largest step at which to stop.
+    max_iterations : int
+        Stop here in any case; look at the residual then.
+    shortest_path : bool
+        As in `dlb`.
+
+    Returns
+    -------
+    IterativeBlend
+        NaN where the first blend vanishes.
+
+    References
+    ----------
+    P algorithm 3.
+    """
+    Q = np.asarray(poses, dtype=np.float64)
+    w = np.asarray(weights, dtype=np.float64)
+    blend = dlb(Q, w, shortest_path=shortest_path)
+    scale = 1.0 + np.max(length(dual_quaternion.pose_from_dual_quat(Q)[1]), axis=-1, initial=0.0)
+    residual = np.full(blend.shape[:-1], np.inf)
+    done = 0
+    while done < max_iterations and np.any(residual > tolerance):
+        steps = dual_quaternion.multiply(dual_quaternion.conjugate(blend)[..., None, :], Q)
+        step = (w[..., None, :] @ dual_quaternion.log(dual_quaternion.canonical(steps)))[..., 0, :]
+        blend = dual_quaternion.normalize(dual_quaternion.multiply(blend, dual_quaternion.exp(step)))
+        residual = np.maximum(length(step[..., :3]), length(step[..., 3:]) / scale)
+        done += 1
+    return IterativeBlend(blend, done, residual)
+
+
+def nlerp(start: ArrayLike, end: ArrayLike, fraction: ArrayLike, *, shortest_path: bool = True) -> NDArray[np.float64]:
+    """Blend linearly between two rotations and normalize, shape (..., 4): the path of slerp at another speed.
+
+    Parameters
+    ----------
+    start, end : array_like, shape (..., 4)
+        Unit quaternions.
+    fraction : array_like, shape (...)
+    shortest_path : bool
+        Take the end's sign nearer the start.
+
+    References
+    ----------
+    K 44. For poses it is `sdlb`.
+    """
+    first, last = np.asarray(start, dtype=np.float64), np.asarray(end, dtype=np.float64)
+    if shortest_path:
+        last = np.where(np.sum(first * last, axis=-1, keepdims=True) < 0.0, -last, last)
+    t = np.asarray(fraction, dtype=np.float64)[..., None]
+    blend = (1.0 - t) * first + t * last
+    vanishing = length(blend)[..., None] < VANISHING_NORM
+    return np.where(vanishing, np.nan, quaternion.normalize(blend))
+
+
+def catmull_rom(
+    poses: ArrayLike, knots: ArrayLike, parameter: ArrayLike, *, shortest_path: bool = True
+) -> NDArray[np.float64]:
+    """Smooth motion through all keyframes at their knots: the Barry-Goldman pyramid, ScLERP in place of lerp.
+
+    Parameters
+    ----------
+    poses : array_like, shape (n, 8)
+        Unit dual quaternions, at least two.
+    knots : array_like, shape (n,)
+        Increasing, at any distances.
+    parameter : array_like, shape (...)
+        Where to evaluate; beyond the ends the end segments go on.
+    shortest_path : bool
+        Take each pose's sign nearer the one before.
+
+    Returns
+    -------
+    ndarray, shape (..., 8)
+        The velocity is continuous at the knots. Beyond the ends the first and the last step are repeated.
+
+    References
+    ----------
+    K, section on splines; Barry and Goldman 1988.
+    """
+    Q = np.asarray(poses, dtype=np.float64)
+    t = np.asarray(knots, dtype=np.float64)
+    if Q.ndim != 2 or len(Q) < 2 or t.shape != (len(Q),) or (np.diff(t) <= 0.0).any():
+        msg = f"expected two poses or more with increasing knots, found {Q.shape} and {t.tolist()}"
+        raise ValueError(msg)
+    if shortest_path:
+        Q = dual_quaternion.continuous_signs(Q)
+    before = sclerp(Q[0], Q[1], -1.0, shortest_path=False)
+    after = sclerp(Q[-2], Q[-1], 2.0, shortest_path=False)
+    Q = np.concatenate([before[None], Q, after[None]])
+    t = np.concatenate([[2.0 * t[0] - t[1]], t, [2.0 * t[-1] - t[-2]]])
+    x = np.asarray(parameter, dtype=np.float64)
+    first = np.clip(np.searchsorted(t, x, side="right") - 1, 1, len(t) - 3) - 1
+    level = [Q[first + k] for k in range(4)]
+    for width in (1, 2, 3):
+        level = [_between(level[k], level[k + 1], x, *_span(t, first, k, width)) for k in range(len(level) - 1)]
+    return level[0]
+
+
+def _span(
+    knots: NDArray[np.float64], first: NDArray[np.intp], k: int, width: int
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Ends of the interval a node of the pyramid blends over: the middle one at the top, wider ones below."""
+    low, high = (k, k + 1) if width == 1 else (k, k + 2) if width == 2 else (1, 2)
+    return knots[first + low], knots[first + high]
+
+
+def _between(
+    start: NDArray[np.float64],
+    end: NDArray[np.float64],
+    x: NDArray[np.float64],
+    low: NDArray[np.float64],
+    high: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    return sclerp(start, end, (x - low) / (high - low), shortest_path=False)
+
+
+def chain(poses: ArrayLike) -> NDArray[np.float64]:
+    """Poses of the links of a chain in its root: products ``Q_1``, ``Q_1 Q_2``, ..., shape (..., n, 8).
+
+    Parameters
+    ----------
+    poses : array_like, shape (..., n, 8)
+        Each link in the one before it.
+
+    References
+    ----------
+    K, section on hierarchies.
+    """
+    Q = np.array(poses, dtype=np.float64)
+    for k in range(1, Q.shape[-2]):
+        Q[..., k, :] = dual_quaternion.multiply(Q[..., k - 1, :], Q[..., k, :])
+    return Q

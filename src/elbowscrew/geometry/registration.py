@@ -11,6 +11,7 @@ from elbowscrew.geometry import dual_matrix
 from elbowscrew.geometry.dual_matrix import DualMatrix
 from elbowscrew.geometry.dual_quaternion import dual_quat_from_pose, transform_points
 from elbowscrew.geometry.quaternion import quat_from_rotation_matrix
+from elbowscrew.geometry.screw import dual_quat_from_dual_matrix
 
 Float = NDArray[np.float64]
 
@@ -66,7 +67,8 @@ def fit_poses(body_points: ArrayLike, points: ArrayLike) -> FittedPose:
     spread = np.linalg.svd(body, compute_uv=False)
     fixed = (weight.sum(axis=-1) >= 3) & (spread[..., 1] > _FLATNESS * spread[..., 0])
     position = centers[1] - (rotation @ centers[0][..., None])[..., 0]
-    pose = _masked(rotation, position, fixed)
+    pose = dual_quat_from_pose(quat_from_rotation_matrix(rotation), position)
+    pose = np.where(fixed[..., None], pose, np.nan)
     square = np.sum((seen - transform_points(pose[..., None, :], body_points)) ** 2, axis=-1)
     counted = np.isfinite(square)
     mean = np.where(counted, square, 0.0).sum(axis=-1) / np.maximum(counted.sum(axis=-1), 1)
@@ -97,19 +99,10 @@ def fit_poses_dual_qr(body_points: ArrayLike, points: ArrayLike) -> FittedPose:
     Q, R = dual_matrix.qr(dual_matrix.multiply(after, dual_matrix.pseudoinverse(before)))
     deviation = np.sqrt(np.sum((R.real - np.eye(3)) ** 2, axis=(-1, -2)))
     rotation = np.where(fixed[..., None, None], Q.real, np.eye(3))
-    # Q = R + eps [d]x R: the translation stands in Q_dual Q_real^T.
-    cross = Q.dual @ np.swapaxes(Q.real, -1, -2)
-    position = 0.5 * np.stack(
-        [
-            cross[..., 2, 1] - cross[..., 1, 2],
-            cross[..., 0, 2] - cross[..., 2, 0],
-            cross[..., 1, 0] - cross[..., 0, 1],
-        ],
-        axis=-1,
-    )
+    pose = dual_quat_from_dual_matrix(DualMatrix(rotation, np.where(fixed[..., None, None], Q.dual, 0.0)))
     mirrored = np.linalg.det(np.where(np.isfinite(rotation), rotation, np.eye(3))) < 0.0
     fixed &= ~mirrored
-    return FittedPose(_masked(rotation, position, fixed), np.where(fixed, deviation, np.nan))
+    return FittedPose(np.where(fixed[..., None], pose, np.nan), np.where(fixed, deviation, np.nan))
 
 
 def _centered(body_points: ArrayLike, seen: Float) -> tuple[Float, Float, Float, tuple[Float, Float]]:
@@ -131,8 +124,3 @@ def _line_vectors(centered: Float, center: Float) -> DualMatrix:
     """Line vectors from the centroid to the markers, as columns (P 23, 26)."""
     moments = np.cross(center[..., None, :], centered)
     return dual_matrix.transpose(DualMatrix(centered, moments))
-
-
-def _masked(rotation: Float, position: Float, fixed: NDArray[np.bool_]) -> Float:
-    pose = dual_quat_from_pose(quat_from_rotation_matrix(rotation), position)
-    return np.where(fixed[..., None], pose, np.nan)

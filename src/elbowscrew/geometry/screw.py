@@ -7,8 +7,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from elbowscrew.geometry import quaternion
+from elbowscrew.geometry import dual_number, dual_quaternion, dual_vector, quaternion
 from elbowscrew.geometry._small_angle import divide, length
+from elbowscrew.geometry.dual_matrix import DualMatrix
+from elbowscrew.geometry.dual_number import DualNumber
 
 
 class Screw(NamedTuple):
@@ -123,3 +125,68 @@ def point_nearest_origin(line: ArrayLike) -> NDArray[np.float64]:
     """The point ``h x m``, shape (..., 3), of lines (..., 6) that is nearest the origin."""
     plucker = np.asarray(line, dtype=np.float64)
     return np.cross(plucker[..., :3], plucker[..., 3:])
+
+
+def compose_screws(first: Screw, second: Screw) -> Screw:
+    """Screw of the motion ``second`` after ``first``, by Rodrigues' formula with dual numbers.
+
+    ``tan(c/2) C = (tan(b/2) B + tan(a/2) A + tan(b/2) tan(a/2) B x A) / (1 - tan(b/2) tan(a/2) B.A)``: a check on the
+    product of dual quaternions, which has no poles. Half turns have none of it: NaN or garbage at angles of pi.
+
+    Parameters
+    ----------
+    first, second : Screw
+        Of angles off pi.
+
+    Returns
+    -------
+    Screw
+        Its angle in [0, 2 pi].
+
+    References
+    ----------
+    W; Rodrigues 1840.
+    """
+    a, b = (_half_tangent(screw) for screw in (first, second))
+    A, B = (np.concatenate([screw.direction, screw.moment], axis=-1) for screw in (first, second))
+    both = dual_number.multiply(a, b)
+    vector = _scaled(B, b) + _scaled(A, a) + _scaled(dual_vector.cross(B, A), both)
+    denominator = dual_number.subtract(
+        dual_number.dual_number(np.ones_like(both.real)), dual_number.multiply(both, dual_vector.dot(B, A))
+    )
+    tangent = dual_vector.norm(vector)
+    half = dual_number.atan2(tangent, denominator)
+    line = dual_vector.normalize(vector)
+    return Screw(2.0 * half.real, 2.0 * half.dual, line[..., :3], line[..., 3:])
+
+
+def _half_tangent(screw: Screw) -> DualNumber:
+    return dual_number.tan(dual_number.dual_number(0.5 * screw.angle, 0.5 * screw.slide))
+
+
+def _scaled(vector: NDArray[np.float64], factor: DualNumber) -> NDArray[np.float64]:
+    real, dual = factor.real[..., None], factor.dual[..., None]
+    return np.concatenate([real * vector[..., :3], real * vector[..., 3:] + dual * vector[..., :3]], axis=-1)
+
+
+def dual_matrix_from_dual_quat(dual_quat: ArrayLike) -> DualMatrix:
+    """Dual rotation matrices ``R + eps [d]x R``, shape (..., 3, 3), that move lines (P 20-21)."""
+    quat, position = dual_quaternion.pose_from_dual_quat(dual_quat)
+    R = quaternion.rotation_matrix_from_quat(quat)
+    moved = np.swapaxes(np.cross(position[..., None, :], np.swapaxes(R, -1, -2)), -1, -2)
+    return DualMatrix(R, moved)
+
+
+def dual_quat_from_dual_matrix(matrix: DualMatrix) -> NDArray[np.float64]:
+    """Unit dual quaternions, shape (..., 8), of orthogonal dual matrices (..., 3, 3): d stands in ``dual real^T``."""
+    turn = matrix.dual @ np.swapaxes(matrix.real, -1, -2)
+    position = 0.5 * np.stack(
+        [turn[..., 2, 1] - turn[..., 1, 2], turn[..., 0, 2] - turn[..., 2, 0], turn[..., 1, 0] - turn[..., 0, 1]],
+        axis=-1,
+    )
+    return dual_quaternion.dual_quat_from_pose(quaternion.quat_from_rotation_matrix(matrix.real), position)
+
+
+def screw_from_dual_matrix(matrix: DualMatrix) -> Screw:
+    """Screw parameters of orthogonal dual matrices (..., 3, 3), the second step of P section 4."""
+    return screw_from_dual_quat(dual_quat_from_dual_matrix(matrix))

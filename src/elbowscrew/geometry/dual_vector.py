@@ -1,0 +1,87 @@
+"""Dual vectors, shape (..., 6): real part (3), then dual part (3). Unit ones are lines, ``h + eps p x h``."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from elbowscrew.geometry._small_angle import divide, length
+from elbowscrew.geometry.dual_number import DualNumber, dual_number
+
+Float = NDArray[np.float64]
+
+
+def dot(left: ArrayLike, right: ArrayLike) -> DualNumber:
+    """Dot product, a dual number: of two lines, the cosine of their dual angle.
+
+    Parameters
+    ----------
+    left, right : array_like, shape (..., 6)
+
+    Returns
+    -------
+    DualNumber, shape (...)
+    """
+    a, b = np.asarray(left, dtype=np.float64), np.asarray(right, dtype=np.float64)
+    real = np.sum(a[..., :3] * b[..., :3], axis=-1)
+    return dual_number(real, np.sum(a[..., :3] * b[..., 3:] + a[..., 3:] * b[..., :3], axis=-1))
+
+
+def cross(left: ArrayLike, right: ArrayLike) -> Float:
+    """Cross product, shape (..., 6): of two lines, their common normal times the sine of their dual angle."""
+    a, b = np.asarray(left, dtype=np.float64), np.asarray(right, dtype=np.float64)
+    real = np.cross(a[..., :3], b[..., :3])
+    return np.concatenate([real, np.cross(a[..., :3], b[..., 3:]) + np.cross(a[..., 3:], b[..., :3])], axis=-1)
+
+
+def norm(vector: ArrayLike) -> DualNumber:
+    """Norm, a dual number ``|a| + eps <a, b>/|a|``; its dual part is the pitch times |a|, NaN where a = 0."""
+    v = np.asarray(vector, dtype=np.float64)
+    real = length(v[..., :3])
+    return dual_number(real, divide(np.sum(v[..., :3] * v[..., 3:], axis=-1), real))
+
+
+def normalize(vector: ArrayLike) -> Float:
+    """Line of a dual vector, shape (..., 6): divided by its dual norm; NaN where the real part is 0."""
+    v = np.asarray(vector, dtype=np.float64)
+    size = length(v[..., :3])[..., None]
+    direction = divide(v[..., :3], size)
+    moment = divide(v[..., 3:], size)
+    return np.concatenate([direction, moment - np.sum(direction * moment, axis=-1, keepdims=True) * direction], axis=-1)
+
+
+def angle_between_lines(first: ArrayLike, second: ArrayLike) -> DualNumber:
+    """Dual angle between two lines: the angle in [0, pi] and the distance along their common normal.
+
+    Parameters
+    ----------
+    first, second : array_like, shape (..., 6)
+        Unit lines.
+
+    Returns
+    -------
+    DualNumber, shape (...)
+        Angle (rad) and distance. The distance has the sign that makes ``cos(angle)`` the dot product: positive if the
+        second line lies from the first in the sense of ``cross(first, second)``. For parallel lines that sense is
+        not defined and the distance is not negative.
+    """
+    a, b = np.asarray(first, dtype=np.float64), np.asarray(second, dtype=np.float64)
+    cosine, normal = dot(a, b), cross(a, b)
+    sine = length(normal[..., :3])
+    parallel = sine == 0.0
+    skew = divide(-cosine.dual, sine)
+    return dual_number(np.arctan2(sine, cosine.real), np.where(parallel, length(normal[..., 3:]), skew))
+
+
+def common_normal(first: ArrayLike, second: ArrayLike) -> Float:
+    """Line that meets two lines at right angles, shape (..., 6), directed as the cross product.
+
+    For parallel lines its place is not defined: the moment is NaN; nor is the direction where they are one line.
+    """
+    a, b = np.asarray(first, dtype=np.float64), np.asarray(second, dtype=np.float64)
+    product = cross(a, b)
+    line = normalize(product)
+    across = product[..., 3:]
+    fallback = np.concatenate([divide(across, length(across)[..., None]), np.full_like(across, np.nan)], axis=-1)
+    parallel = (product[..., :3] == 0.0).all(axis=-1)
+    return np.where(parallel[..., None], fallback, line)

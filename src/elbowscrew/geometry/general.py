@@ -1,0 +1,69 @@
+"""Dual quaternions that need not be unit: exponential, logarithm, power, and multiplication as matrices.
+
+A dual quaternion is a dual scalar and a dual vector (P 38); its functions are those of quaternions with dual numbers
+in place of real ones (P 44, 46, 48).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from elbowscrew.geometry import dual_number, dual_quaternion
+from elbowscrew.geometry.dual_number import DualNumber
+
+Float = NDArray[np.float64]
+
+
+def scale(dual_quat: ArrayLike, factor: DualNumber) -> Float:
+    """Multiply dual quaternions (..., 8) by dual numbers (...)."""
+    Q = np.asarray(dual_quat, dtype=np.float64)
+    real, dual = factor.real[..., None], factor.dual[..., None]
+    return np.concatenate([real * Q[..., :4], real * Q[..., 4:] + dual * Q[..., :4]], axis=-1)
+
+
+def exp(dual_quat: ArrayLike) -> Float:
+    """Exponential ``exp(d)(cos|v| + v/|v| sin|v|)`` of any dual quaternion ``d + v``, shape (..., 8).
+
+    References
+    ----------
+    P 44.
+    """
+    Q = np.asarray(dual_quat, dtype=np.float64)
+    rotation = dual_quaternion.exp(Q[..., [1, 2, 3, 5, 6, 7]])
+    return scale(rotation, dual_number.exp(dual_number.dual_number(Q[..., 0], Q[..., 4])))
+
+
+def log(dual_quat: ArrayLike) -> Float:
+    """Logarithm ``ln|Q| + v/|v| atan2(|v|, d)`` of any dual quaternion with q != 0, shape (..., 8).
+
+    The angle is taken in [0, pi]; at a real part that is a negative number the axis is not defined: NaN.
+
+    References
+    ----------
+    P 46, by atan2 in place of the arccosine.
+    """
+    Q = np.asarray(dual_quat, dtype=np.float64)
+    size = dual_number.log(dual_quaternion.norm(Q))
+    axis = dual_quaternion.log(dual_quaternion.normalize(Q))
+    result = np.empty(Q.shape)
+    result[..., [1, 2, 3, 5, 6, 7]] = axis
+    result[..., 0], result[..., 4] = size.real, size.dual
+    return result
+
+
+def power(dual_quat: ArrayLike, exponent: ArrayLike) -> Float:
+    """Power ``exp(t ln Q)`` of any dual quaternion with q != 0, shape (..., 8) (P 48)."""
+    return exp(np.asarray(exponent, dtype=np.float64)[..., None] * log(dual_quat))
+
+
+def left_matrix(dual_quat: ArrayLike) -> Float:
+    """Matrices (..., 8, 8) with ``left_matrix(A) @ B = A B`` (W)."""
+    Q = np.asarray(dual_quat, dtype=np.float64)
+    return np.swapaxes(dual_quaternion.multiply(Q[..., None, :], np.eye(8)), -1, -2)
+
+
+def right_matrix(dual_quat: ArrayLike) -> Float:
+    """Matrices (..., 8, 8) with ``right_matrix(B) @ A = A B`` (W)."""
+    Q = np.asarray(dual_quat, dtype=np.float64)
+    return np.swapaxes(dual_quaternion.multiply(np.eye(8), Q[..., None, :]), -1, -2)
