@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import json
 import os
 from collections.abc import Iterable, Sequence
@@ -126,6 +127,37 @@ def save_simulation(
     else:
         lines = row_tagged_lines(trial.recording, trial.markers)
     statement = {"about": "truth of a synthetic trial", **trial.truth}
-    contents: dict[Path, Iterable[str]] = {export: lines, truth: [json.dumps(statement, indent=1)]}
+    contents: dict[Path, Iterable[str] | bytes] = {export: lines, truth: [json.dumps(statement, indent=1)]}
     write_files(contents, replaceable="synthetic" if force else None)
     return export, truth
+
+
+def save_paper_figures(folder: str | os.PathLike[str]) -> tuple[Path, ...]:
+    """Write the counterparts of the paper's figures 7 to 10: angle and Euler parameters, measured and modeled.
+
+    They show a synthetic trial like the paper's: 450 frames at 100 Hz with the inversion at frame 211.
+
+    Raises
+    ------
+    OutputError
+        If a file is there already, or the disk does not take them.
+    """
+    from elbowscrew.motion.analysis import analyze
+    from elbowscrew.plots.figures import FIGURES
+    from elbowscrew.plots.style import publication_style, settle
+    from elbowscrew.settings import Settings
+    from elbowscrew.simulate import simulate_recording
+
+    analysis = analyze(simulate_recording(marker_noise_mm=0.1, seed=2010).recording, Settings(inversion=211))
+    target = Path(folder)
+    names = {"figures_7_and_8.png": "theta", "figures_9_and_10.png": "euler_parameters"}
+    contents = {}
+    with publication_style():
+        for file, name in names.items():
+            figure = FIGURES[name](analysis)
+            settle(figure)
+            stream = io.BytesIO()
+            figure.savefig(stream, format="png", metadata=_METADATA["png"])
+            contents[target / file] = stream.getvalue()
+    write_files(contents, replaceable=None)
+    return tuple(contents)

@@ -9,6 +9,7 @@ import typer
 from elbowscrew._version import __version__
 from elbowscrew.cli.analyze import analyze
 from elbowscrew.cli.info import info
+from elbowscrew.cli.paper import paper
 from elbowscrew.cli.simulate import simulate
 
 app = typer.Typer(
@@ -36,6 +37,7 @@ def _common(
 app.command()(analyze)
 app.command()(info)
 app.command()(simulate)
+app.command()(paper)
 
 
 def run(arguments: list[str]) -> object:

@@ -13,6 +13,7 @@ from rich.table import Table
 from rich.text import Text
 
 from elbowscrew.cli.text import NobodyReads, one_line, printable
+from elbowscrew.paper import Comparison
 
 
 def warnings(found: Iterable[Mapping[str, Any]]) -> None:
@@ -109,6 +110,25 @@ def info_table(summary: Mapping[str, Any]) -> None:
 def _spread(spread: Mapping[str, float] | None) -> str:
     """Median and maximum."""
     return "–" if spread is None else f"{spread['median']:.2f}, max {spread['largest']:.2f}"
+
+
+def paper_table(found: Iterable[Comparison]) -> None:
+    """Write printed and computed numbers side by side."""
+    table = Table(box=None, pad_edge=False, header_style="bold")
+    for column, justify in (
+        ("In the paper", "left"),
+        ("", "left"),
+        ("printed", "right"),
+        ("computed", "right"),
+        ("", "left"),
+    ):
+        table.add_column(column, justify=justify)  # type: ignore[arg-type]
+    counts = [0, 0]
+    for one in found:
+        counts[one.agrees] += 1
+        word = "" if one.rounded == one.printed else one.note if one.agrees else "DIFFERS"
+        table.add_row(one.place, one.quantity, one.printed, one.rounded, word)
+    _print(table, Text(f"{counts[1]} numbers agree, {counts[0]} differ"))
 
 
 def emit(text: str) -> None:

@@ -96,13 +96,13 @@ def _is_summary(path: Path) -> bool:
     return isinstance(summary, dict) and "elbowscrew" in summary
 
 
-def write_files(contents: Mapping[Path, Iterable[str]], *, replaceable: str | None) -> None:
+def write_files(contents: Mapping[Path, Iterable[str] | bytes], *, replaceable: str | None) -> None:
     """Write files that belong together: all of them appear, each whole, or none.
 
     Parameters
     ----------
-    contents : mapping of Path to iterable of str
-        Lines of each file, without line ends.
+    contents : mapping of Path to iterable of str, or bytes
+        Lines of each file, without line ends, or all of it.
     replaceable : str or None
         None to replace nothing; else an existing file is replaced if its first 4096 bytes hold this word, which tells
         that it is one of ours.
@@ -123,8 +123,11 @@ def write_files(contents: Mapping[Path, Iterable[str]], *, replaceable: str | No
             made += _make_parents(place)
             handle, name = tempfile.mkstemp(prefix=_PREFIX, suffix=".partial", dir=place.parent)
             staged[target] = Path(name)
-            with os.fdopen(handle, "w", encoding="utf-8", newline="") as stream:
-                stream.writelines(line + "\n" for line in lines)
+            with os.fdopen(handle, "wb") as stream:
+                if isinstance(lines, bytes):
+                    stream.write(lines)
+                else:
+                    stream.writelines(f"{line}\n".encode() for line in lines)
             staged[target].chmod(0o666 & ~_umask())
         for target, temporary in staged.items():
             _check_file(target, replaceable)
