@@ -31,6 +31,8 @@ def test_pseudoinverse_and_qr_of_a_thousand_dual_matrices() -> None:
     regular = np.linalg.cond(A.real) < 100
     A = DualMatrix(A.real[regular], A.dual[regular])
     assert_equal(dual_matrix.multiply(dual_matrix.multiply(A, dual_matrix.pseudoinverse(A)), A), A, 1e-8)
+    tall = dual_matrix.transpose(A)
+    assert_equal(dual_matrix.multiply(dual_matrix.multiply(tall, dual_matrix.pseudoinverse(tall)), tall), tall, 1e-8)
     B = random_dual((1000, 3, 3), 2)
     regular = np.linalg.cond(B.real) < 100
     B = DualMatrix(B.real[regular], B.dual[regular])
@@ -47,8 +49,11 @@ def test_a_singular_real_part_has_no_inverse() -> None:
     flat = DualMatrix(np.diag([1.0, 1.0, 0.0]), np.eye(3))
     with pytest.raises(np.linalg.LinAlgError):
         dual_matrix.inverse(flat)
-    with pytest.raises(np.linalg.LinAlgError):
-        dual_matrix.pseudoinverse(flat)
+    deficient = random_dual((1000, 3, 5), 4)
+    deficient.real[:, 2] = deficient.real[:, 0] - 2.0 * deficient.real[:, 1]
+    for k in range(0, 1000, 50):
+        with pytest.raises(np.linalg.LinAlgError, match="full rank"):
+            dual_matrix.pseudoinverse(DualMatrix(deficient.real[k], deficient.dual[k]))
 
 
 @pytest.mark.parametrize("fit", [fit_poses, fit_poses_dual_qr])

@@ -153,6 +153,25 @@ def test_bodies_that_exchange_their_places_are_told() -> None:
         assert np.flatnonzero(~body_found.body.tracked).tolist() == list(range(120, 140))
 
 
+def test_an_exchange_behind_a_gap_is_told() -> None:
+    one, other = series(300), dq.multiply(dq.dual_quat_from_pose([1.0, 0, 0, 0], [0.4, 0.1, 0.0]), series(300)[::-1])
+    swapped_one, swapped_other = one.copy(), other.copy()
+    swapped_one[150:], swapped_other[150:] = other[150:], one[150:]
+    swapped_one[135:150] = swapped_other[135:150] = np.nan
+    taken = Recording.from_bodies([body(swapped_one, "A"), body(swapped_other, "B")], rate_hz=100)
+    warnings = check_bodies(taken, taken.bodies, Settings())[1]
+    assert [warning.frames for warning in warnings if warning.code == "swapped-bodies"] == [(150,)]
+
+
+@pytest.mark.parametrize("rate_hz", [5.0, 9.0, 10.0, 11.0, 25.0, 60.0, 360.0])
+def test_flips_are_found_at_any_rate(rate_hz: float) -> None:
+    pose = dual_quat_from_screw(np.linspace(0.0, 2.0, 120), 0.0, [0.0, 0.6, 0.8], [0.1, -0.08, 0.06])
+    for row in range(10, 110, 7):
+        found, codes = checked(flipped(pose, slice(row, row + 1)), rate_hz)
+        assert np.flatnonzero(~found.tracked).tolist() == [row]
+        assert codes == ["leap"]
+
+
 def test_quality_tells_the_figures_of_a_body() -> None:
     pose = series(100)
     pose[10:20] *= -1.0

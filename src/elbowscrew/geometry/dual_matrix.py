@@ -42,24 +42,34 @@ def inverse(matrix: DualMatrix) -> DualMatrix:
 
 
 def pseudoinverse(matrix: DualMatrix) -> DualMatrix:
-    """Pseudoinverse of wide matrices of full row rank, ``A^T (A A^T)^-1``, a right inverse.
+    """Pseudoinverse of matrices whose real part has full rank.
 
     Parameters
     ----------
     matrix : DualMatrix, shape (..., m, n)
-        m <= n.
+
+    Returns
+    -------
+    DualMatrix, shape (..., n, m)
+        ``A^T (A A^T)^-1``, a right inverse, of wide matrices; ``(A^T A)^-1 A^T``, a left inverse, of tall ones.
 
     Raises
     ------
     numpy.linalg.LinAlgError
-        If a real part is exactly rank-deficient: a dual pseudoinverse does not exist then in general.
+        If a real part is rank-deficient: a dual pseudoinverse does not exist then in general.
 
     References
     ----------
     P 27; Pennestrì and Stefanelli 2007.
     """
+    rows, columns = matrix.real.shape[-2:]
+    if matrix.real.size and (np.linalg.matrix_rank(matrix.real) < min(rows, columns)).any():
+        msg = f"a dual pseudoinverse needs a real part of full rank ({min(rows, columns)})"
+        raise np.linalg.LinAlgError(msg)
     turned = transpose(matrix)
-    return multiply(turned, inverse(multiply(matrix, turned)))
+    if rows <= columns:
+        return multiply(turned, inverse(multiply(matrix, turned)))
+    return multiply(inverse(multiply(turned, matrix)), turned)
 
 
 def qr(matrix: DualMatrix) -> tuple[DualMatrix, DualMatrix]:

@@ -72,6 +72,7 @@ def quality_summary(quality: BodyQuality) -> dict[str, Any]:
         "marker_residual_mm": _spread_mm(quality.marker_residual),
         "reported_error_mm": _spread_mm(quality.reported_error),
         "pivot_offset_mm": None if quality.pivot_offset is None else 1000.0 * quality.pivot_offset,
+        "shape_deviation": quality.shape_deviation,
         "markers": quality.markers,
     }
 

@@ -34,6 +34,8 @@ class BodyQuality:
         RMS distance of the markers seen from the body's own; the error column of the file.
     pivot_offset : float or None
         Distance of the body's origin from the centroid of its markers, meters.
+    shape_deviation : float or None
+        Largest distance of the triangular factor from the identity, where poses come of the dual QR decomposition.
     markers : int
     """
 
@@ -48,6 +50,7 @@ class BodyQuality:
     marker_residual: Spread | None
     reported_error: Spread | None
     pivot_offset: float | None
+    shape_deviation: float | None
     markers: int
 
 

@@ -90,6 +90,8 @@ class RigidBody:
         Mean marker error as the file has it, meters.
     marker_residual : ndarray, shape (N,), optional
         RMS distance between the markers seen and the body's own, meters: how rigid the cluster was.
+    shape_deviation : ndarray, shape (N,), optional
+        Departure of the dual QR decomposition's triangular factor from the identity, a pure number (P 28).
     """
 
     name: str
@@ -99,6 +101,7 @@ class RigidBody:
     marker_offsets: Float | None = None
     reported_error: Float | None = None
     marker_residual: Float | None = None
+    shape_deviation: Float | None = None
 
     @classmethod
     def from_quaternions(

@@ -50,7 +50,11 @@ def body_from_markers(recording: Recording, name: str, patterns: tuple[str, ...]
     chosen = [marker for marker in recording.markers if marker_matches(marker.name, patterns)]
     if len(chosen) < fewest:
         found = ", ".join(marker.name for marker in chosen) or "none"
-        msg = f"{name}: {', '.join(patterns)!r} fits {len(chosen)} markers ({found}); {method} needs {fewest}"
+        there = ", ".join(marker.name for marker in recording.markers[:8]) or "none; name them to read_recording, too"
+        msg = (
+            f"{name}: {', '.join(patterns)!r} fits {len(chosen)} markers ({found}); {method} needs {fewest}; "
+            f"markers read: {there}"
+        )
         raise SettingError(msg)
     seen = np.stack([marker.position for marker in chosen], axis=1)
     shape = cluster_shape(seen)
@@ -60,18 +64,22 @@ def body_from_markers(recording: Recording, name: str, patterns: tuple[str, ...]
         raise SettingError(msg)
     fitted = fit(shape, seen)
     lost = ~np.isfinite(fitted.dual_quat).all(axis=1)
-    residual = fitted.deviation if method == "svd" else fit_poses(shape, seen).deviation
+    svd = method == "svd"
     return RigidBody(
         name=name,
         dual_quat_lab_body=fitted.dual_quat,
         loss=np.where(lost, TrackingLoss.BLANK, TrackingLoss.NONE).astype(np.uint8),
         marker_offsets=shape,
-        marker_residual=residual,
+        marker_residual=fitted.deviation if svd else fit_poses(shape, seen).deviation,
+        shape_deviation=None if svd else fitted.deviation,
     )
 
 
 def cluster_shape(seen: Float) -> Float | None:
-    """Mean shape of a marker cluster, shape (M, 3), about its centroid and turned as in the first whole frame.
+    """Shape of a marker cluster, shape (M, 3), about its centroid and turned as in the first whole frame.
+
+    Each marker's place is its median over the frames that see all of them, so that a frame with a marker gone astray
+    does not bend the shape.
 
     Parameters
     ----------
@@ -89,9 +97,9 @@ def cluster_shape(seen: Float) -> Float | None:
     shape: Float = whole[0] - whole[0].mean(axis=0)
     for _ in range(_REFINEMENTS):
         pose = fit_poses(shape, whole).dual_quat
-        if not np.isfinite(pose).all():
+        fitted = np.isfinite(pose).all(axis=1)
+        if not fitted.any():
             return shape
-        in_body = transform_points(conjugate(pose)[:, None, :], whole)
-        shape = in_body.mean(axis=0)
+        shape = np.median(transform_points(conjugate(pose[fitted])[:, None, :], whole[fitted]), axis=0)
         shape = shape - shape.mean(axis=0)
     return shape

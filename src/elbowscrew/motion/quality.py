@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from elbowscrew.model import BodyQuality, ClockQuality, QualityWarning, Recording, RigidBody, Spread
 from elbowscrew.motion.clock import elapsed_time
 from elbowscrew.motion.difference import angle_between, origin_distance
-from elbowscrew.motion.tracking import CheckedBody, check_swaps, check_tracking
+from elbowscrew.motion.tracking import CheckedBody, check_swaps, check_tracking, frames_warning
 from elbowscrew.settings import Settings
 
 Float = NDArray[np.float64]
@@ -38,8 +38,8 @@ def check_bodies(
     warnings = list(clock_warnings(recording))
     for body, found in zip(bodies, checked, strict=True):
         warnings += [*found.warnings, *_body_warnings(body, recording)]
-    for (one, first), (other, second) in combinations(zip(bodies, checked, strict=True), 2):
-        warnings += check_swaps(one, other, (first.leap_rows, second.leap_rows), recording)
+    for one, other in combinations(bodies, 2):
+        warnings += check_swaps(one, other, recording, elapsed)
     return checked, tuple(warnings)
 
 
@@ -63,6 +63,7 @@ def body_quality(raw: RigidBody, checked: CheckedBody, recording: Recording) -> 
         marker_residual=_spread(body.marker_residual, body),
         reported_error=_spread(body.reported_error, body),
         pivot_offset=None if body.marker_offsets is None else float(np.linalg.norm(body.marker_offsets.mean(axis=0))),
+        shape_deviation=_largest(body.shape_deviation, body),
         markers=0 if body.marker_offsets is None else len(body.marker_offsets),
     )
 
@@ -92,16 +93,14 @@ def clock_warnings(recording: Recording) -> tuple[QualityWarning, ...]:
             f"{quality.missing_frames} frames are not in the file, in {quality.frame_gaps} places, the first before "
             f"frame {recording.frame[rows[0]]}: taken as gaps in time"
         )
-        told = tuple(recording.frame[rows[:10]].tolist())
-        found.append(QualityWarning(code="missing-frames", message=message, frames=told, count=quality.missing_frames))
+        found.append(frames_warning("missing-frames", message, rows, recording))
     if quality.repeated_frames:
         rows = np.flatnonzero(steps <= 0) + 1
         message = (
             f"frame numbers do not increase in {quality.repeated_frames} places, the first at frame "
             f"{recording.frame[rows[0]]}: the times are taken as the clock"
         )
-        told = tuple(recording.frame[rows[:10]].tolist())
-        found.append(QualityWarning(code="frame-numbers", message=message, frames=told, count=quality.repeated_frames))
+        found.append(frames_warning("frame-numbers", message, rows, recording))
     elif quality.largest_offset_s * recording.rate_hz > 2.0 * _JITTER_FRAMES:
         message = (
             f"times stray from the frame numbers by up to {1000 * quality.largest_offset_s:.3g} ms: "
@@ -118,10 +117,7 @@ def _body_warnings(body: RigidBody, recording: Recording) -> list[QualityWarning
         message = (
             f"the quaternion of body {body.name!r} changes its sign {flips.size} times: the same poses, made continuous"
         )
-        told = tuple(recording.frame[flips[:10]].tolist())
-        found.append(
-            QualityWarning(code="sign-flips", message=message, frames=told, count=int(flips.size), severity="note")
-        )
+        found.append(frames_warning("sign-flips", message, flips, recording, "note"))
     if body.marker_residual is not None:
         rows = np.flatnonzero(np.nan_to_num(body.marker_residual) > _LARGE_RESIDUAL_M)
         if rows.size:
@@ -130,8 +126,7 @@ def _body_warnings(body: RigidBody, recording: Recording) -> list[QualityWarning
                 f"{1000 * _LARGE_RESIDUAL_M:g} mm, at most {1000 * np.nanmax(body.marker_residual):.3g} mm): "
                 "not rigid, mislabeled or swapped"
             )
-            told = tuple(recording.frame[rows[:10]].tolist())
-            found.append(QualityWarning(code="marker-residual", message=message, frames=told, count=int(rows.size)))
+            found.append(frames_warning("marker-residual", message, rows, recording))
     if body.marker_offsets is not None:
         pivot = float(np.linalg.norm(body.marker_offsets.mean(axis=0)))
         if pivot > _FAR_PIVOT_M:
@@ -149,6 +144,10 @@ def _sign_flips(body: RigidBody) -> NDArray[np.intp]:
     real = body.dual_quat_lab_body[known, :4]
     flips: NDArray[np.intp] = known[1:][np.sum(real[1:] * real[:-1], axis=1) < 0.0]
     return flips
+
+
+def _largest(values: Float | None, body: RigidBody) -> float | None:
+    return None if values is None else float(np.nan_to_num(values[body.tracked]).max(initial=0.0))
 
 
 def _spread(values: Float | None, body: RigidBody) -> Spread | None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Final
+from typing import Final, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,9 +25,14 @@ _SENTINEL_DISTANCE_M: Final = 0.02
 
 # Over a longer step than this a body may be anywhere; an excursion longer than this is not taken for one.
 _LONGEST_STEP_S: Final = 0.1
+_LONGEST_STEP_FRAMES: Final = 1.5
 _LONGEST_EXCURSION_S: Final = 1.0
 _LARGEST_TURN: Final = np.radians(120.0)
 _LARGEST_DISTANCE_M: Final = 0.5
+
+# Two bodies are swapped if each comes to lie where the other was, much nearer than to where it was itself.
+_CROSSED_SHARE: Final = 0.25
+_LEAST_SWAP_M: Final = 0.05
 
 _FRAMES_TOLD: Final = 10
 
@@ -41,7 +46,7 @@ class CheckedBody:
     body : RigidBody
     warnings : tuple of QualityWarning
     leap_rows : ndarray of int, shape (L,)
-        Rows at which the body, as it is in the file, arrives by a leap.
+        Rows at which the body arrives by a leap.
     """
 
     body: RigidBody
@@ -94,7 +99,7 @@ def _without_sentinels(
     message = (
         f"body {body.name!r} has no rotation at all, out of its motion, in {_frames(rows, recording)}: taken as lost"
     )
-    warnings.append(_warning("identity-pose", message, rows, recording))
+    warnings.append(frames_warning("identity-pose", message, rows, recording))
     return _lost(body, rows, TrackingLoss.ZERO)
 
 
@@ -129,7 +134,7 @@ def _without_frozen(body: RigidBody, recording: Recording, warnings: list[Qualit
         f"body {body.name!r} repeats its pose to the last digit in {_frames(rows, recording)}: taken as lost tracking "
         "(--frozen keep turns this off)"
     )
-    warnings.append(_warning("frozen", message, rows, recording))
+    warnings.append(frames_warning("frozen", message, rows, recording))
     return _lost(body, rows, TrackingLoss.FROZEN)
 
 
@@ -141,7 +146,8 @@ def _without_leaps(
     if known.size < 2:
         return body, known[:0]
     steps = _Steps(body.dual_quat_lab_body, elapsed, settings)
-    leaps = np.flatnonzero(~steps.possible(known[:-1], known[1:]))
+    longest_s = max(_LONGEST_STEP_S, _LONGEST_STEP_FRAMES / recording.rate_hz)
+    leaps = np.flatnonzero(~steps.possible(known[:-1], known[1:], longest_s))
     if not leaps.size:
         return body, known[:0]
     segments = np.split(known, leaps + 1)
@@ -153,14 +159,14 @@ def _without_leaps(
             f"body {body.name!r} leaps out of its motion and back, {steps.told(known, leaps)}: "
             f"{_frames(outside, recording)} taken as lost ({limits})"
         )
-        warnings.append(_warning("leap", message, outside, recording))
+        warnings.append(frames_warning("leap", message, outside, recording))
     if unresolved.size:
         message = (
             f"body {body.name!r} leaps at {_frames(unresolved, recording)} and does not come back within "
             f"{_LONGEST_EXCURSION_S:g} s, {steps.told(known, leaps)}: flipped, swapped or another body from there on; "
             f"look at the recording ({limits})"
         )
-        warnings.append(_warning("leap-unresolved", message, unresolved, recording))
+        warnings.append(frames_warning("leap-unresolved", message, unresolved, recording))
     return _lost(body, outside, TrackingLoss.LEAP), arrivals
 
 
@@ -171,7 +177,7 @@ class _Steps:
         self._pose, self._elapsed = pose, elapsed
         self._turn_limit, self._speed_limit = np.radians(settings.max_turn_deg_s), settings.max_speed_m_s
 
-    def possible(self, start: Index, end: Index, longest_s: float = _LONGEST_STEP_S) -> Bool:
+    def possible(self, start: Index, end: Index, longest_s: float) -> Bool:
         """Whether a body goes from one pose to the other in the time between; true where that time is long."""
         time_s = np.abs(self._elapsed[end] - self._elapsed[start])
         turn = angle_between(self._pose[start], self._pose[end])
@@ -213,31 +219,35 @@ def _excursions(segments: Sequence[Index], steps: _Steps, elapsed: Float) -> tup
     return rows, np.array(sorted(unresolved), dtype=np.intp)
 
 
-def check_swaps(
-    one: RigidBody, other: RigidBody, leaps: tuple[Index, Index], recording: Recording
-) -> tuple[QualityWarning, ...]:
-    """Tell of frames at which two bodies, as they are in the file, take each other's place.
+def check_swaps(one: RigidBody, other: RigidBody, recording: Recording, elapsed: Float) -> tuple[QualityWarning, ...]:
+    """Tell of frames at which two bodies, as they are in the file, take each other's place, be it behind a short gap.
 
     Parameters
     ----------
     one, other : RigidBody
         Unchecked.
-    leaps : tuple of ndarray
-        Rows at which each arrives by a leap.
+    recording : Recording
+        Gives the frame numbers.
+    elapsed : ndarray, shape (N,)
+        Seconds.
     """
-    rows = np.intersect1d(*leaps)
-    rows = rows[(rows > 0) & one.tracked[rows - 1] & other.tracked[rows - 1]]
+    rows = np.flatnonzero(one.tracked & other.tracked)
+    before, after = rows[:-1], rows[1:]
     a, b = one.dual_quat_lab_body, other.dual_quat_lab_body
-    crossed = origin_distance(a[rows], b[rows - 1]) + origin_distance(b[rows], a[rows - 1])
-    straight = origin_distance(a[rows], a[rows - 1]) + origin_distance(b[rows], b[rows - 1])
-    swapped = rows[crossed < 0.25 * straight]
+    moved = (origin_distance(a[after], a[before]), origin_distance(b[after], b[before]))
+    crossed = origin_distance(a[after], b[before]) + origin_distance(b[after], a[before])
+    swapped = after[
+        (crossed < _CROSSED_SHARE * (moved[0] + moved[1]))
+        & (np.minimum(*moved) > _LEAST_SWAP_M)
+        & (elapsed[after] - elapsed[before] <= _LONGEST_EXCURSION_S)
+    ]
     if not swapped.size:
         return ()
     message = (
         f"bodies {one.name!r} and {other.name!r} exchange their places at {_frames(swapped, recording)}: their poses "
-        "are swapped for a while; relabel them in Motive"
+        "are swapped from there on or until then; relabel them in Motive"
     )
-    return (_warning("swapped-bodies", message, swapped, recording),)
+    return (frames_warning("swapped-bodies", message, swapped, recording),)
 
 
 def _lost(body: RigidBody, rows: Index, reason: TrackingLoss) -> RigidBody:
@@ -247,9 +257,12 @@ def _lost(body: RigidBody, rows: Index, reason: TrackingLoss) -> RigidBody:
     return replace(body, loss=loss, dual_quat_lab_body=np.where(lost, np.nan, body.dual_quat_lab_body))
 
 
-def _warning(code: str, message: str, rows: Index, recording: Recording) -> QualityWarning:
+def frames_warning(
+    code: str, message: str, rows: Index, recording: Recording, severity: Literal["warning", "note"] = "warning"
+) -> QualityWarning:
+    """Build a warning about some rows of a recording."""
     told = tuple(recording.frame[rows[:_FRAMES_TOLD]].tolist())
-    return QualityWarning(code=code, message=message, frames=told, count=int(rows.size))
+    return QualityWarning(code=code, message=message, severity=severity, frames=told, count=int(rows.size))
 
 
 def _frames(rows: Index, recording: Recording) -> str:
