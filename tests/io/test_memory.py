@@ -55,6 +55,49 @@ def test_memory_is_bounded_by_the_columns_kept(wide_take: Path) -> None:
     assert peak < 1.5 * kept + block
 
 
+def long_take(path: Path, kind: str) -> Path:
+    """A long recording of two bodies (or six markers) in one of the other formats."""
+    trial = known_trial(90.0, frames=200, inversion=100)
+    poses = [np.concatenate([quaternion_xyzw(b.R)[:, [3, 0, 1, 2]], b.p], axis=1) for b in bodies_of(trial)]
+    texts = [[",".join(f"{value:.6f}" for value in row) for row in pose.tolist()] for pose in poses]
+    tagged = [
+        [",".join(f"{value:.6f}" for value in (*row[4:], *row[1:4], row[0])) for row in pose.tolist()] for pose in poses
+    ]
+    with path.open("w") as stream:
+        if kind == "row-tagged":
+            stream.write("righthanded\n" + "".join(f'rigidbody,"b{k}",{k},0\n' for k in (1, 2)))
+            stream.writelines(
+                f"frame,{k},{k / 100:.6f},2,1,{tagged[0][k % 200]},0,0,0,2,{tagged[1][k % 200]},0,0,0,0\n"
+                for k in range(ROWS)
+            )
+        elif kind == "plain table":
+            names = [f"b{k}_{part}" for k in (1, 2) for part in ("e0", "e1", "e2", "e3", "x_m", "y_m", "z_m")]
+            stream.write(",".join(["frame,time_s", *names]) + "\n")
+            stream.writelines(f"{k},{k / 100:.6f},{texts[0][k % 200]},{texts[1][k % 200]}\n" for k in range(ROWS))
+        else:
+            names = "".join(f"m{k}\t\t\t" for k in range(5))
+            stream.write(f"PathFileType\t4\nDataRate\tUnits\n100\tmm\nFrame#\tTime\t{names}\n\t\n")
+            stream.writelines(
+                f"{k}\t{k / 100:.6f}\t" + "\t".join(f"{k + j}.25" for j in range(15)) + "\n" for k in range(ROWS)
+            )
+    return path
+
+
+@pytest.mark.parametrize("kind", ["row-tagged", "plain table", "TRC"])
+def test_memory_is_bounded_in_every_format(tmp_path: Path, kind: str) -> None:
+    path = long_take(tmp_path / "long.txt", kind)
+    markers = "*" if kind == "TRC" else ()
+    read_recording(path, markers=markers)
+    tracemalloc.start()
+    try:
+        recording = read_recording(path, markers=markers)
+        peak = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    assert recording.frame.size == ROWS
+    assert peak < 1.5 * ROWS * (2 + (15 if kind == "TRC" else 14)) * 8 + (8 << 20)
+
+
 def test_columns_that_are_not_in_use_are_not_read(wide_take: Path) -> None:
     assert all(body.tracked.all() for body in read_recording(wide_take).bodies)
     with pytest.raises(RecordingError, match="expected a number, found 'not-read'"):

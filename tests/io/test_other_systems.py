@@ -219,7 +219,7 @@ def test_trc_files_state_their_unit_and_rate(tmp_path: Path) -> None:
     assert recording.markers[0].position == pytest.approx(ARM[:, 0], abs=1e-12)
     with pytest.raises(SettingError, match="states mm itself"):
         read_recording(trc(tmp_path / "b.trc"), markers=("*",), units="m")
-    with pytest.raises(SettingError, match="a file of markers"):
+    with pytest.raises(RecordingError, match=r"no rigid bodies in the file \(markers: UA1"):
         read_recording(trc(tmp_path / "c.trc"))
     wrong = read_recording(trc(tmp_path / "d.trc", header={"DataRate": "50"}), markers=("*",))
     assert wrong.rate_hz == pytest.approx(100.0)
@@ -231,7 +231,7 @@ def test_c3d_files_that_are_none_are_refused(tmp_path: Path) -> None:
     path.write_bytes(b"\x02\x50" + bytes(2000))
     with pytest.raises(RecordingError, match="not a C3D file"):
         read_recording(path)
-    with pytest.raises(SettingError, match=r"no rotations in the file \(markers: UA1"):
+    with pytest.raises(RecordingError, match=r"no rigid bodies \(rotations\) in the file \(markers: UA1"):
         read_recording(c3d(tmp_path / "u.c3d", rotations=False))
 
 
@@ -244,3 +244,48 @@ def test_poses_do_not_see_where_the_origin_of_a_cluster_is(tmp_path: Path) -> No
     assert fitted.screw.axis_point[known] == pytest.approx(solved.screw.axis_point[known], abs=1e-9)
     assert fitted.screw.slide[known] == pytest.approx(solved.screw.slide[known], abs=1e-9)
     assert dq.norm(fitted.joint.reference).real == pytest.approx(1.0)
+
+
+def test_a_damaged_c3d_file_takes_nobody_with_it(tmp_path: Path) -> None:
+    """The library behind ezc3d aborts on some of these."""
+    good = c3d(tmp_path / "good.c3d", rotations=True).read_bytes()
+    rng = np.random.default_rng(1)
+    refused = 0
+    for k in range(12):
+        data = bytearray(good)
+        for position in rng.integers(2, 2000, size=40):
+            data[position] = int(rng.integers(0, 256))
+        path = tmp_path / f"bad{k}.c3d"
+        path.write_bytes(bytes(data[: int(rng.integers(600, len(data)))]))
+        try:
+            read_recording(path)
+        except (RecordingError, SettingError) as error:
+            refused += 1
+            assert "\n" not in str(error)
+    assert refused > 6
+
+
+@pytest.mark.parametrize(
+    ("name", "options", "says"),
+    [
+        ("t.csv", {"units": "mm"}, "plain table"),
+        ("t.csv", {"rotation": "XYZ"}, "plain table"),
+        ("t.trc", {"rotation": "XYZ", "markers": "*"}, "TRC"),
+        ("t.c3d", {"rotation": "XYZ"}, "C3D"),
+    ],
+)
+def test_options_that_mean_nothing_for_a_format_are_refused(
+    tmp_path: Path, name: str, options: dict[str, Any], says: str
+) -> None:
+    path = {
+        "t.csv": lambda: table(tmp_path / "t.csv", bodies=True, markers=False),
+        "t.trc": lambda: trc(tmp_path / "t.trc"),
+        "t.c3d": lambda: c3d(tmp_path / "t.c3d", rotations=True),
+    }[name]()
+    with pytest.raises(SettingError, match=rf"of this format \({says}\)"):
+        read_recording(path, **options)
+
+
+def test_one_pattern_may_be_given_as_text(tmp_path: Path) -> None:
+    path = table(tmp_path / "t.csv", bodies=False, markers=True)
+    assert len(read_recording(path, markers="UA*").markers) == 4

@@ -71,7 +71,7 @@ def test_a_wrong_frame_count_is_a_warning(tmp_path: Path) -> None:
 
 def test_the_unit_is_always_meters(tmp_path: Path) -> None:
     path = write_row_tagged(tmp_path / "take.csv", bodies_of(TRIAL))
-    with pytest.raises(SettingError, match="meters"):
+    with pytest.raises(SettingError, match="row-tagged"):
         read_recording(path, units="mm")
 
 

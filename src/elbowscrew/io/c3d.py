@@ -3,19 +3,48 @@
 from __future__ import annotations
 
 import hashlib
+import io
+import json
+import subprocess
+import sys
+from importlib.util import find_spec
 from pathlib import Path
-from typing import Any
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowscrew.errors import RecordingError, SettingError
+from elbowscrew.errors import RecordingError
 from elbowscrew.io.clock import is_rate
-from elbowscrew.io.options import ReadOptions
+from elbowscrew.io.options import ASK_FOR_MARKERS, ReadOptions, stated_unit
 from elbowscrew.model import Marker, Recording, RigidBody, Source
 from elbowscrew.tables import METERS
 
 Float = NDArray[np.float64]
+
+_LONGEST_OPENING_S: Final = 600
+
+
+class _Content(NamedTuple):
+    """What the worker found: points (3, M, N), residuals (1, M, N), rotations (4, 4, K, N'), parameters."""
+
+    points: Float
+    residuals: Float
+    rotations: Float
+    first_frame: int
+    groups: dict[str, dict[str, list[Any]]]
+
+    def value(self, group: str, name: str) -> list[Any]:
+        return self.groups.get(group, {}).get(name, [])
+
+    def labels(self, group: str) -> list[str]:
+        """LABELS, LABELS2, ...: a parameter holds 255 of them at the most."""
+        names = [str(label).strip() for label in self.value(group, "LABELS")]
+        more = 2
+        while self.value(group, f"LABELS{more}"):
+            names += [str(label).strip() for label in self.value(group, f"LABELS{more}")]
+            more += 1
+        return names
 
 
 def recognizes(head: bytes) -> bool:
@@ -25,37 +54,29 @@ def recognizes(head: bytes) -> bool:
 
 def read(path: Path, options: ReadOptions) -> Recording:
     """Read a C3D file; see `elbowscrew.io.reading.read_recording`."""
-    try:
-        import ezc3d
-    except ImportError as error:
-        msg = f"{path}: a C3D file needs ezc3d; install it with: pip install 'elbowscrew[c3d]'"
-        raise RecordingError(msg) from error
-    try:
-        content: Any = ezc3d.c3d(str(path))
-        with path.open("rb") as stream:
-            digest = hashlib.file_digest(stream, "sha256").hexdigest()
-    except (OSError, RuntimeError, ValueError, IndexError, KeyError) as error:
-        msg = f"{path}: not a C3D file that can be read: {error}"
-        raise RecordingError(msg) from error
-    point = content["parameters"]["POINT"]
-    unit = _unit(path, str((_value(point, "UNITS") or [""])[0]), options)
-    rate = float((_value(point, "RATE") or [0.0])[0])
+    content = _open(path)
+    unit = stated_unit(path, "".join(str(text) for text in content.value("POINT", "UNITS")[:1]), options)
+    rate = float((content.value("POINT", "RATE") or [0.0])[0])
     if not is_rate(rate):
-        msg = f"{path}: POINT:RATE is {rate:g}, no possible frame rate"
+        msg = f"{path}: POINT:RATE is {rate:g}, no possible frame rate; export the take again"
         raise RecordingError(msg)
     bodies = _bodies(content, METERS[unit])
     markers = _markers(content, METERS[unit], options)
     if not bodies and not markers:
-        names = ", ".join(_labels(point)[:8]) or "none"
-        msg = f"{path}: no rotations in the file (markers: {names}): give --arm-markers and --forearm-markers"
-        raise SettingError(msg)
-    first = int(content["header"]["points"]["first_frame"])
+        names = ", ".join(content.labels("POINT")[:8]) or "none"
+        msg = f"{path}: no rigid bodies (rotations) in the file (markers: {names}); {ASK_FOR_MARKERS}"
+        raise RecordingError(msg)
     count = bodies[0].loss.size if bodies else len(markers[0].position)
-    frame = np.arange(first, first + count, dtype=np.int64)
+    if not count:
+        msg = f"{path}: no frame in the file; export the take again"
+        raise RecordingError(msg)
+    frame = np.arange(content.first_frame, content.first_frame + count, dtype=np.int64)
+    with path.open("rb") as stream:
+        digest = hashlib.file_digest(stream, "sha256").hexdigest()
     return Recording(
         bodies=tuple(bodies),
         frame=frame,
-        time_s=(frame - first) / rate,
+        time_s=(frame - frame[0]) / rate,
         rate_hz=rate,
         markers=tuple(markers),
         source=Source(
@@ -68,59 +89,64 @@ def read(path: Path, options: ReadOptions) -> Recording:
     )
 
 
-def _value(group: Any, name: str) -> list[Any]:
-    return list(group[name]["value"]) if name in group else []
-
-
-def _labels(group: Any) -> list[str]:
-    """LABELS, LABELS2, ...: a parameter holds 255 of them at the most."""
-    labels = [str(label).strip() for label in _value(group, "LABELS")]
-    more = 2
-    while f"LABELS{more}" in group:
-        labels += [str(label).strip() for label in _value(group, f"LABELS{more}")]
-        more += 1
-    return labels
-
-
-def _unit(path: Path, stated: str, options: ReadOptions) -> str:
-    unit = stated.strip().casefold()
-    if unit and unit not in METERS:
-        msg = f"{path}: POINT:UNITS: expected {', '.join(METERS)}, found {stated!r}"
+def _open(path: Path) -> _Content:
+    if find_spec("ezc3d") is None:
+        msg = f"{path}: a C3D file needs ezc3d; install it with: pip install 'elbowscrew[c3d]'"
         raise RecordingError(msg)
-    if unit and options.units not in (None, unit):
-        msg = f"--units {options.units}: the file states {unit} itself; leave --units out"
-        raise SettingError(msg)
-    if not unit and options.units is None:
-        msg = f"{path}: the file does not state its unit of length; give --units m, cm or mm"
-        raise SettingError(msg)
-    return unit or str(options.units)
+    command = [sys.executable, "-m", "elbowscrew.io.c3d_worker", str(path)]
+    reason = "the file is damaged"
+    try:
+        done = subprocess.run(command, capture_output=True, check=True, timeout=_LONGEST_OPENING_S)  # noqa: S603
+        with np.load(io.BytesIO(done.stdout)) as arrays:
+            statement = json.loads(str(arrays["statement"]))
+            points, residuals, rotations = (
+                np.asarray(arrays[name], dtype=np.float64) for name in ("points", "residuals", "rotations")
+            )
+        content = _Content(points, residuals, rotations, int(statement["first_frame"]), statement["groups"])
+        if content.points.ndim == 3 and content.rotations.ndim == 4:
+            return content
+    except subprocess.CalledProcessError as error:
+        told = error.stderr.decode("utf-8", "replace").strip().splitlines()
+        reason = told[-1] if told and error.returncode > 0 else reason
+    except subprocess.TimeoutExpired:
+        reason = f"it is not open after {_LONGEST_OPENING_S} s"
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        reason = str(error)
+    msg = f"{path}: not a C3D file that can be read: {reason}; export the take again"
+    raise RecordingError(msg)
 
 
-def _markers(content: Any, scale: float, options: ReadOptions) -> list[Marker]:
-    points = np.asarray(content["data"]["points"], dtype=np.float64)
-    residual = np.asarray(content["data"]["meta_points"]["residuals"], dtype=np.float64)
+def _markers(content: _Content, scale: float, options: ReadOptions) -> list[Marker]:
     found = []
-    for k, name in enumerate(_labels(content["parameters"]["POINT"])[: points.shape[1]]):
+    for k, name in enumerate(content.labels("POINT")[: content.points.shape[1]]):
         if options.wants(name):
-            position = scale * points[:3, k].T
-            # A negative residual says: not seen.
-            seen = (residual[0, k] >= 0.0)[:, None] if residual.size else np.ones((len(position), 1), dtype=np.bool_)
-            found.append(Marker(name=name, position=np.where(seen, position, np.nan)))
+            position = scale * content.points[:, k].T
+            if content.residuals.shape[-2:] == content.points.shape[-2:]:
+                # A negative residual says: not seen.
+                position = np.where((content.residuals[0, k] >= 0.0)[:, None], position, np.nan)
+            found.append(Marker(name=name, position=position))
     return found
 
 
-def _bodies(content: Any, scale: float) -> list[RigidBody]:
-    rotations = np.asarray(content["data"].get("rotations", np.empty((4, 4, 0, 0))), dtype=np.float64)
+def _bodies(content: _Content, scale: float) -> list[RigidBody]:
+    # Rotations may be written more often than points; the points give the clock.
+    ratio = max(1, int((content.value("ROTATION", "RATIO") or [1])[0]))
+    rotations = content.rotations[..., ::ratio]
     if not rotations.size:
         return []
-    labels = _labels(content["parameters"]["ROTATION"])
-    ratio = max(1, int((_value(content["parameters"]["ROTATION"], "RATIO") or [1])[0]))
-    rotations = rotations[..., ::ratio]  # rotations may be written more often than points; the points give the clock
+    labels = content.labels("ROTATION")
     bodies = []
     for k in range(rotations.shape[2]):
         matrix = np.moveaxis(rotations[:, :, k], -1, 0)
         name = labels[k] if k < len(labels) else f"rotation {k + 1}"
-        solved = np.isfinite(matrix).all(axis=(1, 2)) & (np.abs(matrix[:, :3, :3]).max(axis=(1, 2)) > 0.0)
+        R = matrix[:, :3, :3]
+        with np.errstate(all="ignore"):
+            departure = np.abs(np.swapaxes(R, 1, 2) @ R - np.eye(3)).max(axis=(1, 2))
+            solved = (departure < _ORTHOGONAL) & (np.linalg.det(np.where(np.isfinite(R), R, 0.0)) > 0.0)
         matrix = np.where(solved[:, None, None], matrix, np.nan)
         bodies.append(RigidBody.from_matrices(name, matrix[:, :3, :3], scale * matrix[:, :3, 3]))
     return bodies
+
+
+# Single precision leaves 1e-6; a block of zeros, or of anything else, is no rotation.
+_ORTHOGONAL: Final = 1e-3

@@ -6,7 +6,7 @@ import csv
 import re
 from collections.abc import Iterator, Sequence
 from itertools import islice
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -138,27 +138,3 @@ def _numbers(source: TextSource, cells: list[str], columns: Sequence[int], place
             msg = f"{place}: column {column + 1}: {error}; export the take again, or blank the cell"
             raise RecordingError(msg) from error
     return row
-
-
-class Growing:
-    """An array that grows by blocks of rows, in place: reading needs little more memory than what is kept."""
-
-    def __init__(self, row_shape: tuple[int, ...] = (), dtype: Any = np.float64) -> None:
-        self._rows = 0
-        self._store: NDArray[Any] = np.empty((0, *row_shape), dtype=dtype)
-
-    def append(self, block: NDArray[Any]) -> None:
-        """Add rows at the end."""
-        needed = self._rows + len(block)
-        if needed > len(self._store):
-            self._resize(max(needed, len(self._store) + len(self._store) // 8))
-        self._store[self._rows : needed] = block
-        self._rows = needed
-
-    def finish(self) -> NDArray[Any]:
-        """Give the array, with no row to spare."""
-        self._resize(self._rows)
-        return self._store
-
-    def _resize(self, rows: int) -> None:
-        self._store.resize((rows, *self._store.shape[1:]), refcheck=False)

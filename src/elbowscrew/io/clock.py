@@ -9,7 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowscrew.errors import RecordingError
+from elbowscrew.io.cells import parse_number
 from elbowscrew.io.source import TextSource
+from elbowscrew.model import QualityWarning
 
 Float = NDArray[np.float64]
 
@@ -62,3 +64,30 @@ def counted_rate(path: Path, frame: NDArray[np.int64], time_s: Float) -> float:
         msg = f"{path}: frame numbers and times do not increase from the first to the last row as a clock does"
         raise RecordingError(msg)
     return rate
+
+
+def frame_rate(path: Path, stated: str, frame: NDArray[np.int64], time_s: Float) -> tuple[float, list[QualityWarning]]:
+    """Frames a second as a file states them, unless its times say otherwise, with a warning then.
+
+    Raises
+    ------
+    RecordingError
+        If neither gives a possible rate.
+    """
+    try:
+        rate = parse_number(stated.replace(",", "."))
+    except ValueError:
+        rate = float("nan")
+    counted = rate_of(frame, time_s)
+    if not is_rate(counted):
+        if not is_rate(rate):
+            msg = f"{path}: neither the header nor the times give a possible frame rate; export the take again"
+            raise RecordingError(msg)
+        return rate, []
+    # A time rounded to milliseconds at either end is no disagreement.
+    if is_rate(rate) and abs(counted - rate) <= rate * (0.01 + 2e-3 / (time_s[-1] - time_s[0])):
+        return rate, []
+    if np.isfinite(rate):
+        message = f"the header states {rate:g} frames a second, the times give {counted:.4g}: the latter is used"
+        return counted, [QualityWarning(code="frame-rate", message=message)]
+    return counted, []

@@ -11,10 +11,11 @@ from numpy.typing import NDArray
 
 from elbowscrew.geometry import quaternion
 from elbowscrew.geometry.dual_quaternion import conjugate, transform_points
-from elbowscrew.io.cells import Growing, read_blocks
+from elbowscrew.io.cells import read_blocks
+from elbowscrew.io.growing import Growing, GrowingBody
 from elbowscrew.io.motive_header import BodyColumns, Header
 from elbowscrew.io.source import TextSource
-from elbowscrew.model import QualityWarning, RigidBody, TrackingLoss, invalid_warning
+from elbowscrew.model import QualityWarning, RigidBody
 
 Float = NDArray[np.float64]
 
@@ -52,12 +53,24 @@ def sample_bodies(
     there are any.
     """
     columns = sorted({k for body in bodies for k in _sampled_columns(body)})
-    cells = np.empty((0, len(columns)))
-    if columns:
-        blocks = list(read_blocks(source, header.lines, columns, header.width, max_rows=_SAMPLE_ROWS))
-        cells = np.concatenate([cells, *blocks])
     place = {column: k for k, column in enumerate(columns)}
-    return [_sample(header, body, cells, place, scale, order) for body in bodies]
+    samples = {k: Growing((len(columns),)) for k, body in enumerate(bodies) if _sampled_columns(body)}
+    wanted = dict.fromkeys(samples, _SAMPLE_ROWS)
+    if columns:
+        for block in read_blocks(source, header.lines, columns, header.width):
+            # A body may be found late: its sample is of the first frames that have it.
+            for k in [k for k, rows in wanted.items() if rows > 0]:
+                own = [place[column] for column in (*bodies[k].rotation.values(), *bodies[k].position.values())]
+                rows = np.flatnonzero(np.isfinite(block[:, own]).all(axis=1))[: wanted[k]]
+                samples[k].append(block[rows])
+                wanted[k] -= rows.size
+            if not any(rows > 0 for rows in wanted.values()):
+                break
+    nothing = np.empty((0, len(columns)))
+    return [
+        _sample(header, body, samples[k].finish() if k in samples else nothing, place, scale, order)
+        for k, body in enumerate(bodies)
+    ]
 
 
 def _sampled_columns(body: BodyColumns) -> set[int]:
@@ -85,10 +98,9 @@ def _sample(
         quat, position = _pose_cells(cells, place, body, scale, order, mirrored=mirrored)
         pose = RigidBody.from_quaternions(body.name, quat, position).dual_quat_lab_body
         found[mirrored] = _offsets_at_rest(transform_points(conjugate(pose)[:, None, :], markers))
-    undecided = (found[False] is None) == (found[True] is None)  # a body that does not move rests either way
-    mirrored = by_version if undecided else found[True] is not None
-    resting = found[mirrored]
-    known = {} if resting is None else dict(zip(numbers, resting, strict=True))
+    undecided = bool(found[False]) == bool(found[True])  # a body that does not move rests either way
+    mirrored = by_version if undecided else bool(found[True])
+    known = {numbers[k]: offset for k, offset in found[mirrored].items()}
     return BodySample(offsets=known, mirrored=mirrored, by_version=undecided and by_version)
 
 
@@ -102,13 +114,13 @@ def _median_where_known(markers: Float) -> Float:
     return result
 
 
-def _offsets_at_rest(in_body: Float) -> Float | None:
-    """Median place of each marker in the body, shape (M, 3); None if one is never seen or they move in it."""
+def _offsets_at_rest(in_body: Float) -> dict[int, Float]:
+    """Median place in the body of each marker that is seen, by its index; none if one of them moves in it."""
     offsets = _median_where_known(in_body)
-    if not np.isfinite(offsets).all():
-        return None
+    seen = np.flatnonzero(np.isfinite(offsets).all(axis=1))
     spread = _median_where_known(np.abs(in_body - offsets))
-    return offsets if (spread < _AT_REST_M).all() else None
+    at_rest = (spread[seen] < _AT_REST_M).all()
+    return {int(k): offsets[k] for k in seen} if at_rest else {}
 
 
 def _pose_cells(
@@ -118,11 +130,11 @@ def _pose_cells(
 
     Motive writes X, Y, Z, W, or angles in degrees.
     """
-    labelled = {label: cells[:, place[k]] for label, k in body.rotation.items()}
+    by_label = {label: cells[:, place[k]] for label, k in body.rotation.items()}
     if order == "quaternion":
-        quat = np.stack([labelled[label] for label in "WXYZ"], axis=1)
+        quat = np.stack([by_label[label] for label in "WXYZ"], axis=1)
     else:
-        angles = np.radians(np.stack([labelled[label] for label in order], axis=1))
+        angles = np.radians(np.stack([by_label[label] for label in order], axis=1))
         quat = quaternion.quat_from_euler_angles(angles, order)
     position = scale * np.stack([cells[:, place[body.position[axis]]] for axis in "XYZ"], axis=1)
     if mirrored:
@@ -135,11 +147,10 @@ class BodyBuilder:
 
     def __init__(self, body: BodyColumns, scale: float, order: str, sample: BodySample) -> None:
         self._body, self._scale, self._order, self._sample = body, scale, order, sample
-        self._pose, self._loss = Growing((8,)), Growing(dtype=np.uint8)
+        self._store = GrowingBody(body.name)
         self._error, self._residual = Growing(), Growing()
         self._seen = {number: xyz for number, xyz in body.seen.items() if number in sample.offsets}
         self._partly_blank = 0
-        self._invalid = 0
 
     @property
     def columns(self) -> set[int]:
@@ -155,15 +166,12 @@ class BodyBuilder:
         quat, position = _pose_cells(block, place, body, self._scale, self._order, mirrored=self._sample.mirrored)
         known = np.isfinite(block[:, [place[k] for k in (*body.rotation.values(), *body.position.values())]])
         self._partly_blank += int((known.any(axis=1) & ~known.all(axis=1)).sum())
-        rigid = RigidBody.from_quaternions(body.name, quat, position, only_plausible=True)
-        self._invalid += int((rigid.loss == TrackingLoss.INVALID).sum())
-        self._pose.append(rigid.dual_quat_lab_body)
-        self._loss.append(rigid.loss)
+        pose = self._store.append(quat, position)
         if body.error is not None:
             self._error.append(self._scale * block[:, place[body.error]])
         if self._seen:
             seen = self._scale * np.stack([block[:, [place[k] for k in xyz]] for xyz in self._seen.values()], axis=1)
-            self._residual.append(self._rms_residual(rigid.dual_quat_lab_body, seen))
+            self._residual.append(self._rms_residual(pose, seen))
 
     def _rms_residual(self, pose: Float, seen: Float) -> Float:
         offsets = np.stack([self._sample.offsets[number] for number in self._seen])
@@ -176,11 +184,8 @@ class BodyBuilder:
     def finish(self) -> RigidBody:
         """Give the body."""
         offsets = self._sample.offsets
-        rigid = RigidBody(
-            name=self._body.name,
+        rigid = self._store.finish(
             identifier=self._body.identifier,
-            dual_quat_lab_body=self._pose.finish(),
-            loss=self._loss.finish(),
             marker_offsets=np.stack([offsets[n] for n in sorted(offsets)]) if offsets else None,
         )
         if self._body.error is not None:
@@ -190,7 +195,7 @@ class BodyBuilder:
     def warnings(self, version: str) -> list[QualityWarning]:
         """What the reader of a result must know of this body's cells."""
         found = []
-        name = self._body.name
+        name, offsets_known = self._body.name, bool(self._sample.offsets)
         if self._sample.mirrored:
             by = "as that format version does" if self._sample.by_version else "against its own markers"
             message = f"body {name!r} is written mirrored in z, {by} (format version {version}): corrected"
@@ -201,6 +206,7 @@ class BodyBuilder:
                 f"body {name!r} has some but not all cells of its pose in {self._partly_blank} frames: taken as lost"
             )
             found.append(QualityWarning(code="partly-blank", message=message))
-        if self._invalid:
-            found.append(invalid_warning(name, self._invalid))
-        return found
+        if not offsets_known and (self._body.fitted or self._body.seen):
+            message = f"the markers of body {name!r} are not at rest in it: they are not used"
+            found.append(QualityWarning(code="markers-unused", message=message))
+        return found + self._store.warnings()

@@ -9,18 +9,18 @@ from numpy.typing import NDArray
 
 from elbowscrew.errors import RecordingError, SettingError
 from elbowscrew.geometry import quaternion
-from elbowscrew.io.cells import Growing, parse_number, read_blocks
-from elbowscrew.io.clock import check_frames, is_rate, rate_of
+from elbowscrew.io.cells import read_blocks
+from elbowscrew.io.clock import check_frames, frame_rate
+from elbowscrew.io.growing import Growing
 from elbowscrew.io.motive_bodies import BodyBuilder, sample_bodies
 from elbowscrew.io.motive_header import BodyColumns, Header, body_columns, marker_columns, parse_header
-from elbowscrew.io.options import ReadOptions
+from elbowscrew.io.options import ReadOptions, stated_unit
 from elbowscrew.io.source import TextSource
 from elbowscrew.model import Marker, QualityWarning, Recording, Source
 from elbowscrew.tables import METERS
 
 Float = NDArray[np.float64]
 
-_UNIT_NAMES: Final = {"meters": "m", "centimeters": "cm", "millimeters": "mm"}
 _KNOWN_VERSIONS: Final = ("1.1", "1.2", "1.21", "1.22", "1.23", "1.24", "1.25")
 
 
@@ -32,9 +32,9 @@ def recognizes(cells: list[str]) -> bool:
 def read(source: TextSource, options: ReadOptions) -> Recording:
     """Read a file of the column layout; see `elbowscrew.io.reading.read_recording`."""
     header = parse_header(source)
-    wanted = marker_columns(source, header, options)
+    wanted = marker_columns(header, options)
     bodies = body_columns(source, header, needed=not wanted)
-    unit = _length_unit(source, header, options.units)
+    unit = stated_unit(source.path, header.pairs.get("Length Units", ""), options)
     order = _rotation_type(source, header, bodies, options.rotation) if bodies else ""
     samples = sample_bodies(source, header, bodies, METERS[unit], order)
     builders = [BodyBuilder(body, METERS[unit], order, sample) for body, sample in zip(bodies, samples, strict=True)]
@@ -56,7 +56,8 @@ def read(source: TextSource, options: ReadOptions) -> Recording:
     if frame.size == 0:
         msg = f"{source.path}:{header.lines + 1}: no frame follows the header; export the take again"
         raise RecordingError(msg)
-    rate, warnings = _rate(source, header, frame, time_s)
+    stated_rate = header.pairs.get("Export Frame Rate") or header.pairs.get("Capture Frame Rate") or ""
+    rate, warnings = frame_rate(source.path, stated_rate, frame, time_s)
     for builder in builders:
         warnings += builder.warnings(header.version)
     return Recording(
@@ -78,28 +79,11 @@ def read(source: TextSource, options: ReadOptions) -> Recording:
     )
 
 
-def _length_unit(source: TextSource, header: Header, units: str | None) -> str:
-    stated = header.pairs.get("Length Units", "")
-    if not stated:
-        if units is None:
-            msg = f"{source.path}:1: the file does not state its unit of length; give --units m, cm or mm"
-            raise SettingError(msg)
-        return units
-    unit = _UNIT_NAMES.get(stated.casefold())
-    if unit is None:
-        msg = f"{source.path}:1: Length Units: expected {', '.join(_UNIT_NAMES)}, found {stated!r}"
-        raise RecordingError(msg)
-    if units is not None and units != unit:
-        msg = f"units: the file states {stated} itself, which {units!r} contradicts; leave --units out"
-        raise SettingError(msg)
-    return unit
-
-
 def _rotation_type(source: TextSource, header: Header, bodies: tuple[BodyColumns, ...], rotation: str | None) -> str:
     """Return "quaternion" or an Euler order; the labels have the last word on which of the two it is."""
     if all("W" in body.rotation for body in bodies):
         if rotation not in (None, "quaternion"):
-            msg = f"--rotation {rotation}: the file has quaternions (its columns are labelled X, Y, Z, W)"
+            msg = f"--rotation {rotation}: the file has quaternions (its columns are labeled X, Y, Z, W)"
             raise SettingError(msg)
         return "quaternion"
     stated = header.pairs.get("Rotation Type", "").upper()
@@ -121,28 +105,6 @@ def _rotation_type(source: TextSource, header: Header, bodies: tuple[BodyColumns
         msg = f"{source.path}:1: Rotation Type {stated!r} does not fit the rotation columns X, Y, Z"
         raise RecordingError(msg)
     return order
-
-
-def _rate(
-    source: TextSource, header: Header, frame: NDArray[np.int64], time_s: Float
-) -> tuple[float, list[QualityWarning]]:
-    stated = header.pairs.get("Export Frame Rate") or header.pairs.get("Capture Frame Rate") or ""
-    try:
-        rate = parse_number(stated.replace(",", "."))
-    except ValueError:
-        rate = float("nan")
-    counted = rate_of(frame, time_s)
-    plausible = [value for value in (counted, rate) if is_rate(value)]
-    if not plausible:
-        msg = f"{source.path}: neither the header nor the times give a possible frame rate; export the take again"
-        raise RecordingError(msg)
-    # A time rounded to milliseconds at either end is no disagreement.
-    if len(plausible) == 2 and abs(counted - rate) <= rate * (0.01 + 2e-3 / (time_s[-1] - time_s[0])):
-        return rate, []
-    if np.isfinite(rate) and counted == plausible[0]:
-        message = f"the header states {rate:g} frames a second, the time column gives {counted:.4g}: the latter is used"
-        return counted, [QualityWarning(code="frame-rate", message=message)]
-    return plausible[0], []
 
 
 def _file_warnings(source: TextSource, header: Header, rows: int) -> list[QualityWarning]:

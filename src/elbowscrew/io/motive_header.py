@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import csv
 import re
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import islice
 from typing import Final
 
 from elbowscrew.errors import RecordingError
-from elbowscrew.io.options import ReadOptions
+from elbowscrew.io.options import ASK_FOR_MARKERS, ReadOptions
 from elbowscrew.io.source import TextSource
 
 _HEADER_LINES: Final = 25
@@ -154,7 +155,7 @@ def body_columns(source: TextSource, header: Header, *, needed: bool = True) -> 
     if not groups and needed:
         kinds = sorted({column.kind for column in header.columns[2:] if column.kind})
         found = ", ".join(kinds) if kinds else "no data columns at all"
-        or_markers = ", or give --arm-markers and --forearm-markers" if "Marker" in kinds else ""
+        or_markers = f", or {ASK_FOR_MARKERS}" if "Marker" in kinds else ""
         msg = (
             f"{source.path}: no rigid bodies in the file (found: {found}); in Motive, solve the bodies and tick "
             f"'Rigid Bodies' in the export{or_markers}"
@@ -162,8 +163,8 @@ def body_columns(source: TextSource, header: Header, *, needed: bool = True) -> 
         raise RecordingError(msg)
     bodies = []
     for (identifier, name), columns in groups.items():
-        rotation = _labelled(source, columns, "rotation", name)
-        position = _labelled(source, columns, "position", name)
+        rotation = _labeled(source, columns, "rotation", name)
+        position = _labeled(source, columns, "position", name)
         if set(position) != set("XYZ") or set(rotation) not in (set("XYZ"), set("XYZW")):
             msg = (
                 f"{source.path}:{header.lines}: body {name!r}: expected rotation X, Y, Z (W) and position X, Y, Z, "
@@ -185,26 +186,17 @@ def body_columns(source: TextSource, header: Header, *, needed: bool = True) -> 
     return tuple(bodies)
 
 
-def marker_columns(source: TextSource, header: Header, options: ReadOptions) -> dict[str, tuple[int, ...]]:
-    """X, Y and Z columns of the markers asked for, by name.
-
-    Raises
-    ------
-    RecordingError
-        If two markers of one name are asked for: they cannot be told apart.
-    """
-    labelled: dict[str, dict[str, int]] = {}
+def marker_columns(header: Header, options: ReadOptions) -> dict[str, tuple[int, ...]]:
+    """X, Y and Z columns of the markers asked for, by name; markers of one name have their id behind it."""
+    grouped: dict[tuple[str, str], dict[str, int]] = {}
     for column in header.columns:
         if column.kind.casefold() == "marker" and column.field == "position" and options.wants(column.name):
-            if column.axis in labelled.setdefault(column.name, {}):
-                msg = (
-                    f"{source.path}: marker {column.name!r} stands twice in the file; name the markers apart in Motive"
-                )
-                raise RecordingError(msg)
-            labelled[column.name][column.axis] = column.index
-    return {
-        name: tuple(axes[axis] for axis in "XYZ") for name, axes in labelled.items() if {"X", "Y", "Z"} <= set(axes)
+            grouped.setdefault((column.name, column.identifier), {})[column.axis] = column.index
+    names = Counter(name for name, _ in grouped)
+    by_name = {
+        name if names[name] == 1 else f"{name} ({identifier})": axes for (name, identifier), axes in grouped.items()
     }
+    return {name: tuple(axes[axis] for axis in "XYZ") for name, axes in by_name.items() if {"X", "Y", "Z"} <= set(axes)}
 
 
 def _marker_columns(
@@ -214,18 +206,18 @@ def _marker_columns(
 
     Fitted markers bear the body's identifier, seen ones its name.
     """
-    labelled: dict[str, dict[str, int]] = {}
+    by_name: dict[str, dict[str, int]] = {}
     for column in columns:
         if column.kind.casefold() != kind or column.field != "position":
             continue
         if column.identifier == identifier if body is None else _is_marker_of(body, column.name):
-            labelled.setdefault(column.name, {})[column.axis] = column.index
+            by_name.setdefault(column.name, {})[column.axis] = column.index
     numbered = {
         int(number[0]): tuple(axes[axis] for axis in "XYZ")
-        for name, axes in labelled.items()
+        for name, axes in by_name.items()
         if (number := _LAST_NUMBER.search(name)) and {"X", "Y", "Z"} <= set(axes)
     }
-    return numbered if len(numbered) == len(labelled) else {}
+    return numbered if len(numbered) == len(by_name) else {}
 
 
 def _is_marker_of(body: str, marker: str) -> bool:
@@ -233,15 +225,15 @@ def _is_marker_of(body: str, marker: str) -> bool:
     return rest != marker and re.fullmatch(r"[:_\- ]\s*Marker\s*\d+", rest) is not None
 
 
-def _labelled(source: TextSource, columns: list[ColumnKey], field: str, body: str) -> dict[str, int]:
-    labelled: dict[str, int] = {}
+def _labeled(source: TextSource, columns: list[ColumnKey], field: str, body: str) -> dict[str, int]:
+    by_name: dict[str, int] = {}
     for column in columns:
         if column.field == field:
-            if column.axis in labelled:
+            if column.axis in by_name:
                 msg = (
                     f"{source.path}: body {body!r} stands twice in the file with the same id (columns "
-                    f"{labelled[column.axis] + 1} and {column.index + 1}); export the take again"
+                    f"{by_name[column.axis] + 1} and {column.index + 1}); export the take again"
                 )
                 raise RecordingError(msg)
-            labelled[column.axis] = column.index
-    return labelled
+            by_name[column.axis] = column.index
+    return by_name

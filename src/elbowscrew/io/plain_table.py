@@ -14,11 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowscrew.errors import RecordingError
-from elbowscrew.io.cells import Growing, read_blocks
+from elbowscrew.io.cells import read_blocks
 from elbowscrew.io.clock import check_frames, counted_rate
-from elbowscrew.io.options import ReadOptions
+from elbowscrew.io.growing import Growing, GrowingBody
+from elbowscrew.io.options import ASK_FOR_MARKERS, ReadOptions
 from elbowscrew.io.source import TextSource
-from elbowscrew.model import Marker, QualityWarning, Recording, RigidBody, Source, TrackingLoss, invalid_warning
+from elbowscrew.model import Marker, Recording, Source
 from elbowscrew.tables import METERS
 
 Float = NDArray[np.float64]
@@ -40,38 +41,34 @@ def read(source: TextSource, options: ReadOptions) -> Recording:
     markers = {name: parts for name, parts in things.items() if set(parts) == set("xyz") and options.wants(name)}
     if not bodies and not markers:
         seen = ", ".join(list(things)[:8]) or "none"
-        msg = f"{source.path}:{line}: no rigid bodies in the table, and no markers asked for (markers: {seen})"
+        msg = f"{source.path}:{line}: no rigid bodies in the table (markers: {seen}); {ASK_FOR_MARKERS}"
         raise RecordingError(msg)
     wanted = sorted({0, 1}.union(*(parts.values() for parts in (*bodies.values(), *markers.values()))))
     place = {column: k for k, column in enumerate(wanted)}
-    kept = Growing((len(wanted),))
+    frames, times = Growing(dtype=np.int64), Growing()
+    grown = {name: GrowingBody(name) for name in bodies}
+    positions = {name: Growing((3,)) for name in markers}
     number = line
     for block in read_blocks(source, line, wanted, len(names)):
         check_frames(source, number, block)
-        kept.append(block)
+        frames.append(block[:, 0].astype(np.int64))
+        times.append(block[:, 1])
+        for name, parts in bodies.items():
+            cells = block[:, [place[parts[part]] for part in _POSE]]
+            grown[name].append(cells[:, :4], scales[name] * cells[:, 4:])
+        for name, parts in markers.items():
+            positions[name].append(scales[name] * block[:, [place[parts[axis]] for axis in "xyz"]])
         number += len(block)
-    data = kept.finish()
-    if not len(data):
+    frame, time_s = frames.finish(), times.finish()
+    if not frame.size:
         msg = f"{source.path}:{line + 1}: no frame follows the header"
         raise RecordingError(msg)
-    frame, time_s = data[:, 0].astype(np.int64), data[:, 1].copy()
-    warnings: list[QualityWarning] = []
-    rigid = []
-    for name, parts in bodies.items():
-        cells = np.stack([data[:, place[parts[part]]] for part in _POSE], axis=1)
-        body = RigidBody.from_quaternions(name, cells[:, :4], scales[name] * cells[:, 4:], only_plausible=True)
-        invalid = int((body.loss == TrackingLoss.INVALID).sum())
-        warnings += [invalid_warning(name, invalid)] if invalid else []
-        rigid.append(body)
     return Recording(
-        bodies=tuple(rigid),
+        bodies=tuple(body.finish() for body in grown.values()),
         frame=frame,
         time_s=time_s,
         rate_hz=counted_rate(source.path, frame, time_s),
-        markers=tuple(
-            Marker(name=name, position=scales[name] * np.stack([data[:, place[parts[k]]] for k in "xyz"], axis=1))
-            for name, parts in markers.items()
-        ),
+        markers=tuple(Marker(name=name, position=kept.finish()) for name, kept in positions.items()),
         source=Source(
             path=str(source.path),
             sha256=source.sha256,
@@ -79,7 +76,7 @@ def read(source: TextSource, options: ReadOptions) -> Recording:
             length_unit=", ".join(sorted({_unit_of(scale) for scale in scales.values()})),
             rotation_type="quaternion" if bodies else "",
         ),
-        warnings=tuple(warnings),
+        warnings=tuple(warning for body in grown.values() for warning in body.warnings()),
     )
 
 

@@ -9,13 +9,17 @@ from itertools import islice
 from pathlib import Path
 from typing import Final
 
-from elbowscrew.errors import RecordingError, UsageError
+from elbowscrew.errors import RecordingError, SettingError, UsageError
 from elbowscrew.io import c3d, motive_columns, plain_table, row_tagged, trc
 from elbowscrew.io.cells import parse_number
 from elbowscrew.io.options import ReadOptions
 from elbowscrew.io.source import TextSource, first_bytes, open_source
 from elbowscrew.model import Recording
 from elbowscrew.tables import METERS
+
+_UNITS: Final = frozenset({"units"})
+_MARKERS: Final = frozenset({"markers"})
+_ALL: Final = _UNITS | _MARKERS | {"rotation"}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -28,18 +32,21 @@ class Format:
     recognizes : callable
         Told the cells of the first line with any content, in lower case.
     read : callable
+    accepts : frozenset of str
+        The fields of `ReadOptions` that mean something for it.
     """
 
     name: str
     recognizes: Callable[[list[str]], bool]
     read: Callable[[TextSource, ReadOptions], Recording]
+    accepts: frozenset[str]
 
 
 FORMATS: Final = (
-    Format(name="Motive columns", recognizes=motive_columns.recognizes, read=motive_columns.read),
-    Format(name="plain table", recognizes=plain_table.recognizes, read=plain_table.read),
-    Format(name="TRC", recognizes=trc.recognizes, read=trc.read),
-    Format(name="row-tagged", recognizes=row_tagged.recognizes, read=row_tagged.read),
+    Format(name="Motive columns", recognizes=motive_columns.recognizes, read=motive_columns.read, accepts=_ALL),
+    Format(name="plain table", recognizes=plain_table.recognizes, read=plain_table.read, accepts=_MARKERS),
+    Format(name="TRC", recognizes=trc.recognizes, read=trc.read, accepts=_UNITS | _MARKERS),
+    Format(name="row-tagged", recognizes=row_tagged.recognizes, read=row_tagged.read, accepts=frozenset()),
 )
 """A new text format is one module with `recognizes` and `read` and one entry here; the first that fits reads it."""
 
@@ -49,7 +56,7 @@ def read_recording(
     *,
     units: str | None = None,
     rotation: str | None = None,
-    markers: Sequence[str] = (),
+    markers: str | Sequence[str] = (),
 ) -> Recording:
     """Read a recording.
 
@@ -62,7 +69,7 @@ def read_recording(
         Unit of length, for a file that states none. A file's own statement is not overruled.
     rotation : str, optional
         "quaternion" or an Euler order such as "XYZ", for a file that states none.
-    markers : sequence of str, optional
+    markers : str or sequence of str, optional
         Names of markers to read, or patterns such as "Arm*"; none by default.
 
     Returns
@@ -74,25 +81,37 @@ def read_recording(
     RecordingError
         If the file cannot be read safely; the message says where and why.
     SettingError
-        If the file lacks a statement that `units` or `rotation` must supply, or they contradict it; if it has markers
-        only and none are asked for.
+        If the file lacks a statement that `units` or `rotation` must supply, or they contradict it, or its format
+        knows no such thing.
     UsageError
         If `units` is no possible one.
     """
     if units is not None and units not in METERS:
         msg = f"units: expected one of {', '.join(METERS)}, found {units!r}"
         raise UsageError(msg)
-    options = ReadOptions(units=units, rotation=rotation, markers=tuple(markers))
+    patterns = (markers,) if isinstance(markers, str) else tuple(markers)
+    options = ReadOptions(units=units, rotation=rotation, markers=patterns)
     place = Path(path)
     if c3d.recognizes(first_bytes(place, 2)):
+        _check_options(place, "C3D", options, _UNITS | _MARKERS)
         return c3d.read(place, options)
     source = open_source(place)
     first_line = next((line for line in islice(source.lines(), 20) if line.strip(", ;\t")), "")
     cells = [cell.strip().strip('"').strip().casefold() for cell in first_line.split(source.delimiter)]
     for entry in FORMATS:
         if entry.recognizes(cells):
+            _check_options(place, entry.name, options, entry.accepts)
             return entry.read(source, options)
     raise RecordingError(_refusal(source, cells[0]))
+
+
+def _check_options(path: Path, name: str, options: ReadOptions, accepted: frozenset[str]) -> None:
+    given = {key for key in _ALL if getattr(options, key)}
+    strangers = sorted(given - accepted)
+    if strangers:
+        told = ", ".join(strangers)
+        msg = f"{path}: {told}: a file of this format ({name}) states or has no such thing; leave it out"
+        raise SettingError(msg)
 
 
 def _refusal(source: TextSource, first_cell: str) -> str:

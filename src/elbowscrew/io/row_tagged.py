@@ -5,22 +5,31 @@ from __future__ import annotations
 import csv
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from elbowscrew.errors import RecordingError, SettingError
+from elbowscrew.errors import RecordingError
 from elbowscrew.io.cells import parse_number
 from elbowscrew.io.clock import LAST_FRAME, LATEST_TIME_S, counted_rate
+from elbowscrew.io.growing import Growing, GrowingBody
 from elbowscrew.io.options import ReadOptions
 from elbowscrew.io.source import TextSource
-from elbowscrew.model import QualityWarning, Recording, RigidBody, Source, TrackingLoss, invalid_warning
+from elbowscrew.model import QualityWarning, Recording, Source, TrackingLoss
 
 TAGS: Final = ("comment", "info", "righthanded", "lefthanded", "frame", "trackable", "rigidbody")
 _DEFINITIONS: Final = ("trackable", "rigidbody")
+_BLOCK_FRAMES: Final = 1024
 _BODY_CELLS: Final = 11  # id, x, y, z, qx, qy, qz, qw, yaw, pitch, roll
 _OLD_VERSION: Final = "1.0"
+
+
+class _Frame(NamedTuple):
+    """One frame row: poses as x, y, z, qx, qy, qz, qw by body."""
+
+    frame: int
+    time_s: float
+    poses: dict[int, list[float]]
 
 
 @dataclass(slots=True)
@@ -31,9 +40,27 @@ class _Parsed:
     left_handed: bool = False
     names: dict[int, str] = field(default_factory=dict)
     markers: dict[int, list[list[float]]] = field(default_factory=dict)
-    frame: list[int] = field(default_factory=list)
-    time_s: list[float] = field(default_factory=list)
-    poses: dict[int, list[tuple[int, list[float]]]] = field(default_factory=dict)
+    frames: Growing = field(default_factory=lambda: Growing(dtype=np.int64))
+    times: Growing = field(default_factory=Growing)
+    bodies: dict[int, GrowingBody] = field(default_factory=dict)
+    strangers: set[int] = field(default_factory=set)
+    pending: list[_Frame] = field(default_factory=list)
+    begun: bool = False
+
+    def flush(self) -> None:
+        """Turn the frames gathered into arrays."""
+        if not self.pending:
+            return
+        self.frames.append(np.array([one.frame for one in self.pending], dtype=np.int64))
+        self.times.append(np.array([one.time_s for one in self.pending]))
+        for identifier, body in self.bodies.items():
+            cells = np.full((len(self.pending), 7), np.nan)
+            loss = np.full(len(self.pending), TrackingLoss.ABSENT, dtype=np.uint8)
+            for k, one in enumerate(self.pending):
+                if identifier in one.poses:
+                    cells[k], loss[k] = one.poses[identifier], TrackingLoss.NONE
+            body.append(cells[:, [6, 3, 4, 5]], cells[:, :3], loss)
+        self.pending.clear()
 
 
 def recognizes(cells: list[str]) -> bool:
@@ -47,9 +74,7 @@ def read(source: TextSource, options: ReadOptions) -> Recording:
     Positions are meters, quaternions x, y, z, w. A body that is missing from a frame's row was not tracked; the
     extended rows, which repeat its last pose then, are not used.
     """
-    if options.units not in (None, "m") or options.rotation not in (None, "quaternion"):
-        msg = "units and rotation: the row-tagged layout has always meters and quaternions; leave both options out"
-        raise SettingError(msg)
+    del options  # a format without options: see the registry
     parsed = _parse(source)
     _validate(source, parsed)
     return _build(source, parsed)
@@ -66,13 +91,14 @@ def _parse(source: TextSource) -> _Parsed:
                 parsed.left_handed = True
             elif tag == "frame":
                 _parse_frame(parsed, row)
-            elif tag in _DEFINITIONS and not parsed.frame:  # after the first frame they are extended rows
+            elif tag in _DEFINITIONS and not parsed.begun:  # after the first frame they are extended rows
                 identifier, count = _integer(row[2]), _integer(row[3])
                 offsets = [_finite(cell) for cell in row[4 : 4 + 3 * count]]
                 if identifier in parsed.names or len(offsets) != 3 * count:
                     msg = f"body {row[1]!r} is defined twice" if identifier in parsed.names else "the row is cut"
                     raise ValueError(msg)
                 parsed.names[identifier] = row[1]
+                parsed.bodies[identifier] = GrowingBody(row[1])
                 parsed.markers[identifier] = [offsets[k : k + 3] for k in range(0, 3 * count, 3)]
             elif tag not in TAGS:
                 msg = f"expected one of {', '.join(TAGS)} in the first cell, found {row[0][:40]!r}"
@@ -81,6 +107,7 @@ def _parse(source: TextSource) -> _Parsed:
             reason = "the row is cut" if isinstance(error, IndexError) else str(error)
             msg = f"{source.path}:{number}: {reason}; export the take again"
             raise RecordingError(msg) from error
+    parsed.flush()
     return parsed
 
 
@@ -121,21 +148,23 @@ def _parse_frame(parsed: _Parsed, row: list[str]) -> None:
     frame, time_s, count = _integer(row[1]), _finite(row[2]), _integer(row[3])
     if count < 0 or len(row) < 4 + _BODY_CELLS * count:
         raise IndexError
-    index = len(parsed.frame)
-    seen: set[int] = set()
+    poses: dict[int, list[float]] = {}
     for k in range(count):
         cells = row[4 + _BODY_CELLS * k : 4 + _BODY_CELLS * (k + 1)]
         identifier = _integer(cells[0])
-        if identifier in seen:
+        if identifier in poses:
             msg = f"body {identifier} stands twice in the frame"
             raise ValueError(msg)
-        seen.add(identifier)
-        parsed.poses.setdefault(identifier, []).append((index, [_finite(cell) for cell in cells[1:8]]))
+        poses[identifier] = [_finite(cell) for cell in cells[1:8]]
+        if identifier not in parsed.bodies:
+            parsed.strangers.add(identifier)
     if abs(time_s) > LATEST_TIME_S:
         msg = f"expected a time in seconds, found {time_s:g}"
         raise ValueError(msg)
-    parsed.frame.append(frame)
-    parsed.time_s.append(time_s)
+    parsed.begun = True
+    parsed.pending.append(_Frame(frame, time_s, poses))
+    if len(parsed.pending) == _BLOCK_FRAMES:
+        parsed.flush()
 
 
 def _validate(source: TextSource, parsed: _Parsed) -> None:
@@ -143,11 +172,11 @@ def _validate(source: TextSource, parsed: _Parsed) -> None:
     faults = []
     if parsed.left_handed:
         faults.append("left-handed coordinates, in which every rotation is mirrored, are not read")
-    if not parsed.frame:
+    if not parsed.begun:
         faults.append("no frame rows")
-    if not parsed.names and not parsed.poses:
+    if not parsed.names and not parsed.strangers:
         faults.append("no rigid bodies (trackables)")
-    strangers = sorted(set(parsed.poses) - set(parsed.names))
+    strangers = sorted(parsed.strangers)
     if strangers:
         faults.append(
             f"the frames tell of bodies {', '.join(map(str, strangers))} but the definitions of "
@@ -159,12 +188,15 @@ def _validate(source: TextSource, parsed: _Parsed) -> None:
 
 
 def _build(source: TextSource, parsed: _Parsed) -> Recording:
-    frame = np.array(parsed.frame, dtype=np.int64)
-    time_s = np.array(parsed.time_s)
-    bodies = [_body(parsed, identifier, frame.size) for identifier in parsed.names]
-    invalid = {body.name: int((body.loss == TrackingLoss.INVALID).sum()) for body in bodies}
-    warnings = [invalid_warning(name, count) for name, count in invalid.items() if count]
+    frame, time_s = parsed.frames.finish(), parsed.times.finish()
+    bodies = [
+        body.finish(identifier=str(identifier), marker_offsets=np.array(parsed.markers[identifier]).reshape(-1, 3))
+        if parsed.markers[identifier]
+        else body.finish(identifier=str(identifier))
+        for identifier, body in parsed.bodies.items()
+    ]
     rate = counted_rate(source.path, frame, time_s)
+    warnings = [warning for body in parsed.bodies.values() for warning in body.warnings()]
     stated = parsed.info.get("framecount", "")
     if stated and stated != str(frame.size):
         message = f"the file states {stated} frames and has {frame.size}"
@@ -186,23 +218,4 @@ def _build(source: TextSource, parsed: _Parsed) -> Recording:
             metadata=parsed.info,
         ),
         warnings=tuple(warnings),
-    )
-
-
-def _body(parsed: _Parsed, identifier: int, frames: int) -> RigidBody:
-    cells: NDArray[np.float64] = np.full((frames, 7), np.nan)
-    loss = np.full(frames, TrackingLoss.ABSENT, dtype=np.uint8)
-    poses = parsed.poses.get(identifier, [])
-    rows = [row for row, _ in poses]
-    cells[rows] = np.array([pose for _, pose in poses]).reshape(-1, 7)
-    loss[rows] = TrackingLoss.NONE
-    markers = parsed.markers[identifier]
-    return RigidBody.from_quaternions(
-        parsed.names[identifier],
-        cells[:, [6, 3, 4, 5]],
-        cells[:, :3],
-        identifier=str(identifier),
-        loss=loss,
-        marker_offsets=markers or None,
-        only_plausible=True,
     )

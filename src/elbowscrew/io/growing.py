@@ -1,0 +1,67 @@
+"""Arrays and bodies that grow block by block, in place: reading needs little more memory than what is kept."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowscrew.model import QualityWarning, RigidBody, TrackingLoss, invalid_warning
+
+Float = NDArray[np.float64]
+
+
+class Growing:
+    """An array that grows by blocks of rows."""
+
+    def __init__(self, row_shape: tuple[int, ...] = (), dtype: Any = np.float64) -> None:
+        self._rows = 0
+        self._store: NDArray[Any] = np.empty((0, *row_shape), dtype=dtype)
+
+    def append(self, block: NDArray[Any]) -> None:
+        """Add rows at the end."""
+        needed = self._rows + len(block)
+        if needed > len(self._store):
+            self._resize(max(needed, len(self._store) + len(self._store) // 8))
+        self._store[self._rows : needed] = block
+        self._rows = needed
+
+    def finish(self) -> NDArray[Any]:
+        """Give the array, with no row to spare."""
+        self._resize(self._rows)
+        return self._store
+
+    def _resize(self, rows: int) -> None:
+        self._store.resize((rows, *self._store.shape[1:]), refcheck=False)
+
+
+class GrowingBody:
+    """The poses of one body of a file, of which only plausible ones count."""
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+        self._pose, self._loss = Growing((8,)), Growing(dtype=np.uint8)
+        self._invalid = 0
+
+    def append(self, quat: Float, position: Float, loss: NDArray[np.uint8] | None = None) -> Float:
+        """Add frames: Euler parameters (n, 4), positions (n, 3) in meters, and why a pose is lost; give the poses."""
+        block = RigidBody.from_quaternions(self._name, quat, position, loss=loss, only_plausible=True)
+        self._pose.append(block.dual_quat_lab_body)
+        self._loss.append(block.loss)
+        self._invalid += int((block.loss == TrackingLoss.INVALID).sum())
+        return block.dual_quat_lab_body
+
+    def finish(self, *, identifier: str = "", marker_offsets: Float | None = None) -> RigidBody:
+        """Give the body."""
+        return RigidBody(
+            name=self._name,
+            identifier=identifier,
+            dual_quat_lab_body=self._pose.finish(),
+            loss=self._loss.finish(),
+            marker_offsets=marker_offsets,
+        )
+
+    def warnings(self) -> list[QualityWarning]:
+        """Tell of poses that cannot be."""
+        return [invalid_warning(self._name, self._invalid)] if self._invalid else []
