@@ -21,7 +21,7 @@ with atheris.instrument_imports(include=["elbowscrew"]):
     from elbowscrew.errors import ElbowscrewError
     from elbowscrew.results import save_simulation
     from elbowscrew.settings import Settings
-    from elbowscrew.simulate import simulate_recording
+    from elbowscrew.simulate import simulate_trial
 
 FRAMES = 12
 SCRATCH = Path(tempfile.mkdtemp(prefix="elbowscrew-fuzz-"))
@@ -31,7 +31,7 @@ outcomes: dict[str, int] = {}
 
 def seeds(folder: Path) -> None:
     """Small good files of every text format."""
-    trial = simulate_recording(frames=FRAMES, inversion=6, top_deg=40, gaps=1, gap_frames=1)
+    trial = simulate_trial(frames=FRAMES, inversion=6, top_deg=40, gaps=1, gap_frames=1)
     save_simulation(trial, folder / "motive.csv", length_unit="mm")
     save_simulation(trial, folder / "tagged.csv", layout="row-tagged")
     motive = (folder / "motive.csv").read_text()

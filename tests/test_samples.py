@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from elbowscrew import Settings, analyze, read_recording, simulate_recording
+from elbowscrew import Settings, analyze, read_recording, simulate_trial
 
 NAMES = ("elbow_paper", "elbow_moving_arm_mm", "elbow_row_tagged")
 
@@ -17,7 +17,7 @@ NAMES = ("elbow_paper", "elbow_moving_arm_mm", "elbow_row_tagged")
 @pytest.mark.parametrize("name", NAMES)
 def test_samples_are_made_by_simulate(samples: Path, name: str) -> None:
     truth = json.loads((samples / f"{name}.truth.json").read_text())
-    trial = simulate_recording(**truth["settings"])
+    trial = simulate_trial(**truth["settings"])
     recording = read_recording(samples / f"{name}.csv")
     for ours, theirs in zip(trial.recording.bodies, recording.bodies, strict=True):
         known = ours.tracked

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from elbowscrew import Settings, Simulation, analyze, read_recording, simulate_recording
+from elbowscrew import Settings, Simulation, analyze, read_recording, simulate_trial
 from elbowscrew.errors import OutputError, UsageError
 from elbowscrew.results import save_simulation
 
@@ -17,9 +17,7 @@ from elbowscrew.results import save_simulation
 @pytest.mark.parametrize("express_in", ["forearm", "arm", "lab"])
 @pytest.mark.parametrize("arm", ["still", "moving"])
 def test_the_truth_is_found_again_without_noise(express_in: Any, arm: Any) -> None:
-    trial = simulate_recording(
-        marker_noise_mm=0.0, arm=arm, top_deg=142, sign_flips=True, gaps=2, repetitions=2, seed=5
-    )
+    trial = simulate_trial(marker_noise_mm=0.0, arm=arm, top_deg=142, sign_flips=True, gaps=2, repetitions=2, seed=5)
     analysis = analyze(trial.recording, Settings(express_in=express_in))
     valid = analysis.screw.valid
     assert np.flatnonzero(~valid).tolist() == trial.truth["lost_frames"]
@@ -35,7 +33,7 @@ def test_the_truth_is_found_again_without_noise(express_in: Any, arm: Any) -> No
 @pytest.mark.parametrize("layout", ["motive", "row-tagged"])
 @pytest.mark.parametrize("unit", ["m", "cm", "mm"])
 def test_written_trials_are_read_back(tmp_path: Path, layout: Any, unit: Any) -> None:
-    trial = simulate_recording(arm="moving", gaps=3, sign_flips=True, frames=120, inversion=60, seed=2)
+    trial = simulate_trial(arm="moving", gaps=3, sign_flips=True, frames=120, inversion=60, seed=2)
     if layout == "row-tagged" and unit != "m":
         with pytest.raises(UsageError, match="meters"):
             save_simulation(trial, tmp_path / "t.csv", layout=layout, length_unit=unit)
@@ -57,22 +55,22 @@ def test_written_trials_are_read_back(tmp_path: Path, layout: Any, unit: Any) ->
 
 
 def test_the_seed_decides() -> None:
-    one, same, other = (simulate_recording(seed=seed) for seed in (1, 1, 2))
+    one, same, other = (simulate_trial(seed=seed) for seed in (1, 1, 2))
     first = one.recording.bodies[1].dual_quat_lab_body
     assert (first == same.recording.bodies[1].dual_quat_lab_body).all()
     assert not np.allclose(first, other.recording.bodies[1].dual_quat_lab_body)
 
 
 def test_the_noise_is_as_large_as_asked() -> None:
-    trial = simulate_recording(marker_noise_mm=0.5, frames=2000, inversion=900, seed=3)
-    clean = simulate_recording(marker_noise_mm=0.0, frames=2000, inversion=900, seed=3)
+    trial = simulate_trial(marker_noise_mm=0.5, frames=2000, inversion=900, seed=3)
+    clean = simulate_trial(marker_noise_mm=0.0, frames=2000, inversion=900, seed=3)
     noise = trial.markers["Forearm"] - clean.markers["Forearm"]
     assert 1000 * noise.std() == pytest.approx(0.5, rel=0.02)
     assert np.abs(1000 * noise.mean(axis=(0, 1))).max() < 0.02
 
 
 def test_rests_come_before_and_after() -> None:
-    trial = simulate_recording(marker_noise_mm=0.0, rest_before_s=0.5, rest_after_s=0.25, repetitions=2)
+    trial = simulate_trial(marker_noise_mm=0.0, rest_before_s=0.5, rest_after_s=0.25, repetitions=2)
     theta = np.array(trial.truth["theta_deg"])
     assert theta.size == Simulation(rest_before_s=0.5, rest_after_s=0.25, repetitions=2).total_frames == 974
     assert (theta[:50] == 0).all()
@@ -87,11 +85,11 @@ def test_rests_come_before_and_after() -> None:
 )  # fmt: skip
 def test_impossible_trials_are_refused(settings: dict[str, Any]) -> None:
     with pytest.raises(UsageError, match="--"):
-        simulate_recording(**settings)
+        simulate_trial(**settings)
 
 
 def test_existing_files_are_kept(tmp_path: Path) -> None:
-    trial = simulate_recording(frames=20, inversion=10)
+    trial = simulate_trial(frames=20, inversion=10)
     (tmp_path / "t.truth.json").write_text("mine")
     with pytest.raises(OutputError, match="--force"):
         save_simulation(trial, tmp_path / "t.csv")

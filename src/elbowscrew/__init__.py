@@ -1,7 +1,7 @@
 """Screw motion of a joint from OptiTrack recordings, by dual quaternions.
 
 >>> import elbowscrew
->>> recording = elbowscrew.simulate_recording(top_deg=120, seed=1).recording
+>>> recording = elbowscrew.simulate_trial(top_deg=120, seed=1).recording
 >>> analysis = elbowscrew.analyze(recording, elbowscrew.Settings(express_in="arm"))
 >>> bool(119 < analysis.screw.to_frame()["theta_deg"].max() < 121)
 True
@@ -17,11 +17,12 @@ if TYPE_CHECKING:
 
     from elbowscrew.errors import ElbowscrewError
     from elbowscrew.io.reading import read_recording
+    from elbowscrew.io.summary import summary_from_analysis
     from elbowscrew.model import Analysis, Recording, RigidBody
     from elbowscrew.motion.analysis import analyze
-    from elbowscrew.results import save_analysis
+    from elbowscrew.results import save_analysis, save_simulation
     from elbowscrew.settings import Settings
-    from elbowscrew.simulate import Simulation, simulate_recording
+    from elbowscrew.simulate import Simulation, simulate_trial
 
 __all__ = [
     "Analysis",
@@ -34,7 +35,9 @@ __all__ = [
     "analyze",
     "read_recording",
     "save_analysis",
-    "simulate_recording",
+    "save_simulation",
+    "simulate_trial",
+    "summary_from_analysis",
 ]
 
 # Names are loaded when first used, so that `elbowscrew --help` starts without NumPy.
@@ -48,7 +51,9 @@ _HOME = {
     "analyze": "motion.analysis",
     "read_recording": "io.reading",
     "save_analysis": "results",
-    "simulate_recording": "simulate",
+    "save_simulation": "results",
+    "simulate_trial": "simulate",
+    "summary_from_analysis": "io.summary",
 }
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, Final, Literal
 
 from elbowscrew.errors import UsageError
-from elbowscrew.io.exports import motive_columns_lines, row_tagged_lines
+from elbowscrew.io.optitrack_writer import motive_columns_lines, row_tagged_lines
 from elbowscrew.io.staging import result_folder, write_files
 from elbowscrew.io.summary import summary_from_analysis
 from elbowscrew.io.writing import write_tables
@@ -30,7 +30,7 @@ def save_analysis(
     folder: str | os.PathLike[str],
     *,
     force: bool = False,
-    figure_formats: Sequence[str] = ("png",),
+    figure_formats: Sequence[str] | None = None,
 ) -> Path:
     """Write ``screw.csv``, ``interpolation.csv``, ``summary.json`` and ``figures/`` into a folder, whole or not at all.
 
@@ -40,8 +40,8 @@ def save_analysis(
     folder : path-like
     force : bool
         Replace an earlier result.
-    figure_formats : sequence of {"png", "svg", "pdf"}
-        May be empty.
+    figure_formats : sequence of {"png", "svg", "pdf"}, optional
+        Those of the analysis' settings by default; may be empty.
 
     Returns
     -------
@@ -52,21 +52,25 @@ def save_analysis(
     ------
     OutputError
         If a result is there already, or the disk does not take it.
+    UsageError
+        If a figure format is not known.
     """
     target = Path(folder)
+    formats = analysis.settings.figure_formats if figure_formats is None else tuple(figure_formats)
+    unknown = sorted(set(formats) - set(_METADATA))
+    if unknown:
+        msg = f"figure formats: expected {', '.join(_METADATA)}, found {', '.join(unknown)}"
+        raise UsageError(msg)
     with result_folder(target, force=force) as staged:
         write_tables(staged, analysis)
         text = json.dumps(summary_from_analysis(analysis), indent=2, ensure_ascii=False, allow_nan=False)
         (staged / "summary.json").write_text(text + "\n", encoding="utf-8")
-        if figure_formats:
-            _write_figures(staged / "figures", analysis, figure_formats)
+        if formats:
+            _write_figures(staged / "figures", analysis, formats)
     return target
 
 
 def _write_figures(folder: Path, analysis: Analysis, formats: Sequence[str]) -> None:
-    import logging
-
-    logging.getLogger("matplotlib").setLevel(logging.ERROR)  # its words on fonts and caches are not the result
     from elbowscrew.plots.figures import FIGURES
     from elbowscrew.plots.style import publication_style, settle
 
@@ -146,9 +150,9 @@ def save_paper_figures(folder: str | os.PathLike[str]) -> tuple[Path, ...]:
     from elbowscrew.plots.figures import FIGURES
     from elbowscrew.plots.style import publication_style, settle
     from elbowscrew.settings import Settings
-    from elbowscrew.simulate import simulate_recording
+    from elbowscrew.simulate import simulate_trial
 
-    analysis = analyze(simulate_recording(marker_noise_mm=0.1, seed=2010).recording, Settings(inversion=211))
+    analysis = analyze(simulate_trial(marker_noise_mm=0.1, seed=2010).recording, Settings(inversion=211))
     target = Path(folder)
     names = {"figures_7_and_8.png": "theta", "figures_9_and_10.png": "euler_parameters"}
     contents = {}

@@ -141,7 +141,7 @@ class SimulatedTrial:
     truth: dict[str, Any]
 
 
-def simulate_recording(simulation: Simulation | None = None, **settings: Any) -> SimulatedTrial:
+def simulate_trial(simulation: Simulation | None = None, **settings: Any) -> SimulatedTrial:
     """Simulate an elbow that turns about and slides along one line.
 
     Parameters
@@ -156,7 +156,7 @@ def simulate_recording(simulation: Simulation | None = None, **settings: Any) ->
 
     Examples
     --------
-    >>> trial = simulate_recording(top_deg=142, seed=3)
+    >>> trial = simulate_trial(top_deg=142, seed=3)
     >>> [body.name for body in trial.recording.bodies], trial.recording.frame.size
     (['Upper Arm', 'Forearm'], 450)
     """

@@ -271,13 +271,14 @@ def test_an_output_that_takes_nothing_is_exit_6(take: Path) -> None:
 @pytest.mark.parametrize(("sent", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
 def test_an_interrupted_run_leaves_nothing(tmp_path: Path, sent: signal.Signals, code: int) -> None:
     """Stopped while it writes: the trial is long enough for the temporary folder to be seen."""
-    from elbowscrew import simulate_recording
+    from elbowscrew import simulate_trial
     from elbowscrew.results import save_simulation
 
-    save_simulation(simulate_recording(frames=20000, inversion=9000), tmp_path / "long.csv")
+    save_simulation(simulate_trial(frames=20000, inversion=9000), tmp_path / "long.csv")
     process = subprocess.Popen(
         [sys.executable, "-m", "elbowscrew", "analyze", "long.csv", "-o", "out"],
         cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # a shell's background job ignores it
     )  # fmt: skip
     deadline = time.monotonic() + 60.0
     while not list(tmp_path.glob(".elbowscrew-*")) and process.poll() is None and time.monotonic() < deadline:

@@ -75,8 +75,8 @@ def long_take(path: Path, kind: str) -> Path:
             stream.write(",".join(["frame,time_s", *names]) + "\n")
             stream.writelines(f"{k},{k / 100:.6f},{texts[0][k % 200]},{texts[1][k % 200]}\n" for k in range(ROWS))
         else:
-            names = "".join(f"m{k}\t\t\t" for k in range(5))
-            stream.write(f"PathFileType\t4\nDataRate\tUnits\n100\tmm\nFrame#\tTime\t{names}\n\t\n")
+            titles = "".join(f"m{k}\t\t\t" for k in range(5))
+            stream.write(f"PathFileType\t4\nDataRate\tUnits\n100\tmm\nFrame#\tTime\t{titles}\n\t\n")
             stream.writelines(
                 f"{k}\t{k / 100:.6f}\t" + "\t".join(f"{k + j}.25" for j in range(15)) + "\n" for k in range(ROWS)
             )

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from elbowscrew import analyze, simulate_recording, tables
+from elbowscrew import analyze, simulate_trial, tables
 from elbowscrew.io.writing import write_csv, write_tables
 
 SCREW_NAMES = (
@@ -34,7 +34,7 @@ def test_numbers_read_back_as_the_same_float(tmp_path_factory: pytest.TempPathFa
 
 
 def test_the_columns_are_the_contract(tmp_path: Path) -> None:
-    analysis = analyze(simulate_recording(frames=60, inversion=30, gaps=2, gap_frames=12).recording)
+    analysis = analyze(simulate_trial(frames=60, inversion=30, gaps=2, gap_frames=12).recording)
     write_tables(tmp_path, analysis)
     for name, expected in (("screw.csv", SCREW_NAMES), ("interpolation.csv", INTERPOLATION_NAMES)):
         lines = (tmp_path / name).read_text().splitlines()
@@ -51,7 +51,7 @@ def test_the_columns_are_the_contract(tmp_path: Path) -> None:
 
 
 def test_units_change_names_and_values_together(tmp_path: Path) -> None:
-    analysis = analyze(simulate_recording(frames=60, inversion=30).recording)
+    analysis = analyze(simulate_trial(frames=60, inversion=30).recording)
     default = tables.columns(analysis.screw, tables.SCREW_COLUMNS, "deg", "mm")
     si = tables.columns(analysis.screw, tables.SCREW_COLUMNS, "rad", "m")
     assert np.degrees(si["theta_rad"]) == pytest.approx(default["theta_deg"], nan_ok=True)
@@ -66,7 +66,7 @@ def test_frames_outside_the_keyframes_have_no_phase(tmp_path: Path) -> None:
     from elbowscrew import Settings
 
     analysis = analyze(
-        simulate_recording(frames=60, inversion=30).recording, Settings(keyframes=(10, 30, 50), inversion=30)
+        simulate_trial(frames=60, inversion=30).recording, Settings(keyframes=(10, 30, 50), inversion=30)
     )
     write_tables(tmp_path, analysis)
     rows = [line.split(",") for line in (tmp_path / "interpolation.csv").read_text().splitlines()[1:]]

@@ -117,7 +117,7 @@ def test_chord_knots_of_an_origin_that_does_not_move_name_the_other_choices() ->
 
 @pytest.mark.parametrize(("frames", "largest_deg"), [(2, 2.870), (3, 1.282), (4, 0.0329), (5, 0.00582)])
 def test_known_errors_of_blending_a_hinge(frames: int, largest_deg: float) -> None:
-    """A hinge of 0 to 130 deg under DLB with uniform Lagrange knots (accuracy.md of the project's brief)."""
+    """A hinge of 0 to 130 deg under DLB with uniform Lagrange knots, against an independent computation."""
     count = 1201
     rows = np.linspace(0, count - 1, frames).astype(int)
     result = modeled(

@@ -10,12 +10,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from elbowscrew import Analysis, Settings, analyze, plots, simulate_recording
+from elbowscrew import Analysis, Settings, analyze, plots, simulate_trial
 
 
 @pytest.fixture(scope="module")
 def analysis() -> Analysis:
-    recording = simulate_recording(frames=120, inversion=60, gaps=2, gap_frames=20, seed=4).recording
+    recording = simulate_trial(frames=120, inversion=60, gaps=2, gap_frames=20, seed=4).recording
     return analyze(recording, Settings(angle_unit="rad", length_unit="m"))
 
 
@@ -55,12 +55,13 @@ def test_tilts_are_the_angles_to_the_mean_axis(analysis: Analysis) -> None:
     ax = plots.plot_axis_directions(Figure().add_subplot(), analysis)
     offsets = np.asarray(ax.collections[0].get_offsets())
     directions = analysis.screw.axis_direction[analysis.screw.axis_known]
-    expected = np.degrees(np.arccos(np.clip(directions @ analysis.mean_axis.direction, -1, 1)))
-    assert np.hypot(*offsets.T) == pytest.approx(expected, abs=2e-3)
+    expected = np.arccos(np.clip(directions @ analysis.mean_axis.direction, -1, 1))
+    assert np.hypot(*offsets.T) == pytest.approx(expected, abs=4e-5)
+    assert ax.get_xlabel().endswith("(rad)")
 
 
 def test_places_of_axes_that_are_one_line_are_at_the_mean() -> None:
-    exact = analyze(simulate_recording(marker_noise_mm=0.0, frames=60, inversion=30).recording)
+    exact = analyze(simulate_trial(marker_noise_mm=0.0, frames=60, inversion=30).recording)
     ax = plots.plot_axis_places(Figure().add_subplot(), exact)
     assert np.abs(np.asarray(ax.collections[0].get_offsets())).max() < 1e-6
 
@@ -68,7 +69,7 @@ def test_places_of_axes_that_are_one_line_are_at_the_mean() -> None:
 @pytest.mark.parametrize("name", plots.FIGURES)
 @pytest.mark.parametrize("express_in", ["forearm", "arm", "lab"])
 def test_every_axes_of_every_figure_has_labels_with_units(name: str, express_in: Any) -> None:
-    recording = simulate_recording(frames=80, inversion=40, gaps=1).recording
+    recording = simulate_trial(frames=80, inversion=40, gaps=1).recording
     figure = plots.FIGURES[name](analyze(recording, Settings(express_in=express_in)))
     figure.draw_without_rendering()
     labels = [ax.get_ylabel() for ax in figure.axes if ax.get_ylabel()] + [

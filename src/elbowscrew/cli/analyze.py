@@ -203,7 +203,7 @@ def analyze(
     check_result_folder(target, force=force)  # before the work, not after it
     recording = read_recording(trial, units=settings.units, rotation=settings.rotation, markers=settings.markers)
     analysis = analyze_recording(recording, settings)
-    save_analysis(analysis, target, force=force, figure_formats=settings.figure_formats)
+    save_analysis(analysis, target, force=force)
     summary = summary_from_analysis(analysis)
     render.warnings(summary["warnings"])
     if json_output:

@@ -60,7 +60,7 @@ def simulate(
     from elbowscrew.cli import render
     from elbowscrew.cli.text import printable
     from elbowscrew.results import save_simulation
-    from elbowscrew.simulate import Simulation, simulate_recording
+    from elbowscrew.simulate import Simulation, simulate_trial
 
     simulation = Simulation(
         frames=frames,
@@ -80,6 +80,6 @@ def simulate(
         seed=seed,
     )
     for path in save_simulation(
-        simulate_recording(simulation), output, layout=layout, length_unit=length_unit, force=force
+        simulate_trial(simulation), output, layout=layout, length_unit=length_unit, force=force
     ):
         render.emit(f"{printable(str(path))}\n")

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from elbowscrew.geometry import dual_quaternion, quaternion
+from elbowscrew.model.brief import Brief
 
 Float = NDArray[np.float64]
 Bool = NDArray[np.bool_]
@@ -72,8 +73,8 @@ def invalid_warning(body: str, frames: int) -> QualityWarning:
     return QualityWarning(code="invalid-pose", message=message)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RigidBody:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class RigidBody(Brief):
     """The poses of one rigid body.
 
     Attributes
@@ -167,8 +168,8 @@ class RigidBody:
         return {TrackingLoss(reason).name.lower(): counts[reason] for reason in sorted(counts)}
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Marker:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Marker(Brief):
     """One marker: its name and its positions in the laboratory, shape (N, 3), meters; NaN where not seen."""
 
     name: str
@@ -194,8 +195,8 @@ class Source:
     metadata: Mapping[str, str] = field(default_factory=dict)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Recording:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Recording(Brief):
     """The rigid bodies of one take on one clock.
 
     Attributes

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowscrew import tables
+from elbowscrew.model.brief import Brief
 from elbowscrew.model.quality import BodyQuality
 from elbowscrew.model.recording import QualityWarning, Recording, RigidBody
 
@@ -21,8 +22,8 @@ Float = NDArray[np.float64]
 Bool = NDArray[np.bool_]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class JointMotion:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class JointMotion(Brief):
     """The forearm (distal) seen from the arm (proximal), frame by frame.
 
     Attributes
@@ -46,8 +47,8 @@ class JointMotion:
     dual_quat_lab_proximal: Float
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ScrewMotion:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class ScrewMotion(Brief):
     """The displacement since the reference (P 35) and its screw, frame by frame; NaN where not defined or not known.
 
     Attributes
@@ -91,8 +92,8 @@ class ScrewMotion:
         return tables.data_frame(self, tables.SCREW_COLUMNS, angle_unit, length_unit)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class MeanAxis:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class MeanAxis(Brief):
     """The mean of the axes and their spread about it, in the frame the screw is expressed in.
 
     Attributes
@@ -112,8 +113,8 @@ class MeanAxis:
     distance: Float
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Keyframes:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Keyframes(Brief):
     """The poses the model passes through, and the phases between the inversions.
 
     Attributes
@@ -137,8 +138,8 @@ class Keyframes:
         return self.row[self.phase_bounds[1:-1]]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class InterpolatedMotion:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class InterpolatedMotion(Brief):
     """The motion modeled from the keyframes, and its difference from the measured one; NaN outside the keyframes.
 
     Attributes
@@ -175,8 +176,8 @@ class InterpolatedMotion:
         return tables.data_frame(self, tables.INTERPOLATION_COLUMNS, angle_unit, length_unit)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class BodyPoints:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class BodyPoints(Brief):
     """The points of a body that a displacement is averaged over, in the body's frame.
 
     Attributes
@@ -199,8 +200,8 @@ class BodyPoints:
         return float(np.sqrt(np.trace(self.covariance)))
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Analysis:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Analysis(Brief):
     """Everything `elbowscrew.analyze` found in one recording.
 
     Attributes

@@ -78,7 +78,7 @@ def analyze(recording: Recording, settings: Settings | None = None) -> Analysis:
     Examples
     --------
     >>> import elbowscrew
-    >>> analysis = elbowscrew.analyze(elbowscrew.simulate_recording(marker_noise_mm=0).recording)
+    >>> analysis = elbowscrew.analyze(elbowscrew.simulate_trial(marker_noise_mm=0).recording)
     >>> int(analysis.keyframes.frame[1])
     211
     """

@@ -70,15 +70,16 @@ def plot_axes_in_space(ax: Axes3D, analysis: Analysis) -> Axes3D:
 
 
 def plot_axis_directions(ax: Axes, analysis: Analysis) -> Axes:
-    """Draw how far each axis is tilted from the mean axis, in degrees, in two directions across it."""
+    """Draw how far each axis is tilted from the mean axis, in two directions across it."""
+    unit = analysis.settings.angle_unit
     mean = _mean_frame(analysis, _bodies(analysis)[0])
     rows = _thinned(np.flatnonzero(analysis.screw.axis_known), _MOST_POINTS)
     direction = analysis.screw.axis_direction[rows]
     along = direction @ mean.direction
-    tilts = [np.degrees(np.arctan2(direction @ across, along)) for across in mean.across]
+    tilts = [angle_in(np.arctan2(direction @ across, along), unit) for across in mean.across]
     _scatter(ax, analysis, rows, tilts)
-    ax.set_xlabel(f"Tilt toward {mean.names[0]} (deg)")
-    ax.set_ylabel(f"Tilt toward {mean.names[1]} (deg)")
+    ax.set_xlabel(f"Tilt toward {mean.names[0]} ({unit})")
+    ax.set_ylabel(f"Tilt toward {mean.names[1]} ({unit})")
     return ax
 
 

@@ -1,4 +1,4 @@
-"""The look of the figures: readable in print, in grey and by the colour-blind."""
+"""The look of the figures: readable in print, in grey and by the color-blind."""
 
 from __future__ import annotations
 
