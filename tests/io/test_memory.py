@@ -76,7 +76,9 @@ def long_take(path: Path, kind: str) -> Path:
             stream.writelines(f"{k},{k / 100:.6f},{texts[0][k % 200]},{texts[1][k % 200]}\n" for k in range(ROWS))
         else:
             titles = "".join(f"m{k}\t\t\t" for k in range(5))
-            stream.write(f"PathFileType\t4\nDataRate\tUnits\n100\tmm\nFrame#\tTime\t{titles}\n\t\n")
+            stream.write(
+                f"PathFileType\t4\nDataRate\tUnits\n100\tmm\nFrame#\tTime\t{titles}\n\t\t" + "X\tY\tZ\t" * 5 + "\n"
+            )
             stream.writelines(
                 f"{k}\t{k / 100:.6f}\t" + "\t".join(f"{k + j}.25" for j in range(15)) + "\n" for k in range(ROWS)
             )

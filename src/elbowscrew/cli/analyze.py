@@ -13,7 +13,9 @@ _BODIES, _MOTION, _MODEL, _OUTPUT = "Bodies and file", "Motion", "Model", "Outpu
 
 
 def analyze(
-    trial: Annotated[Path, typer.Argument(metavar="TRIAL", help="An OptiTrack export (CSV).", show_default=False)],
+    trial: Annotated[
+        Path, typer.Argument(metavar="TRIAL", help="An OptiTrack export, plain table, TRC or C3D.", show_default=False)
+    ],
     output: Annotated[
         Path | None,
         typer.Option(
@@ -161,6 +163,7 @@ def analyze(
     Screw axis, angle and slide of every frame, a model through a few poses, tables, a summary and figures.
     """
     from elbowscrew.cli import render
+    from elbowscrew.errors import ElbowscrewError
     from elbowscrew.io.reading import read_recording
     from elbowscrew.io.staging import check_result_folder
     from elbowscrew.io.summary import summary_from_analysis
@@ -202,7 +205,11 @@ def analyze(
     target = output if output is not None else Path(f"{trial.stem}_elbowscrew")
     check_result_folder(target, force=force)  # before the work, not after it
     recording = read_recording(trial, units=settings.units, rotation=settings.rotation, markers=settings.markers)
-    analysis = analyze_recording(recording, settings)
+    try:
+        analysis = analyze_recording(recording, settings)
+    except ElbowscrewError as error:
+        msg = f"{trial}: {error}"
+        raise type(error)(msg) from error
     save_analysis(analysis, target, force=force)
     summary = summary_from_analysis(analysis)
     render.warnings(summary["warnings"])

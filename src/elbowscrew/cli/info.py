@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 import typer
 
@@ -11,25 +11,43 @@ from elbowscrew.cli import options
 
 
 def info(
-    trial: Annotated[Path, typer.Argument(metavar="TRIAL", help="An OptiTrack export (CSV).", show_default=False)],
+    trial: Annotated[
+        Path, typer.Argument(metavar="TRIAL", help="An OptiTrack export, plain table, TRC or C3D.", show_default=False)
+    ],
     units: Annotated[options.Units | None, typer.Option(help="Unit of length, if the file states none.")] = None,
     rotation: Annotated[options.Rotation | None, typer.Option(help="Rotation type, if the file states none.")] = None,
     markers: Annotated[
         list[str] | None, typer.Option(metavar="NAMES", help="Markers to tell of, or patterns; with commas.")
     ] = None,
+    frozen: Annotated[
+        Literal["lost", "keep"] | None, typer.Option(help="Poses that repeat to the last digit.", show_default="lost")
+    ] = None,
+    max_turn: Annotated[
+        float | None, typer.Option(metavar="DEG/S", help="Fastest turn; more is a leap.", show_default="3000")
+    ] = None,
+    max_speed: Annotated[
+        float | None, typer.Option(metavar="M/S", help="Fastest motion; more is a leap.", show_default="15")
+    ] = None,
     json_output: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
 ) -> None:
     """Say what a file holds; analyze nothing.
 
-    Layout, clock, bodies and their tracking.
+    Layout, clock, bodies and their tracking, markers.
     """
     from elbowscrew.cli import render
+    from elbowscrew.errors import RecordingError
     from elbowscrew.io.reading import read_recording
     from elbowscrew.io.summary import summary_from_recording
+    from elbowscrew.settings import settings_from
 
-    summary = summary_from_recording(
-        read_recording(trial, units=units, rotation=rotation, markers=options.names(markers) or ())
-    )
+    settings = settings_from(None, {"frozen": frozen, "max_turn": max_turn, "max_speed": max_speed})
+    wanted = options.names(markers) or ()
+    try:
+        recording = read_recording(trial, units=units, rotation=rotation, markers=wanted)
+    except RecordingError:
+        # Without rigid bodies the file may still have markers, and these are what there is to tell of.
+        recording = read_recording(trial, units=units, rotation=rotation, markers=wanted or ("*",))
+    summary = summary_from_recording(recording, settings)
     render.warnings(summary["warnings"])
     if json_output:
         render.json_object(summary)

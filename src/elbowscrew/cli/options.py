@@ -41,4 +41,8 @@ def names(given: list[str] | None) -> tuple[str, ...] | None:
     """Split names at their commas; an option may be given more than once."""
     if not given:
         return None
-    return tuple(name.strip() for text in given for name in text.split(",") if name.strip())
+    found = tuple(name.strip() for text in given for name in text.split(",") if name.strip())
+    if not found:
+        msg = "the option of markers is empty: expected names or patterns with commas between them, as in 'UA1,UA2,UA3'"
+        raise UsageError(msg)
+    return found

@@ -15,6 +15,8 @@ from rich.text import Text
 from elbowscrew.cli.text import NobodyReads, one_line, printable
 from elbowscrew.paper import Comparison
 
+_MARKERS_TOLD = 24
+
 
 def warnings(found: Iterable[Mapping[str, Any]]) -> None:
     """Write one line a warning; notes are for those who look at the recording."""
@@ -77,7 +79,9 @@ def analysis_table(summary: Mapping[str, Any], folder: Path) -> None:
 def info_table(summary: Mapping[str, Any]) -> None:
     """Write what a file holds."""
     source, trial = summary["source"], summary["trial"]
-    rotation = "quaternion" if source["rotation"] == "quaternion" else f"Euler {source['rotation']} (deg)"
+    rotation = source["rotation"] or "no rotations"
+    if rotation.isupper():
+        rotation = f"Euler {rotation} (deg)"
     rows = [
         ("Layout", f"{source['layout']}, {rotation}, {source['length_unit']}"),
         ("Take", source["take"] or "–"),
@@ -89,10 +93,22 @@ def info_table(summary: Mapping[str, Any]) -> None:
         ("Roles", summary["roles"]["text"]),
     ]
     _print_rows(printable(source["name"] or ""), rows)
+    if summary["markers"]:
+        shares = [f"{marker['name']} {100.0 * marker['seen_share']:.0f} %" for marker in summary["markers"]]
+        told = ", ".join(shares[:_MARKERS_TOLD]) + (", ..." if len(shares) > _MARKERS_TOLD else "")
+        _print_rows("", [(f"{len(shares)} markers", told)])
+    if trial["bodies"]:
+        _bodies_table(trial["bodies"])
+    notes = [warning for warning in summary["warnings"] if warning["severity"] == "note"]
+    if notes:
+        _print(Text("Notes", style="bold"), *(Text(one_line(f"{note['message']} [{note['code']}]")) for note in notes))
+
+
+def _bodies_table(bodies: Iterable[Mapping[str, Any]]) -> None:
     table = Table(box=None, pad_edge=False, header_style="bold")
     for column in ("Body", "Tracked", "Lost frames", "Fastest", "Fit, mm", "Error, mm"):
         table.add_column(column, overflow="fold")
-    for body in trial["bodies"]:
+    for body in bodies:
         table.add_row(
             Text(printable(body["name"])),
             f"{100.0 * body['tracked_share']:.1f} %",
@@ -102,9 +118,6 @@ def info_table(summary: Mapping[str, Any]) -> None:
             _spread(body["reported_error_mm"]),
         )
     _print(table)
-    notes = [warning for warning in summary["warnings"] if warning["severity"] == "note"]
-    if notes:
-        _print(Text("Notes", style="bold"), *(Text(one_line(f"{note['message']} [{note['code']}]")) for note in notes))
 
 
 def _spread(spread: Mapping[str, float] | None) -> str:
@@ -154,7 +167,7 @@ def _print_rows(title: str, rows: Iterable[tuple[str, str]]) -> None:
     table.add_column(overflow="fold")
     for name, value in rows:
         table.add_row(name, Text(printable(value)))
-    _print(Text(title, style="bold"), table)
+    _print(*([Text(title, style="bold")] if title else []), table)
 
 
 def _body(body: Mapping[str, Any] | None) -> str:

@@ -16,7 +16,7 @@ from elbowscrew.geometry.screw import dual_quat_from_dual_matrix
 Float = NDArray[np.float64]
 
 # Markers this much closer to a line (or to a plane) than long give no pose: their spread across it is noise.
-_FLATNESS: Final = 1e-3
+_FLATNESS: Final = 0.02
 
 
 class FittedPose(NamedTuple):

@@ -32,6 +32,7 @@ class _Content(NamedTuple):
     residuals: Float
     rotations: Float
     first_frame: int
+    frames: int
     groups: dict[str, dict[str, list[Any]]]
 
     def value(self, group: str, name: str) -> list[Any]:
@@ -67,8 +68,8 @@ def read(path: Path, options: ReadOptions) -> Recording:
         msg = f"{path}: no rigid bodies (rotations) in the file (markers: {names}); {ASK_FOR_MARKERS}"
         raise RecordingError(msg)
     count = bodies[0].loss.size if bodies else len(markers[0].position)
-    if not count:
-        msg = f"{path}: no frame in the file; export the take again"
+    if not count or content.frames not in (0, count):
+        msg = f"{path}: the file is cut: its header tells of {content.frames} frames, it has {count}; export it again"
         raise RecordingError(msg)
     frame = np.arange(content.first_frame, content.first_frame + count, dtype=np.int64)
     with path.open("rb") as stream:
@@ -102,7 +103,9 @@ def _open(path: Path) -> _Content:
             points, residuals, rotations = (
                 np.asarray(arrays[name], dtype=np.float64) for name in ("points", "residuals", "rotations")
             )
-        content = _Content(points, residuals, rotations, int(statement["first_frame"]), statement["groups"])
+        content = _Content(
+            points, residuals, rotations, int(statement["first_frame"]), int(statement["frames"]), statement["groups"]
+        )
         if content.points.ndim == 3 and content.rotations.ndim == 4:
             return content
     except subprocess.CalledProcessError as error:

@@ -20,7 +20,9 @@ def main(path: str) -> None:
     content: Any = ezc3d.c3d(path)
     parameters = content["parameters"]
     statement = {
-        "first_frame": int(content["header"]["points"]["first_frame"]),
+        # The library counts from 0, the file from 1.
+        "first_frame": int(content["header"]["points"]["first_frame"]) + 1,
+        "frames": int(content["header"]["points"]["last_frame"]) - int(content["header"]["points"]["first_frame"]) + 1,
         "groups": {
             group: {
                 name: [value.item() if hasattr(value, "item") else value for value in parameters[group][name]["value"]]

@@ -27,7 +27,7 @@ def parse_number(text: str) -> float:
     ValueError
         For anything else, words such as "nan" and values beyond the range of a float included.
     """
-    stripped = text.strip().strip('"').strip()
+    stripped = text.strip()
     if not stripped:
         return float("nan")
     if _NUMBER.fullmatch(stripped):
@@ -39,7 +39,7 @@ def parse_number(text: str) -> float:
 
 
 def read_blocks(
-    source: TextSource, first_line: int, columns: Sequence[int], width: int, max_rows: int | None = None
+    source: TextSource, first_line: int, columns: Sequence[int], width: int, *, exact: bool = False
 ) -> Iterator[NDArray[np.float64]]:
     """Read some columns of the lines from `first_line` on, some thousand lines at a time.
 
@@ -51,9 +51,9 @@ def read_blocks(
     columns : sequence of int
         Counted from 0.
     width : int
-        Cells a whole line has at the least.
-    max_rows : int, optional
-        Stop after so many lines.
+        Cells a whole line has ...
+    exact : bool
+        ... and no more; else at the least, as behind a header that a spreadsheet cut.
 
     Yields
     ------
@@ -65,9 +65,8 @@ def read_blocks(
     RecordingError
         For a cell that is neither blank nor a number, or a line that has been cut; with line and column.
     """
-    lines = islice(source.lines(), first_line, None if max_rows is None else first_line + max_rows)
+    lines = islice(source.lines(), first_line, None)
     number = first_line + 1
-    exact = False
     while block := _take(lines):
         width, values = _parse_block(source, block, number, columns, width, exact=exact)
         exact = exact or len(values) > 0
@@ -96,7 +95,13 @@ def _parse_block(
     delimiter = source.delimiter
     quoted = any('"' in line for line in block)
     counts = {line.count(delimiter) + 1 for line in block}
-    if not quoted and len(counts) == 1 and ((found := counts.pop()) == width or (found > width and not exact)):
+    mixed = source.decimal_comma and any("," in line for line in block) and any("." in line for line in block)
+    if (
+        not quoted
+        and not mixed
+        and len(counts) == 1
+        and ((found := counts.pop()) == width or (found > width and not exact))
+    ):
         plain = [line.replace(",", ".") for line in block] if source.decimal_comma else block
         try:
             values = np.loadtxt(plain, delimiter=delimiter, usecols=columns, comments=None, ndmin=2)
@@ -106,6 +111,7 @@ def _parse_block(
             if values.shape[0] == len(block) and np.isfinite(values).all():
                 return found, np.asarray(values, dtype=np.float64)
     rows = []
+    marks: set[str] = set()
     for offset, line in enumerate(block):
         place = f"{source.path}:{number + offset}"
         try:
@@ -125,6 +131,13 @@ def _parse_block(
             raise RecordingError(msg)
         width, exact = len(cells), True
         rows.append(_numbers(source, cells, columns, place))
+        if source.decimal_comma:
+            marks |= {mark for column in columns for mark in ",." if mark in cells[column]}
+            if len(marks) > 1:
+                msg = (
+                    f"{place}: commas and points in numbers: it is not certain which is the decimal mark; save it again"
+                )
+                raise RecordingError(msg)
     return width, np.array(rows, dtype=np.float64).reshape(len(rows), len(columns))
 
 

@@ -12,6 +12,7 @@ from elbowscrew.errors import RecordingError
 from elbowscrew.io.cells import parse_number
 from elbowscrew.io.source import TextSource
 from elbowscrew.model import QualityWarning
+from elbowscrew.motion.clock import time_resolution
 
 Float = NDArray[np.float64]
 
@@ -84,10 +85,23 @@ def frame_rate(path: Path, stated: str, frame: NDArray[np.int64], time_s: Float)
             msg = f"{path}: neither the header nor the times give a possible frame rate; export the take again"
             raise RecordingError(msg)
         return rate, []
-    # A time rounded to milliseconds at either end is no disagreement.
-    if is_rate(rate) and abs(counted - rate) <= rate * (0.01 + 2e-3 / (time_s[-1] - time_s[0])):
+    # A time rounded at either end is no disagreement.
+    rounding_s = 2.0 * max(time_resolution(time_s), 1e-3)
+    if is_rate(rate) and abs(counted - rate) <= rate * (0.01 + rounding_s / (time_s[-1] - time_s[0])):
         return rate, []
     if np.isfinite(rate):
         message = f"the header states {rate:g} frames a second, the times give {counted:.4g}: the latter is used"
         return counted, [QualityWarning(code="frame-rate", message=message)]
     return counted, []
+
+
+def cut_warnings(source: TextSource, stated: str, rows: int) -> list[QualityWarning]:
+    """Warnings of a file that may have been cut: by its own count of frames, and by its last line."""
+    found = []
+    if stated.isdecimal() and int(stated) != rows:
+        message = f"the file states {stated} frames and has {rows}"
+        found.append(QualityWarning(code="frame-count", message=message))
+    if not source.ends_with_newline:
+        message = "the last line has no line end: the file may have been cut, and with it the last number"
+        found.append(QualityWarning(code="no-final-newline", message=message))
+    return found

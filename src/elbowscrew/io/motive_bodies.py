@@ -57,7 +57,7 @@ def sample_bodies(
     samples = {k: Growing((len(columns),)) for k, body in enumerate(bodies) if _sampled_columns(body)}
     wanted = dict.fromkeys(samples, _SAMPLE_ROWS)
     if columns:
-        for block in read_blocks(source, header.lines, columns, header.width):
+        for block in read_blocks(source, header.lines, columns, header.width, exact=header.whole):
             # A body may be found late: its sample is of the first frames that have it.
             for k in [k for k, rows in wanted.items() if rows > 0]:
                 own = [place[column] for column in (*bodies[k].rotation.values(), *bodies[k].position.values())]

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from elbowscrew.errors import RecordingError, SettingError
 from elbowscrew.geometry import quaternion
 from elbowscrew.io.cells import read_blocks
-from elbowscrew.io.clock import check_frames, frame_rate
+from elbowscrew.io.clock import check_frames, cut_warnings, frame_rate
 from elbowscrew.io.growing import Growing
 from elbowscrew.io.motive_bodies import BodyBuilder, sample_bodies
 from elbowscrew.io.motive_header import BodyColumns, Header, body_columns, marker_columns, parse_header
@@ -43,7 +43,7 @@ def read(source: TextSource, options: ReadOptions) -> Recording:
     frames, times = Growing(dtype=np.int64), Growing()
     positions = {name: Growing((3,)) for name in wanted}
     line = header.lines
-    for block in read_blocks(source, header.lines, columns, header.width):
+    for block in read_blocks(source, header.lines, columns, header.width, exact=header.whole):
         check_frames(source, line, block)
         frames.append(block[:, 0].astype(np.int64))
         times.append(block[:, 1])
@@ -89,6 +89,13 @@ def _rotation_type(source: TextSource, header: Header, bodies: tuple[BodyColumns
     stated = header.pairs.get("Rotation Type", "").upper()
     given = (rotation or "").upper()
     order = stated or given
+    written = {"".join(sorted(body.rotation, key=lambda axis: body.rotation[axis])) for body in bodies}
+    if order in quaternion.EULER_ORDERS and written != {order}:
+        msg = (
+            f"{source.path}: the rotation columns stand in the order {', '.join(sorted(written))}, which {order} "
+            "contradicts: Motive writes them in the order of the rotation type; export the take again"
+        )
+        raise RecordingError(msg) if stated else SettingError(msg)
     if not order:
         msg = (
             f"{source.path}:1: the file does not state the order of its Euler angles; give --rotation "
@@ -108,15 +115,9 @@ def _rotation_type(source: TextSource, header: Header, bodies: tuple[BodyColumns
 
 
 def _file_warnings(source: TextSource, header: Header, rows: int) -> list[QualityWarning]:
-    warnings = []
     stated = header.pairs.get("Total Exported Frames") or header.pairs.get("Total Frames") or ""
-    if stated.isdecimal() and int(stated) != rows:
-        message = f"the header states {stated} frames and the file has {rows}"
-        warnings.append(QualityWarning(code="frame-count", message=message))
+    warnings = cut_warnings(source, stated, rows)
     if header.version not in _KNOWN_VERSIONS:
         message = f"format version {header.version!r} is not known; read as {_KNOWN_VERSIONS[-1]}"
         warnings.append(QualityWarning(code="unknown-version", message=message))
-    if not source.ends_with_newline:
-        message = "the last line has no line end: the file may have been cut, and with it the last number"
-        warnings.append(QualityWarning(code="no-final-newline", message=message))
     return warnings

@@ -32,11 +32,15 @@ class ColumnKey:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Header:
-    """The header: the pairs of line 1 and a key for every column."""
+    """The header: the pairs of line 1, a key for every column, its lines, and whether its rows are equally long.
+
+    They are, padding of spreadsheets included, unless somebody cut them; then lines have just as many cells.
+    """
 
     pairs: dict[str, str]
     columns: tuple[ColumnKey, ...]
     lines: int
+    whole: bool
 
     @property
     def width(self) -> int:
@@ -72,20 +76,22 @@ def parse_header(source: TextSource) -> Header:
     types, names, ids and perhaps parents, in this order or as tagged in their second cell.
     """
     rows = [_cells(source, number, line) for number, line in enumerate(islice(source.lines(), _HEADER_LINES), start=1)]
-    axis_row = next((k for k, row in enumerate(rows) if row and row[0].strip().casefold() == "frame"), None)
+    lines = [number for number, row in enumerate(rows, start=1) if any(row)]
+    rows = [row for row in rows if any(row)]
+    axis_row = next((k for k, row in enumerate(rows) if row[0].casefold() == "frame"), None)
     if axis_row is None or axis_row < 2:
         msg = (
             f"{source.path}: the header is cut: no row begins with 'Frame' in the first {_HEADER_LINES} lines; "
             "export the take again"
         )
         raise RecordingError(msg)
-    cells = iter(next(row for row in rows if any(row)))
+    cells = iter(rows[0])
     pairs: dict[str, str] = {}
     for key in cells:
         if not key:
             break
         pairs[key] = next(cells, "")
-    labels = _label_rows(source, rows, axis_row)
+    labels = _label_rows(source, rows, axis_row, lines[axis_row])
     axes, fields = rows[axis_row], rows[axis_row - 1]
     width = max(_trimmed_width(axes), _trimmed_width(fields))
     columns = tuple(
@@ -99,14 +105,21 @@ def parse_header(source: TextSource) -> Header:
         )
         for k in range(width)
     )
-    nameless = next((c for c in columns[2:] if c.field in ("rotation", "position") and not (c.kind and c.name)), None)
+    nameless = next((c for c in columns[2:] if c.field == "rotation" and not (c.kind and c.name)), None)
     if nameless is not None:
         msg = (
-            f"{source.path}:{axis_row + 1}: the header is cut: column {nameless.index + 1} ({nameless.field}) is "
+            f"{source.path}:{lines[axis_row]}: the header is cut: column {nameless.index + 1} ({nameless.field}) is "
             "without type or name; export the take again"
         )
         raise RecordingError(msg)
-    return Header(pairs=pairs, columns=columns, lines=axis_row + 1)
+    whole = len({len(row) for row in (axes, fields, *labels.values()) if row}) == 1
+    padded = len(axes) if whole else width
+    columns += tuple(_blank_column(k) for k in range(width, padded))
+    return Header(pairs=pairs, columns=columns, lines=lines[axis_row], whole=whole)
+
+
+def _blank_column(index: int) -> ColumnKey:
+    return ColumnKey(index=index, kind="", name="", identifier="", field="", axis="")
 
 
 def _cells(source: TextSource, number: int, line: str) -> list[str]:
@@ -126,14 +139,14 @@ def _cell(row: Sequence[str], k: int) -> str:
     return row[k].strip() if k < len(row) else ""
 
 
-def _label_rows(source: TextSource, rows: list[list[str]], axis_row: int) -> dict[str, list[str]]:
+def _label_rows(source: TextSource, rows: list[list[str]], axis_row: int, line: int) -> dict[str, list[str]]:
     candidates = [row for row in rows[1 : axis_row - 1] if any(cell.strip() for cell in row[1:])]
     tagged = {row[1].strip().casefold(): row for row in candidates if row[1].strip()}
     if "type" in tagged:
         return {key: tagged.get(key, []) for key in ("type", "name", "id")}
     if len(candidates) < 3:
         msg = (
-            f"{source.path}:{axis_row + 1}: the header is cut: expected rows of types, names and ids above the axis "
+            f"{source.path}:{line}: the header is cut: expected rows of types, names and ids above the axis "
             f"row, found {len(candidates)}; export the take again"
         )
         raise RecordingError(msg)

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from elbowscrew.errors import RecordingError
 from elbowscrew.io.cells import read_blocks
-from elbowscrew.io.clock import check_frames, counted_rate
+from elbowscrew.io.clock import check_frames, counted_rate, cut_warnings
 from elbowscrew.io.growing import Growing, GrowingBody
 from elbowscrew.io.options import ASK_FOR_MARKERS, ReadOptions
 from elbowscrew.io.source import TextSource
@@ -49,7 +49,7 @@ def read(source: TextSource, options: ReadOptions) -> Recording:
     grown = {name: GrowingBody(name) for name in bodies}
     positions = {name: Growing((3,)) for name in markers}
     number = line
-    for block in read_blocks(source, line, wanted, len(names)):
+    for block in read_blocks(source, line, wanted, len(names), exact=False):
         check_frames(source, number, block)
         frames.append(block[:, 0].astype(np.int64))
         times.append(block[:, 1])
@@ -76,7 +76,10 @@ def read(source: TextSource, options: ReadOptions) -> Recording:
             length_unit=", ".join(sorted({_unit_of(scale) for scale in scales.values()})),
             rotation_type="quaternion" if bodies else "",
         ),
-        warnings=tuple(warning for body in grown.values() for warning in body.warnings()),
+        warnings=(
+            *(warning for body in grown.values() for warning in body.warnings()),
+            *cut_warnings(source, "", frame.size),
+        ),
     )
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Final, NamedTuple
@@ -11,7 +12,7 @@ import numpy as np
 
 from elbowscrew.errors import RecordingError
 from elbowscrew.io.cells import parse_number
-from elbowscrew.io.clock import LAST_FRAME, LATEST_TIME_S, counted_rate
+from elbowscrew.io.clock import LAST_FRAME, LATEST_TIME_S, counted_rate, cut_warnings
 from elbowscrew.io.growing import Growing, GrowingBody
 from elbowscrew.io.options import ReadOptions
 from elbowscrew.io.source import TextSource
@@ -19,6 +20,7 @@ from elbowscrew.model import QualityWarning, Recording, Source, TrackingLoss
 
 TAGS: Final = ("comment", "info", "righthanded", "lefthanded", "frame", "trackable", "rigidbody")
 _DEFINITIONS: Final = ("trackable", "rigidbody")
+_DECIMAL_COMMA: Final = re.compile(r"[+-]?\d+,\d+(?:[eE][+-]?\d+)?", re.ASCII)
 _BLOCK_FRAMES: Final = 1024
 _BODY_CELLS: Final = 11  # id, x, y, z, qx, qy, qz, qw, yaw, pitch, roll
 _OLD_VERSION: Final = "1.0"
@@ -38,6 +40,7 @@ class _Parsed:
 
     info: dict[str, str] = field(default_factory=dict)
     left_handed: bool = False
+    right_handed: bool = False
     names: dict[int, str] = field(default_factory=dict)
     markers: dict[int, list[list[float]]] = field(default_factory=dict)
     frames: Growing = field(default_factory=lambda: Growing(dtype=np.int64))
@@ -87,6 +90,8 @@ def _parse(source: TextSource) -> _Parsed:
         try:
             if tag == "info" and len(row) > 2:
                 parsed.info[row[1].casefold()] = row[2]
+            elif tag == "righthanded":
+                parsed.right_handed = True
             elif tag == "lefthanded":
                 parsed.left_handed = True
             elif tag == "frame":
@@ -125,7 +130,7 @@ def _rows(source: TextSource) -> Iterator[tuple[int, list[str]]]:
 
 
 def _looks_decimal(cell: str) -> bool:
-    return cell.count(",") == 1 and cell.replace(",", "").lstrip("+-").isdecimal()
+    return _DECIMAL_COMMA.fullmatch(cell) is not None
 
 
 def _integer(text: str) -> int:
@@ -197,13 +202,10 @@ def _build(source: TextSource, parsed: _Parsed) -> Recording:
     ]
     rate = counted_rate(source.path, frame, time_s)
     warnings = [warning for body in parsed.bodies.values() for warning in body.warnings()]
-    stated = parsed.info.get("framecount", "")
-    if stated and stated != str(frame.size):
-        message = f"the file states {stated} frames and has {frame.size}"
-        warnings.append(QualityWarning(code="frame-count", message=message))
-    if not source.ends_with_newline:
-        message = "the last line has no line end: the file may have been cut"
-        warnings.append(QualityWarning(code="no-final-newline", message=message))
+    warnings += cut_warnings(source, parsed.info.get("framecount", ""), frame.size)
+    if not parsed.right_handed:
+        message = "the file does not say that its coordinates are right-handed: taken as such"
+        warnings.append(QualityWarning(code="handedness", message=message))
     return Recording(
         bodies=tuple(bodies),
         frame=frame,

@@ -145,6 +145,8 @@ def open_source(path: Path) -> TextSource:
 def _delimiter_of(head: bytes) -> str:
     """Tell the delimiter by the first line with any content that more than one cell shows."""
     for line in head.splitlines():
+        if line.startswith(b"PathFileType\t"):
+            return "\t"
         counts = {mark: line.count(mark.encode()) for mark in (",", ";", "\t")}
         if any(counts.values()):
             return max(counts, key=lambda mark: counts[mark])

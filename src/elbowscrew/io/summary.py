@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from elbowscrew._version import __version__
 from elbowscrew.errors import SettingError
+from elbowscrew.io.options import ASK_FOR_MARKERS
 from elbowscrew.model import Analysis, BodyQuality, QualityWarning, Recording, Spread
 from elbowscrew.motion.quality import body_quality, check_bodies, clock_quality
 from elbowscrew.motion.selection import choose_bodies
@@ -40,14 +41,18 @@ def summary_from_analysis(analysis: Analysis) -> dict[str, Any]:
     }
 
 
-def summary_from_recording(recording: Recording) -> dict[str, Any]:
+def summary_from_recording(recording: Recording, settings: Settings | None = None) -> dict[str, Any]:
     """What a file holds, ready for JSON: source, clock, bodies with their tracking, and who is arm and forearm."""
-    checked, warnings = check_bodies(recording, recording.bodies, Settings())
+    checked, warnings = check_bodies(recording, recording.bodies, settings or Settings())
     quality = [body_quality(raw, found, recording) for raw, found in zip(recording.bodies, checked, strict=True)]
     return {
         "elbowscrew": __version__,
         "source": source_summary(recording),
         "trial": {**recording_summary(recording), "bodies": [quality_summary(body) for body in quality]},
+        "markers": [
+            {"name": marker.name, "seen_share": float(np.isfinite(marker.position).all(axis=1).mean())}
+            for marker in recording.markers
+        ],
         "roles": _roles(recording),
         "warnings": warnings_summary((*recording.warnings, *warnings)),
     }
@@ -82,6 +87,8 @@ def _spread_mm(spread: Spread | None) -> dict[str, float] | None:
 
 
 def _roles(recording: Recording) -> dict[str, str | None]:
+    if not recording.bodies:
+        return {"arm": None, "forearm": None, "text": f"no rigid bodies; {ASK_FOR_MARKERS} to analyze"}
     try:
         arm, forearm = choose_bodies(recording, None, None)
     except SettingError as error:

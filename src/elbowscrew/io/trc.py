@@ -9,7 +9,7 @@ import numpy as np
 
 from elbowscrew.errors import RecordingError
 from elbowscrew.io.cells import read_blocks
-from elbowscrew.io.clock import check_frames, frame_rate
+from elbowscrew.io.clock import check_frames, cut_warnings, frame_rate
 from elbowscrew.io.growing import Growing
 from elbowscrew.io.options import ASK_FOR_MARKERS, ReadOptions, stated_unit
 from elbowscrew.io.source import TextSource
@@ -32,6 +32,12 @@ def read(source: TextSource, options: ReadOptions) -> Recording:
             f"{source.path}:4: the header is cut: expected 'Frame#' in the first cell of line 4; export the take again"
         )
         raise RecordingError(msg)
+    for name, k in ((name, k) for k, name in enumerate(rows[3]) if k >= 2 and name):
+        labels = [cell[:1].upper() for cell in rows[4][k : k + 3]]
+        if labels != ["X", "Y", "Z"] or any(rows[3][k + 1 : k + 3]):
+            found = ", ".join(rows[4][k : k + 3])
+            msg = f"{source.path}:5: marker {name!r}: expected its X, Y, Z below its name, found {found}"
+            raise RecordingError(msg)
     stated = dict(zip(rows[1], rows[2], strict=False))
     unit = stated_unit(source.path, stated.get("Units", ""), options)
     names = {name: k for k, name in enumerate(rows[3]) if k >= 2 and name}
@@ -58,6 +64,7 @@ def read(source: TextSource, options: ReadOptions) -> Recording:
     if not frame.size:
         msg = f"{source.path}:{_HEADER_LINES + 1}: no frame follows the header"
         raise RecordingError(msg)
+    cut = cut_warnings(source, stated.get("NumFrames", ""), frame.size)
     rate, warnings = frame_rate(source.path, stated.get("DataRate", ""), frame, time_s)
     return Recording(
         bodies=(),
@@ -66,5 +73,5 @@ def read(source: TextSource, options: ReadOptions) -> Recording:
         rate_hz=rate,
         markers=tuple(Marker(name=name, position=kept.finish()) for name, kept in zip(wanted, positions, strict=True)),
         source=Source(path=str(source.path), sha256=source.sha256, layout="TRC", length_unit=unit),
-        warnings=tuple(warnings),
+        warnings=(*warnings, *cut),
     )

@@ -147,6 +147,13 @@ class RigidBody(Brief):
     def from_matrices(cls, name: str, rotation: ArrayLike, position: ArrayLike, *, identifier: str = "") -> RigidBody:
         """Build a body from rotation matrices (N, 3, 3), body to laboratory, and positions (N, 3) in meters."""
         R = np.asarray(rotation, dtype=np.float64)
+        whole = R[np.isfinite(R).all(axis=(-1, -2))]
+        if (
+            np.abs(np.swapaxes(whole, -1, -2) @ whole - np.eye(3)).max(initial=0.0) > _NORM_TOLERANCE
+            or (np.linalg.det(whole) < 0.0).any()
+        ):
+            msg = f"body {name!r}: expected rotation matrices, orthogonal and of determinant 1"
+            raise ValueError(msg)
         quat = np.full((*R.shape[:-2], 4), np.nan)
         known = np.isfinite(R).all(axis=(-1, -2))
         quat[known] = quaternion.quat_from_rotation_matrix(R[known])

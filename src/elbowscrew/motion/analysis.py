@@ -22,6 +22,7 @@ from elbowscrew.model import (
     Recording,
     RigidBody,
     ScrewMotion,
+    marker_matches,
 )
 from elbowscrew.motion.clock import elapsed_time
 from elbowscrew.motion.difference import (
@@ -83,7 +84,7 @@ def analyze(recording: Recording, settings: Settings | None = None) -> Analysis:
     211
     """
     wanted = settings or Settings()
-    arm, forearm, quality, warnings = _tracked_bodies(recording, wanted)
+    arm, forearm, broken_rows, quality, warnings = _tracked_bodies(recording, wanted)
     elapsed = elapsed_time(recording)
     joint = joint_from_bodies(
         arm,
@@ -96,6 +97,7 @@ def analyze(recording: Recording, settings: Settings | None = None) -> Analysis:
         else row_of_frame(recording.frame, wanted.reference, "reference"),
         reference_window=wanted.reference_window,
         max_gap_s=wanted.max_gap_s,
+        broken_rows=broken_rows,
     )
     D = displacement(joint)
     D_expressed = expressed(D, joint, wanted.express_in)
@@ -146,11 +148,16 @@ def analyze(recording: Recording, settings: Settings | None = None) -> Analysis:
 
 def _chosen_bodies(recording: Recording, settings: Settings) -> tuple[RigidBody | None, RigidBody]:
     """Choose arm and forearm among the bodies of the file and those built from markers."""
+    patterns = {"arm": settings.arm_markers, "forearm": settings.forearm_markers}
     built = {
-        role: body_from_markers(recording, f"{role} markers", patterns, settings.pose_method)
-        for role, patterns in (("arm", settings.arm_markers), ("forearm", settings.forearm_markers))
-        if patterns is not None
+        role: body_from_markers(recording, f"{role} markers", wanted, settings.pose_method)
+        for role, wanted in patterns.items()
+        if wanted is not None
     }
+    shared = [m.name for m in recording.markers if all(marker_matches(m.name, p or ()) for p in patterns.values())]
+    if len(built) == 2 and shared:
+        msg = f"markers {', '.join(shared)} are chosen for both bodies; give each marker to one of them"
+        raise SettingError(msg)
     for role, body in built.items():
         if getattr(settings, role) is not None:
             msg = f"--{role} and --{role}-markers both say what the {role} is; give one of them (for {body.name!r})"
@@ -166,6 +173,7 @@ def _chosen_bodies(recording: Recording, settings: Settings) -> tuple[RigidBody 
 class _Bodies(NamedTuple):
     arm: RigidBody | None
     forearm: RigidBody
+    broken_rows: NDArray[np.intp]
     quality: tuple[BodyQuality, ...]
     warnings: tuple[QualityWarning, ...]
 
@@ -181,12 +189,14 @@ def _tracked_bodies(recording: Recording, settings: Settings) -> _Bodies:
             reasons = ", ".join(f"{count} {reason}" for reason, count in body.loss_counts().items())
             msg = (
                 f"body {body.name!r} is tracked in {share:.1f} % of {body.loss.size} frames ({reasons}); at least "
-                f"{settings.min_tracked_percent:g} % are needed (--min-tracked)"
+                f"{settings.min_tracked_percent:g} % are needed (--min-tracked; "
+                "for leaps see --max-turn and --max-speed, for frozen poses --frozen)"
             )
             raise AnalysisError(msg)
     quality = tuple(body_quality(raw, found, recording) for raw, found in zip(chosen, checked, strict=True))
     proximal = None if arm is None else checked[0].body
-    return _Bodies(proximal, checked[-1].body, quality, (*recording.warnings, *warnings))
+    broken_rows = np.unique(np.concatenate([found.broken_rows for found in checked]))
+    return _Bodies(proximal, checked[-1].body, broken_rows, quality, (*recording.warnings, *warnings))
 
 
 def _measured_series(D: Float, joint: JointMotion, settings: Settings) -> HelicalSeries:

@@ -13,6 +13,19 @@ from elbowscrew.model import Recording
 _TIME_TOLERANCE_FRAMES: Final = 0.5
 
 
+def time_resolution(time_s: NDArray[np.float64]) -> float:
+    """Seconds in the last decimal of the times: 1, 0.1 or 0.01 where a spreadsheet rounded them, else 0.001."""
+    for decimals in range(3):
+        if (np.round(time_s, decimals) == time_s).all():
+            return float(10.0**-decimals)
+    return 1e-3
+
+
+def allowed_offset(recording: Recording) -> float:
+    """How far times may stray from an even clock in all, seconds: half a frame either way, and their rounding."""
+    return 2.0 * _TIME_TOLERANCE_FRAMES / recording.rate_hz + time_resolution(recording.time_s)
+
+
 def elapsed_time(recording: Recording) -> NDArray[np.float64]:
     """Seconds since the first row, shape (N,), strictly increasing.
 
@@ -30,7 +43,7 @@ def elapsed_time(recording: Recording) -> NDArray[np.float64]:
         return np.zeros(frame.size)
     even: NDArray[np.float64] = (frame - frame[0]) / recording.rate_hz
     offset = (time_s - time_s[0]) - even
-    if (np.diff(frame) > 0).all() and np.ptp(offset) * recording.rate_hz <= 2.0 * _TIME_TOLERANCE_FRAMES:
+    if (np.diff(frame) > 0).all() and np.ptp(offset) <= allowed_offset(recording):
         return even
     if (np.diff(time_s) > 0.0).all():
         since_start: NDArray[np.float64] = time_s - time_s[0]

@@ -13,7 +13,11 @@ _ROUNDING_FRAMES: Final = 0.25
 
 
 def fill_gaps(
-    pose: NDArray[np.float64], elapsed: NDArray[np.float64], rate_hz: float, max_gap_s: float
+    pose: NDArray[np.float64],
+    elapsed: NDArray[np.float64],
+    rate_hz: float,
+    max_gap_s: float,
+    broken_rows: NDArray[np.intp] | None = None,
 ) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
     """Fill gaps of at most `max_gap_s` between two known poses by ScLERP.
 
@@ -26,6 +30,8 @@ def fill_gaps(
     rate_hz : float
     max_gap_s : float
         A gap lasts from one frame after the last known pose to the next known one.
+    broken_rows : ndarray of int, optional
+        Rows that the motion reaches by a leap: a gap that ends there, or has one inside, is not filled.
 
     Returns
     -------
@@ -42,6 +48,8 @@ def fill_gaps(
     before, after = rows[following[inside] - 1], rows[following[inside]]
     lost_s = elapsed[after] - elapsed[before] - 1.0 / rate_hz
     short = lost_s <= max_gap_s + _ROUNDING_FRAMES / rate_hz
+    if broken_rows is not None:
+        short &= np.searchsorted(broken_rows, before, side="right") == np.searchsorted(broken_rows, after, side="right")
     target, before, after = np.flatnonzero(inside)[short], before[short], after[short]
     if max_gap_s == 0.0 or target.size == 0:
         return pose, filled

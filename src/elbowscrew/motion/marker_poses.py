@@ -48,15 +48,19 @@ def body_from_markers(recording: Recording, name: str, patterns: tuple[str, ...]
     """
     fit, fewest = POSE_METHODS[method]
     chosen = [marker for marker in recording.markers if marker_matches(marker.name, patterns)]
-    if len(chosen) < fewest:
+    unknown = [p for p in patterns if not any(marker_matches(marker.name, (p,)) for marker in chosen)]
+    if len(chosen) < fewest or unknown:
         found = ", ".join(marker.name for marker in chosen) or "none"
         there = ", ".join(marker.name for marker in recording.markers[:8]) or "none; name them to read_recording, too"
+        nobody = f"{', '.join(unknown)} fits no marker; " if unknown else ""
         msg = (
-            f"{name}: {', '.join(patterns)!r} fits {len(chosen)} markers ({found}); {method} needs {fewest}; "
+            f"{name}: {nobody}{', '.join(patterns)!r} fits {len(chosen)} markers ({found}); {method} needs {fewest}; "
             f"markers read: {there}"
         )
         raise SettingError(msg)
     seen = np.stack([marker.position for marker in chosen], axis=1)
+    # The very origin is what some systems write for a marker that they do not see.
+    seen = np.where((seen == 0.0).all(axis=2, keepdims=True), np.nan, seen)
     shape = cluster_shape(seen)
     if shape is None:
         names = ", ".join(marker.name for marker in chosen)
@@ -64,6 +68,10 @@ def body_from_markers(recording: Recording, name: str, patterns: tuple[str, ...]
         raise SettingError(msg)
     fitted = fit(shape, seen)
     lost = ~np.isfinite(fitted.dual_quat).all(axis=1)
+    if lost.all():
+        flat = "one line" if method == "svd" else "one plane"
+        msg = f"{name}: the markers give no pose in any frame: they lie on {flat}, or too few are seen; choose others"
+        raise SettingError(msg)
     svd = method == "svd"
     return RigidBody(
         name=name,

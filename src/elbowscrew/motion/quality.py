@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowscrew.model import BodyQuality, ClockQuality, QualityWarning, Recording, RigidBody, Spread
-from elbowscrew.motion.clock import elapsed_time
+from elbowscrew.motion.clock import allowed_offset, elapsed_time
 from elbowscrew.motion.difference import angle_between, origin_distance
 from elbowscrew.motion.tracking import CheckedBody, check_swaps, check_tracking, frames_warning
 from elbowscrew.settings import Settings
@@ -18,7 +18,6 @@ Float = NDArray[np.float64]
 
 _LARGE_RESIDUAL_M: Final = 0.005
 _FAR_PIVOT_M: Final = 0.02
-_JITTER_FRAMES: Final = 0.5
 
 
 def check_bodies(
@@ -101,7 +100,7 @@ def clock_warnings(recording: Recording) -> tuple[QualityWarning, ...]:
             f"{recording.frame[rows[0]]}: the times are taken as the clock"
         )
         found.append(frames_warning("frame-numbers", message, rows, recording))
-    elif quality.largest_offset_s * recording.rate_hz > 2.0 * _JITTER_FRAMES:
+    elif quality.largest_offset_s > allowed_offset(recording):
         message = (
             f"times stray from the frame numbers by up to {1000 * quality.largest_offset_s:.3g} ms: "
             "the times are taken as the clock"

@@ -28,6 +28,7 @@ def joint_from_bodies(
     reference_row: int | None,
     reference_window: int,
     max_gap_s: float,
+    broken_rows: NDArray[np.intp] | None = None,
 ) -> JointMotion:
     """Relative motion ``J_i = A_i^-1 F_i`` of two bodies, short gaps filled, with its reference pose.
 
@@ -47,6 +48,8 @@ def joint_from_bodies(
     reference_window : int
         The reference is the mean of so many measured poses from that row on.
     max_gap_s : float
+    broken_rows : ndarray of int, optional
+        Increasing rows that one of the bodies reaches by a leap; no gap is filled across them.
 
     Raises
     ------
@@ -75,7 +78,7 @@ def joint_from_bodies(
         msg = f"--reference-window {reference_window}: only {window.size} measured frames follow the reference"
         raise SettingError(msg)
     series = continuous_signs(raw)
-    pose, filled = fill_gaps(series, elapsed, rate_hz, max_gap_s)
+    pose, filled = fill_gaps(series, elapsed, rate_hz, max_gap_s, broken_rows)
     return JointMotion(
         dual_quat_proximal_distal=pose,
         measured=measured,

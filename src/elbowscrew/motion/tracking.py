@@ -22,13 +22,23 @@ Index = NDArray[np.intp]
 # An exact identity this far from where its neighbors put the body is what is written for a body that is not solved.
 _SENTINEL_TURN: Final = np.radians(2.0)
 _SENTINEL_DISTANCE_M: Final = 0.02
+_LONGEST_LEAD: Final = 2.0
 
-# Over a longer step than this a body may be anywhere; an excursion longer than this is not taken for one.
-_LONGEST_STEP_S: Final = 0.1
-_LONGEST_STEP_FRAMES: Final = 1.5
+# What a body may do between two poses: its speed limits, with a floor for noise and a cap that a flip or a swap breaks
+# however long the time between them is, up to where it may be anywhere.
+_TURN_FLOOR: Final = np.radians(5.0)
+_DISTANCE_FLOOR_M: Final = 0.02
+_SHORT_STEP_S: Final = 0.1
+_LARGEST_TURN: Final = (np.radians(120.0), np.radians(150.0))
+_LARGEST_DISTANCE_M: Final = (0.5, 1.0)
+_LONGEST_STEP_S: Final = 2.0
+
+# A single pose this far out, whose neighbors are near each other, is a spike below any limit of speed.
+_SPIKE_TURN: Final = np.radians(15.0)
+_SPIKE_DISTANCE_M: Final = 0.06
+_SPIKE_SHARE: Final = 0.25
+
 _LONGEST_EXCURSION_S: Final = 1.0
-_LARGEST_TURN: Final = np.radians(120.0)
-_LARGEST_DISTANCE_M: Final = 0.5
 
 # Two bodies are swapped if each comes to lie where the other was, much nearer than to where it was itself.
 _CROSSED_SHARE: Final = 0.25
@@ -47,11 +57,14 @@ class CheckedBody:
     warnings : tuple of QualityWarning
     leap_rows : ndarray of int, shape (L,)
         Rows at which the body arrives by a leap.
+    broken_rows : ndarray of int, shape (B,)
+        Those of them behind which the motion goes on elsewhere: no gap may be filled up to there.
     """
 
     body: RigidBody
     warnings: tuple[QualityWarning, ...]
     leap_rows: Index
+    broken_rows: Index
 
 
 def check_tracking(body: RigidBody, recording: Recording, elapsed: Float, settings: Settings) -> CheckedBody:
@@ -71,8 +84,8 @@ def check_tracking(body: RigidBody, recording: Recording, elapsed: Float, settin
     body = _without_sentinels(body, recording, elapsed, warnings)
     if settings.frozen == "lost":
         body = _without_frozen(body, recording, warnings)
-    body, leap_rows = _without_leaps(body, recording, elapsed, settings, warnings)
-    return CheckedBody(body=body, warnings=tuple(warnings), leap_rows=leap_rows)
+    body, leap_rows, broken_rows = _without_leaps(body, recording, elapsed, settings, warnings)
+    return CheckedBody(body=body, warnings=tuple(warnings), leap_rows=leap_rows, broken_rows=broken_rows)
 
 
 def _without_sentinels(
@@ -85,15 +98,22 @@ def _without_sentinels(
     others = np.setdiff1d(known, identity)
     if not identity.size or others.size < 2:
         return body
-    # Between two neighbors, or beyond the first two or the last two.
-    after = np.clip(np.searchsorted(others, identity), 1, others.size - 1)
-    start, end = others[after - 1], others[after]
-    fraction = (elapsed[identity] - elapsed[start]) / (elapsed[end] - elapsed[start])
-    expected = sclerp(pose[start], pose[end], fraction)
-    off = (angle_between(pose[identity], expected) > _SENTINEL_TURN) | (
-        origin_distance(pose[identity], expected) > _SENTINEL_DISTANCE_M
-    )
-    rows = identity[off]
+    # A run of such frames belongs to the motion if its ends lie where the two frames before, and after, lead.
+    breaks = np.flatnonzero(np.searchsorted(others, identity[1:]) != np.searchsorted(others, identity[:-1]))
+    firsts, lasts = identity[np.r_[0, breaks + 1]], identity[np.r_[breaks, identity.size - 1]]
+    after = np.searchsorted(others, firsts)
+    off = np.zeros(firsts.size, dtype=np.bool_)
+    for ends, one, two, there in (
+        (firsts, after - 1, after - 2, after >= 2),
+        (lasts, after, after + 1, after <= others.size - 2),
+    ):
+        near, far, row = others[one[there]], others[two[there]], ends[there]
+        fraction = (elapsed[row] - elapsed[near]) / (elapsed[far] - elapsed[near])
+        expected = sclerp(pose[near], pose[far], np.clip(fraction, -_LONGEST_LEAD, 0.0))
+        off[there] |= (angle_between(pose[row], expected) > _SENTINEL_TURN) | (
+            origin_distance(pose[row], expected) > _SENTINEL_DISTANCE_M
+        )
+    rows = identity[off[np.searchsorted(lasts, identity)]]
     if not rows.size:
         return body
     message = (
@@ -140,63 +160,94 @@ def _without_frozen(body: RigidBody, recording: Recording, warnings: list[Qualit
 
 def _without_leaps(
     body: RigidBody, recording: Recording, elapsed: Float, settings: Settings, warnings: list[QualityWarning]
-) -> tuple[RigidBody, Index]:
-    """Take out short excursions from the motion; tell of leaps that lead to where no way leads back."""
+) -> tuple[RigidBody, Index, Index]:
+    """Take out spikes and short excursions; tell of leaps behind which the motion goes on elsewhere.
+
+    Returns
+    -------
+    body : RigidBody
+    arrivals, unresolved : ndarray of int
+        Rows at which the body arrives by a leap; those of them that no excursion explains.
+    """
     known = np.flatnonzero(body.tracked)
+    nothing = known[:0]
     if known.size < 2:
-        return body, known[:0]
-    steps = _Steps(body.dual_quat_lab_body, elapsed, settings)
-    longest_s = max(_LONGEST_STEP_S, _LONGEST_STEP_FRAMES / recording.rate_hz)
-    leaps = np.flatnonzero(~steps.possible(known[:-1], known[1:], longest_s))
-    if not leaps.size:
-        return body, known[:0]
-    segments = np.split(known, leaps + 1)
-    outside, unresolved = _excursions(segments, steps, elapsed)
-    arrivals = known[leaps + 1]
+        return body, nothing, nothing
+    steps = _Steps(body.dual_quat_lab_body, elapsed, 1.0 / recording.rate_hz, settings)
+    spikes = steps.spikes(known)
+    steady = np.setdiff1d(known, spikes)
+    leaps = np.flatnonzero(~steps.possible(steady[:-1], steady[1:]))
+    outside, unresolved = _excursions(np.split(steady, leaps + 1), steps, elapsed)
+    lost = np.sort(np.concatenate([spikes, outside]))
+    arrivals = steady[leaps + 1]
     limits = f"limits {settings.max_turn_deg_s:g} deg/s and {settings.max_speed_m_s:g} m/s: --max-turn, --max-speed"
-    if outside.size:
+    if lost.size:
+        before = known[np.maximum(np.searchsorted(known, lost) - 1, 0)]
         message = (
-            f"body {body.name!r} leaps out of its motion and back, {steps.told(known, leaps)}: "
-            f"{_frames(outside, recording)} taken as lost ({limits})"
+            f"body {body.name!r} leaps out of its motion{steps.told(before, lost)}: {_frames(lost, recording)} "
+            f"taken as lost ({limits})"
         )
-        warnings.append(frames_warning("leap", message, outside, recording))
+        warnings.append(frames_warning("leap", message, lost, recording))
     if unresolved.size:
+        before = known[np.searchsorted(known, unresolved) - 1]
         message = (
-            f"body {body.name!r} leaps at {_frames(unresolved, recording)} and does not come back within "
-            f"{_LONGEST_EXCURSION_S:g} s, {steps.told(known, leaps)}: flipped, swapped or another body from there on; "
-            f"look at the recording ({limits})"
+            f"body {body.name!r} leaps{steps.told(before, unresolved)} at {_frames(unresolved, recording)} and goes on "
+            f"there: flipped, swapped or another body from there on or until then; look at the recording ({limits})"
         )
         warnings.append(frames_warning("leap-unresolved", message, unresolved, recording))
-    return _lost(body, outside, TrackingLoss.LEAP), arrivals
+    return _lost(body, lost, TrackingLoss.LEAP), np.union1d(arrivals, spikes), unresolved
 
 
 class _Steps:
     """How far a body goes from one row to another, and whether it can."""
 
-    def __init__(self, pose: Float, elapsed: Float, settings: Settings) -> None:
-        self._pose, self._elapsed = pose, elapsed
+    def __init__(self, pose: Float, elapsed: Float, period_s: float, settings: Settings) -> None:
+        self._pose, self._elapsed, self._period_s = pose, elapsed, period_s
         self._turn_limit, self._speed_limit = np.radians(settings.max_turn_deg_s), settings.max_speed_m_s
 
-    def possible(self, start: Index, end: Index, longest_s: float) -> Bool:
-        """Whether a body goes from one pose to the other in the time between; true where that time is long."""
-        time_s = np.abs(self._elapsed[end] - self._elapsed[start])
-        turn = angle_between(self._pose[start], self._pose[end])
-        distance = origin_distance(self._pose[start], self._pose[end])
-        near = (turn <= np.minimum(self._turn_limit * time_s, _LARGEST_TURN)) & (
-            distance <= np.minimum(self._speed_limit * time_s, _LARGEST_DISTANCE_M)
+    def possible(self, start: Index, end: Index) -> Bool:
+        """Whether a body goes from one pose to the other in the time between.
+
+        Frames are a period apart at the least, whatever a jittering clock says.
+        """
+        time_s = np.maximum(np.abs(self._elapsed[end] - self._elapsed[start]), self._period_s)
+        turn, distance = self._between(start, end)
+        short = time_s <= _SHORT_STEP_S
+        largest_turn = np.where(short, *_LARGEST_TURN)
+        largest_distance = np.where(short, *_LARGEST_DISTANCE_M)
+        near: Bool = (turn <= np.minimum(self._turn_limit * time_s + _TURN_FLOOR, largest_turn)) & (
+            distance <= np.minimum(self._speed_limit * time_s + _DISTANCE_FLOOR_M, largest_distance)
         )
-        possible: Bool = near | (time_s > longest_s)
+        possible: Bool = near | (time_s > _LONGEST_STEP_S)
         return possible
 
-    def told(self, known: Index, leaps: Index) -> str:
-        """Tell of the largest leap."""
-        turn = np.degrees(angle_between(self._pose[known[leaps]], self._pose[known[leaps + 1]]))
-        distance = origin_distance(self._pose[known[leaps]], self._pose[known[leaps + 1]])
-        return f"by up to {turn.max():.0f} deg and {1000 * distance.max():.0f} mm in one step"
+    def spikes(self, known: Index) -> Index:
+        """Rows of single poses far out of two neighbors that are near each other."""
+        before, here, after = known[:-2], known[1:-1], known[2:]
+        soon = self._elapsed[after] - self._elapsed[before] <= _LONGEST_EXCURSION_S
+        out, back, across = self._between(before, here), self._between(here, after), self._between(before, after)
+        spike = np.zeros(here.size, dtype=np.bool_)
+        for there, here_back, past, least in zip(out, back, across, (_SPIKE_TURN, _SPIKE_DISTANCE_M), strict=True):
+            nearer = np.minimum(there, here_back)
+            spike |= (nearer > least) & (past < _SPIKE_SHARE * nearer)
+        rows: Index = here[spike & soon]
+        # Of two in a row neither is single: they are left to the limits of a step.
+        return rows[~(np.isin(rows - 1, rows) | np.isin(rows + 1, rows))]
+
+    def told(self, start: Index, end: Index) -> str:
+        """Tell of the largest step."""
+        turn, distance = self._between(start, end)
+        return f" by up to {np.degrees(turn.max(initial=0.0)):.0f} deg and {1000 * distance.max(initial=0.0):.0f} mm"
+
+    def _between(self, start: Index, end: Index) -> tuple[Float, Float]:
+        return (
+            angle_between(self._pose[start], self._pose[end]),
+            origin_distance(self._pose[start], self._pose[end]),
+        )
 
 
 def _excursions(segments: Sequence[Index], steps: _Steps, elapsed: Float) -> tuple[Index, Index]:
-    """Rows of segments that do not join the motion, and rows where the motion itself cannot be joined.
+    """Rows of segments that do not join the motion, and rows where the motion itself goes on elsewhere.
 
     From the longest segment on, forward and backward, a segment belongs to the motion if its near end can be reached
     from the last one that does. One that cannot is an excursion if it is short, and else a new beginning.
@@ -208,7 +259,7 @@ def _excursions(segments: Sequence[Index], steps: _Steps, elapsed: Float) -> tup
         good = segments[longest][far]
         for k in order:
             segment = segments[k]
-            if steps.possible(np.array([good]), segment[[near]], _LONGEST_EXCURSION_S)[0]:
+            if steps.possible(np.array([good]), segment[[near]])[0]:
                 good = segment[far]
             elif abs(elapsed[segment[-1]] - elapsed[segment[0]]) <= _LONGEST_EXCURSION_S:
                 outside.append(segment)
