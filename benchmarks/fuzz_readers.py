@@ -1,4 +1,4 @@
-"""Feed mutated files of every text format to the readers and the analysis: run ``python benchmarks/fuzz_readers.py COUNT``.
+"""Feed mutated files of every text format to readers and analysis: run ``python benchmarks/fuzz_readers.py COUNT``.
 
 Coverage-guided by atheris (``pip install atheris``). The only error a file may cause is ElbowscrewError, every file
 must be done with in seconds, and what comes back must be whole: finite poses of unit length where a frame counts as

@@ -380,3 +380,47 @@ def test_missing_files_and_folders_are_refused(tmp_path: Path) -> None:
         read_recording(tmp_path / "nothing.csv")
     with pytest.raises(RecordingError, match="folder"):
         read_recording(tmp_path)
+
+
+@pytest.mark.parametrize(("delimiter", "other"), [("\t", ","), (";", ".")])
+def test_thousands_separators_are_not_taken_for_decimal_marks(tmp_path: Path, delimiter: str, other: str) -> None:
+    text = write_columns(tmp_path / "take.csv", bodies_of(TRIAL), decimals=6).read_text().replace(",", delimiter)
+    lines = (text if other == "," else text.replace(".", ",")).splitlines()
+    cells = lines[20].split(delimiter)
+    cells[7] = f"1{other}240"
+    lines[20] = delimiter.join(cells)
+    path = tmp_path / "resaved.csv"
+    path.write_text("\n".join(lines) + "\n")
+    with pytest.raises(RecordingError, match=r"resaved\.csv:21: commas and points in numbers"):
+        read_recording(path)
+
+
+def test_one_cell_more_in_every_line_is_an_error(tmp_path: Path) -> None:
+    lines = good_lines(tmp_path)
+    lines[7:] = [",".join([*line.split(",")[:5], "0.5", *line.split(",")[5:]]) for line in lines[7:]]
+    path = tmp_path / "bad.csv"
+    path.write_text("\n".join(lines) + "\n")
+    with pytest.raises(RecordingError, match=r"bad\.csv:8: expected 18 cells, found 19"):
+        read_recording(path)
+
+
+def test_rotation_columns_in_another_order_than_stated_are_refused(tmp_path: Path) -> None:
+    path = write_columns(tmp_path / "a.csv", bodies_of(TRIAL), rotation="YXZ", header={"Rotation Type": "XYZ"})
+    with pytest.raises(RecordingError, match="which XYZ contradicts"):
+        read_recording(path)
+    silent = write_columns(tmp_path / "b.csv", bodies_of(TRIAL), rotation="YXZ", header={"Rotation Type": None})
+    with pytest.raises(SettingError, match="which XYZ contradicts"):
+        read_recording(silent, rotation="XYZ")
+
+
+def test_a_body_that_is_found_late_keeps_its_markers(tmp_path: Path) -> None:
+    trial = known_trial(60.0, frames=1300, inversion=600)
+    path = mirrored_file(tmp_path / "late.csv", markers=True, version="1.21", trial=trial)
+    lines = path.read_text().splitlines()
+    for k in range(7, 7 + 1200):
+        cells = lines[k].split(",")
+        lines[k] = ",".join([*cells[:2], *[""] * (len(cells) - 2)])
+    path.write_text("\n".join(lines) + "\n")
+    recording = read_recording(path, units="m")
+    assert [body.tracked.sum() for body in recording.bodies] == [100, 100]
+    assert all(body.marker_offsets is not None and len(body.marker_offsets) == 3 for body in recording.bodies)

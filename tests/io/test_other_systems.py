@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +13,7 @@ from numpy.typing import NDArray
 from oracles import known_trial, quaternion_xyzw
 
 from elbowscrew import Settings, analyze, read_recording, simulate_trial
+from elbowscrew.cli import main
 from elbowscrew.errors import RecordingError, SettingError
 from elbowscrew.geometry import dual_quaternion as dq
 
@@ -288,3 +290,70 @@ def test_options_that_mean_nothing_for_a_format_are_refused(
 def test_one_pattern_may_be_given_as_text(tmp_path: Path) -> None:
     path = table(tmp_path / "t.csv", bodies=False, markers=True)
     assert len(read_recording(path, markers="UA*").markers) == 4
+
+
+def test_a_c3d_file_that_is_cut_is_refused_and_frames_count_from_one(tmp_path: Path) -> None:
+    path = c3d(tmp_path / "t.c3d", rotations=True)
+    assert read_recording(path).frame[[0, -1]].tolist() == [1, 80]
+    data = path.read_bytes()
+    cut = tmp_path / "cut.c3d"
+    cut.write_bytes(data[: len(data) // 2])
+    with pytest.raises(RecordingError):
+        read_recording(cut)
+
+
+def test_the_columns_of_a_trc_file_are_those_its_labels_say(tmp_path: Path) -> None:
+    path = trc(tmp_path / "t.trc")
+    text = path.read_text()
+    path.write_text(text.replace("X1\tY1\tZ1", "X1\tZ1\tY1"))
+    with pytest.raises(RecordingError, match=r"t\.trc:5: marker 'UA1': expected its X, Y, Z"):
+        read_recording(path, markers="*")
+    path.write_text(text.replace("UA1\t\t\tUA2", "UA1\tUA2\t\t\t"))
+    with pytest.raises(RecordingError, match="expected its X, Y, Z"):
+        read_recording(path, markers="*")
+    path.write_text(text.rstrip("\n"))
+    assert [warning.code for warning in read_recording(path, markers="*").warnings] == ["no-final-newline"]
+
+
+@pytest.mark.parametrize(
+    ("settings", "says"),
+    [
+        ({"arm_markers": ("UA*", "UAX"), "forearm_markers": ("FA*",)}, "UAX fits no marker"),
+        ({"arm_markers": ("UA*",), "forearm_markers": ("FA*", "UA1")}, "UA1 are chosen for both bodies"),
+    ],
+)
+def test_markers_are_chosen_with_care(tmp_path: Path, settings: dict[str, Any], says: str) -> None:
+    recording = read_recording(table(tmp_path / "t.csv", bodies=False, markers=True), markers="*")
+    with pytest.raises(SettingError, match=says):
+        analyze(recording, Settings(**settings))
+
+
+def test_markers_on_a_line_are_refused_and_origins_are_not_seen(tmp_path: Path) -> None:
+    flat = {"arm_markers": ("UA1", "UA2", "UA3"), "forearm_markers": ("FA*",)}
+    change = {(row, 2 + 3 * k + axis): repr(0.1 * (k + 1)) for row in range(80) for k in range(3) for axis in range(3)}
+    recording = read_recording(table(tmp_path / "t.csv", bodies=False, markers=True, change=change), markers="*")
+    with pytest.raises(SettingError, match="one line"):
+        analyze(recording, Settings(**flat))
+    zeros = {(row, 14 + axis): "0" for row in (5, 40) for axis in range(3)}
+    recording = read_recording(table(tmp_path / "u.csv", bodies=False, markers=True, change=zeros), markers="*")
+    assert analyze(recording, Settings(**CHOICE)).screw.angle == pytest.approx(TRIAL.angle, abs=1e-9)
+
+
+def test_a_marker_gone_astray_for_a_frame_does_not_bend_the_cluster(tmp_path: Path) -> None:
+    change = {(33, 14): repr(50.0)}
+    recording = read_recording(table(tmp_path / "t.csv", bodies=False, markers=True, change=change), markers="*")
+    analysis = analyze(recording, Settings(**CHOICE))
+    assert np.flatnonzero(~analysis.screw.valid).tolist() == [33]
+    good = analysis.screw.valid
+    assert analysis.screw.angle[good] == pytest.approx(TRIAL.angle[good], abs=1e-9)
+    assert {"marker-residual", "leap"} <= {warning.code for warning in analysis.warnings}
+
+
+def test_info_tells_of_markers(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = table(tmp_path / "t.csv", bodies=False, markers=True, change={(3, 2): "", (3, 3): "", (3, 4): ""})
+    assert main(["info", str(path), "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert {marker["name"]: marker["seen_share"] for marker in told["markers"]}["UA1"] == pytest.approx(79 / 80)
+    assert len(told["markers"]) == 8
+    assert main(["info", str(path)]) == 0
+    assert "8 markers" in capsys.readouterr().out

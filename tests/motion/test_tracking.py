@@ -14,6 +14,7 @@ from elbowscrew import Recording, RigidBody, Settings, analyze
 from elbowscrew.errors import AnalysisError, RecordingError
 from elbowscrew.geometry import dual_quat_from_screw, sclerp
 from elbowscrew.geometry import dual_quaternion as dq
+from elbowscrew.geometry import quaternion as qn
 from elbowscrew.model import TrackingLoss
 from elbowscrew.motion.clock import elapsed_time
 from elbowscrew.motion.gaps import fill_gaps
@@ -125,6 +126,53 @@ def test_a_leap_that_does_not_come_back_is_told_and_kept() -> None:
     found, codes = checked(pose)
     assert found.tracked.all()
     assert codes == ["leap-unresolved"]
+
+
+def test_a_flip_behind_a_gap_is_told_and_the_gap_is_not_filled() -> None:
+    for gap in range(1, 16):
+        pose = flipped(series(400), slice(200 + gap, 400))
+        pose[200 : 200 + gap] = np.nan
+        analysis = analyze(Recording.from_bodies([body(pose)], rate_hz=100))
+        assert "leap-unresolved" in [warning.code for warning in analysis.warnings]
+        assert not analysis.screw.filled.any()
+
+
+def test_a_clock_that_jitters_makes_no_leaps() -> None:
+    rng = np.random.default_rng(4)
+    angle = 2.2 * np.sin(np.linspace(0.0, 3.0, 450))
+    one = body(dual_quat_from_screw(angle, 0.0, [0.0, 0.6, 0.8], [0.3, -0.16, 0.12]))
+    time_s = np.sort(np.arange(450) / 100 + rng.uniform(-0.009, 0.009, size=450))
+    taken = Recording(bodies=(one,), frame=np.arange(450), time_s=time_s, rate_hz=100.0)
+    analysis = analyze(taken)
+    assert analysis.screw.valid.all()
+    assert np.degrees(analysis.screw.angle.max()) == pytest.approx(np.degrees(2.2), abs=0.01)
+
+
+@pytest.mark.parametrize("rate_hz", [30.0, 60.0, 120.0, 360.0, 1000.0])
+def test_fast_motion_is_no_leap(rate_hz: float) -> None:
+    time_s = np.arange(0.0, 1.5, 1.0 / rate_hz)
+    angle = 1.2 - 1.2 * np.cos(2.0 * np.pi * 2.6 * time_s)  # to 138 deg and back, up to 1120 deg/s
+    noise = np.random.default_rng(1).normal(scale=5e-4, size=(time_s.size, 3))
+    pose = dual_quat_from_screw(angle, 0.0, [0.0, 0.6, 0.8], [0.3, -0.16, 0.12])
+    pose = dq.multiply(pose, dq.dual_quat_from_pose(qn.quat_from_rotation_vector(10.0 * noise), noise))
+    found, codes = checked(pose, rate_hz)
+    assert found.tracked.all()
+    assert codes == []
+
+
+def test_a_spike_below_the_limits_is_lost() -> None:
+    pose = series(60)
+    pose[30] = dq.multiply(pose[30], dq.dual_quat_from_pose(qn.quat_from_rotation_vector([0.4, 0.0, 0.0]), [0, 0, 0]))
+    for rate_hz in (30.0, 100.0):
+        found, codes = checked(pose, rate_hz)
+        assert np.flatnonzero(~found.tracked).tolist() == [30]
+        assert codes == ["leap"]
+
+
+def test_a_body_at_rest_in_its_own_frame_is_measured() -> None:
+    angle = np.concatenate([np.zeros(80), np.linspace(0.0, 2.0, 60)])
+    pose = dual_quat_from_screw(angle, 0.0, [0.0, 0.6, 0.8], [0.1, -0.08, 0.06])
+    assert checked(pose, frozen="keep")[0].tracked.all()
 
 
 def test_the_limits_of_a_step_can_be_changed() -> None:
@@ -244,6 +292,14 @@ def test_the_clock_counts_frames_where_times_are_rounded() -> None:
     frame = np.arange(868362, 868402)
     rounded = np.round(np.arange(40) / 120.0, 3)
     assert elapsed_time(recording(frame, rounded, 120.0)) == pytest.approx(np.arange(40) / 120.0, abs=1e-15)
+
+
+@pytest.mark.parametrize("decimals", [0, 1, 2])
+def test_times_rounded_by_a_spreadsheet_leave_the_frames_as_the_clock(decimals: int) -> None:
+    frame = np.arange(480)
+    taken = recording(frame, np.round(frame / 240.0, decimals), 240.0)
+    assert elapsed_time(taken) == pytest.approx(frame / 240.0, abs=1e-15)
+    assert clock_warnings(taken) == ()
 
 
 def test_the_clock_is_the_time_where_frame_numbers_repeat() -> None:

@@ -134,9 +134,7 @@ def _parse_block(
         if source.decimal_comma:
             marks |= {mark for column in columns for mark in ",." if mark in cells[column]}
             if len(marks) > 1:
-                msg = (
-                    f"{place}: commas and points in numbers: it is not certain which is the decimal mark; save it again"
-                )
+                msg = f"{place}: commas and points in numbers: which is the decimal mark is not certain; save again"
                 raise RecordingError(msg)
     return width, np.array(rows, dtype=np.float64).reshape(len(rows), len(columns))
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import json
 import os
+import secrets
 import shutil
-import tempfile
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -48,8 +48,8 @@ def result_folder(target: Path, *, force: bool) -> Iterator[Path]:
     try:
         place = target.resolve()
         made = _make_parents(place)
-        staged = Path(tempfile.mkdtemp(prefix=_PREFIX, suffix=".partial", dir=place.parent))
-        staged.chmod(0o777 & ~_umask())
+        staged = _temporary(place)
+        staged.mkdir()
         yield staged
         check_result_folder(target, force=force)  # somebody may have put something there meanwhile
         _move_into_place(staged, place)
@@ -121,14 +121,12 @@ def write_files(contents: Mapping[Path, Iterable[str] | bytes], *, replaceable: 
         for target, lines in contents.items():
             place = target.resolve()
             made += _make_parents(place)
-            handle, name = tempfile.mkstemp(prefix=_PREFIX, suffix=".partial", dir=place.parent)
-            staged[target] = Path(name)
-            with os.fdopen(handle, "wb") as stream:
+            staged[target] = _temporary(place)
+            with staged[target].open("xb") as stream:
                 if isinstance(lines, bytes):
                     stream.write(lines)
                 else:
                     stream.writelines(f"{line}\n".encode() for line in lines)
-            staged[target].chmod(0o666 & ~_umask())
         for target, temporary in staged.items():
             _check_file(target, replaceable)
             temporary.replace(target.resolve())
@@ -196,10 +194,9 @@ def _move_into_place(staged: Path, place: Path) -> None:
     _remove_empty([aside / "figures", aside])
 
 
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
+def _temporary(place: Path) -> Path:
+    """Name a temporary thing beside a place; named before it is made, it can be removed whenever the run is stopped."""
+    return place.parent / f"{_PREFIX}{secrets.token_hex(8)}.partial"
 
 
 def _output_error(target: Path, error: OSError) -> OutputError:
