@@ -424,3 +424,33 @@ def test_a_body_that_is_found_late_keeps_its_markers(tmp_path: Path) -> None:
     recording = read_recording(path, units="m")
     assert [body.tracked.sum() for body in recording.bodies] == [100, 100]
     assert all(body.marker_offsets is not None and len(body.marker_offsets) == 3 for body in recording.bodies)
+
+
+def test_bodies_swapped_are_known_by_the_shape_of_their_clusters(samples: Path, tmp_path: Path) -> None:
+    """Poses and markers of the two bodies exchanged for a while, the markers in another order."""
+    lines = (samples / "elbow_paper.csv").read_text().splitlines()
+    names, fields = lines[3].replace('"', "").split(","), lines[5].split(",")
+    kinds = lines[2].split(",")
+    column = {
+        (kind, name.split(":")[0], number): [k for k in range(2, len(names)) if (kinds[k], names[k]) == (kind, name)]
+        for kind, name, number in {
+            (kinds[k], names[k], names[k][-1] if ":" in names[k] else "") for k in range(2, len(names)) if fields[k]
+        }
+    }
+    for row in range(7 + 300, 7 + 340):
+        cells = lines[row].split(",")
+        new = list(cells)
+        for (kind, name, number), here in column.items():
+            if kind == "Rigid Body Marker":
+                continue
+            other = "Forearm" if name == "Upper Arm" else "Upper Arm"
+            turned = {"": "", "1": "3", "2": "1", "3": "2", "4": "4"}[number]
+            for target, origin in zip(here, column[(kind, other, turned)], strict=True):
+                new[target] = cells[origin]
+        lines[row] = ",".join(new)
+    path = tmp_path / "swapped.csv"
+    path.write_text("\n".join(lines) + "\n")
+    found = {warning.code: warning for warning in read_recording(path).warnings}
+    assert found["swapped-clusters"].count == 40
+    assert found["swapped-clusters"].frames == tuple(range(300, 310))
+    assert "swapped-clusters" not in [warning.code for warning in read_recording(samples / "elbow_paper.csv").warnings]

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from elbowscrew.geometry import quaternion
 from elbowscrew.geometry.dual_quaternion import conjugate, transform_points
 from elbowscrew.io.cells import read_blocks
+from elbowscrew.io.cluster_shapes import OddShapes
 from elbowscrew.io.growing import Growing, GrowingBody
 from elbowscrew.io.motive_header import BodyColumns, Header
 from elbowscrew.io.source import TextSource
@@ -23,6 +24,7 @@ _MIRRORED_VERSION: Final = "1.1"
 _SAMPLE_ROWS: Final = 1024
 # Fitted markers rest in their body to some micrometers, seen ones to a millimeter; mirrored, they move by centimeters.
 _AT_REST_M: Final = 2e-3
+_FEWEST_OF_A_SHAPE: Final = 3
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -151,6 +153,8 @@ class BodyBuilder:
         self._error, self._residual = Growing(), Growing()
         self._seen = {number: xyz for number, xyz in body.seen.items() if number in sample.offsets}
         self._partly_blank = 0
+        offsets = [sample.offsets[number] for number in self._seen]
+        self.odd_shapes = OddShapes(body.name, np.stack(offsets)) if len(offsets) >= _FEWEST_OF_A_SHAPE else None
 
     @property
     def columns(self) -> set[int]:
@@ -171,7 +175,10 @@ class BodyBuilder:
             self._error.append(self._scale * block[:, place[body.error]])
         if self._seen:
             seen = self._scale * np.stack([block[:, [place[k] for k in xyz]] for xyz in self._seen.values()], axis=1)
-            self._residual.append(self._rms_residual(pose, seen))
+            residual = self._rms_residual(pose, seen)
+            self._residual.append(residual)
+            if self.odd_shapes is not None:
+                self.odd_shapes.append(seen, residual)
 
     def _rms_residual(self, pose: Float, seen: Float) -> Float:
         offsets = np.stack([self._sample.offsets[number] for number in self._seen])

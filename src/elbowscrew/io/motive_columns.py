@@ -11,6 +11,7 @@ from elbowscrew.errors import RecordingError, SettingError
 from elbowscrew.geometry import quaternion
 from elbowscrew.io.cells import read_blocks
 from elbowscrew.io.clock import check_frames, cut_warnings, frame_rate
+from elbowscrew.io.cluster_shapes import swap_warnings
 from elbowscrew.io.growing import Growing
 from elbowscrew.io.motive_bodies import BodyBuilder, sample_bodies
 from elbowscrew.io.motive_header import BodyColumns, Header, body_columns, marker_columns, parse_header
@@ -60,6 +61,7 @@ def read(source: TextSource, options: ReadOptions) -> Recording:
     rate, warnings = frame_rate(source.path, stated_rate, frame, time_s)
     for builder in builders:
         warnings += builder.warnings(header.version)
+    warnings += swap_warnings([one for builder in builders if (one := builder.odd_shapes) is not None], frame)
     return Recording(
         bodies=tuple(builder.finish() for builder in builders),
         frame=frame,
