@@ -5,6 +5,7 @@
     ElbowscrewError
     ├── UsageError       2  a setting is not a possible one, whatever the recording
     ├── RecordingError   3  the recording cannot be read
+    │   └── NoBodiesError   it has no rigid bodies, but maybe markers
     ├── SettingError     4  a setting does not fit this recording
     ├── AnalysisError    5  the recording can be read but not analyzed
     └── OutputError      6  the output cannot be written, or exists
@@ -32,6 +33,10 @@ class RecordingError(ElbowscrewError):
     """The file is missing, damaged, or not a recording that can be read safely."""
 
     exit_code = 3
+
+
+class NoBodiesError(RecordingError):
+    """The file has no rigid bodies; it may have markers, which can be asked for."""
 
 
 class SettingError(ElbowscrewError):

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from motive_files import bodies_of, write_columns
+from motive_files import bodies_of, write_columns, write_row_tagged
 from oracles import known_trial
 
 from elbowscrew.cli import main
@@ -111,6 +111,15 @@ def test_bad_files(
     assert_one_line(err)
     assert "bad.csv" in err
     assert not (tmp_path / "out").exists()
+
+
+def test_info_refuses_for_the_reason_that_analyze_gives(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = write_row_tagged(tmp_path / "take.csv", bodies_of(TRIAL))
+    path.write_text(path.read_text().replace("righthanded", "lefthanded"))
+    told = [run(capsys, command, path) for command in ("analyze", "info")]
+    assert told[0] == told[1]
+    assert told[0][0] == 3
+    assert "left-handed" in told[0][2]
 
 
 def test_a_folder_is_no_trial(take: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -12,7 +12,7 @@ from motive_files import bodies_of, write_columns
 from numpy.typing import NDArray
 from oracles import KnownTrial, known_trial, quaternion_xyzw
 
-from elbowscrew import read_recording
+from elbowscrew import read_recording, save_simulation, simulate_trial
 from elbowscrew.errors import RecordingError, SettingError, UsageError
 from elbowscrew.geometry import dual_quaternion as dq
 
@@ -454,3 +454,23 @@ def test_bodies_swapped_are_known_by_the_shape_of_their_clusters(samples: Path, 
     assert found["swapped-clusters"].count == 40
     assert found["swapped-clusters"].frames == tuple(range(300, 310))
     assert "swapped-clusters" not in [warning.code for warning in read_recording(samples / "elbow_paper.csv").warnings]
+
+
+def test_markers_kilometers_away_do_not_reach_the_residual(tmp_path: Path) -> None:
+    trial = simulate_trial(frames=40, inversion=20, seed=2)
+    path = tmp_path / "take.csv"
+    save_simulation(trial, path)
+    whole = read_recording(path).bodies[1].marker_residual
+    lines = path.read_text().splitlines()
+    cells = lines[20].split(",")
+    cells[-1] = "1e300"
+    lines[20] = ",".join(cells)
+    path.write_text("\n".join(lines) + "\n")
+    recording = read_recording(path)
+    found = recording.bodies[1].marker_residual
+    assert "invalid-marker" in [warning.code for warning in recording.warnings]
+    assert found is not None
+    assert whole is not None
+    assert np.isfinite(found).all()
+    assert np.flatnonzero(found != whole).tolist() == [20 - 7]
+    assert found.max() < 2e-3

@@ -349,6 +349,20 @@ def test_a_marker_gone_astray_for_a_frame_does_not_bend_the_cluster(tmp_path: Pa
     assert {"marker-residual", "leap"} <= {warning.code for warning in analysis.warnings}
 
 
+@pytest.mark.parametrize("far", ["1e300", "-20000"])
+def test_markers_kilometers_away_are_not_seen(tmp_path: Path, far: str) -> None:
+    whole = read_recording(table(tmp_path / "t.csv", bodies=False, markers=True), markers="*")
+    path = table(tmp_path / "far.csv", bodies=False, markers=True, change={(7, 3): far})
+    recording = read_recording(path, markers="*")
+    assert [warning.code for warning in recording.warnings] == ["invalid-marker"]
+    name = recording.markers[0].name
+    assert np.flatnonzero(np.isnan(recording.markers[0].position).any(axis=1)).tolist() == [7]
+    settings = Settings(arm_markers=("UA*",), forearm_markers=("FA*",))
+    found, expected = analyze(recording, settings).screw, analyze(whole, settings).screw
+    assert name == "UA1"
+    assert found.angle == pytest.approx(expected.angle, abs=1e-9)  # the other markers of the cluster give the pose
+
+
 def test_info_tells_of_markers(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = table(tmp_path / "t.csv", bodies=False, markers=True, change={(3, 2): "", (3, 3): "", (3, 4): ""})
     assert main(["info", str(path), "--json"]) == 0

@@ -35,7 +35,7 @@ def info(
     Layout, clock, bodies and their tracking, markers.
     """
     from elbowscrew.cli import render
-    from elbowscrew.errors import RecordingError
+    from elbowscrew.errors import NoBodiesError
     from elbowscrew.io.reading import read_recording
     from elbowscrew.io.summary import summary_from_recording
     from elbowscrew.settings import settings_from
@@ -44,8 +44,8 @@ def info(
     wanted = options.names(markers) or ()
     try:
         recording = read_recording(trial, units=units, rotation=rotation, markers=wanted)
-    except RecordingError:
-        # Without rigid bodies the file may still have markers, and these are what there is to tell of.
+    except NoBodiesError:
+        # Its markers are what there is to tell of.
         recording = read_recording(trial, units=units, rotation=rotation, markers=wanted or ("*",))
     summary = summary_from_recording(recording, settings)
     render.warnings(summary["warnings"])

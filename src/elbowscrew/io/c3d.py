@@ -14,10 +14,11 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowscrew.errors import RecordingError
+from elbowscrew.errors import NoBodiesError, RecordingError
 from elbowscrew.io.clock import is_rate
+from elbowscrew.io.growing import GrowingMarker
 from elbowscrew.io.options import ASK_FOR_MARKERS, ReadOptions, stated_unit
-from elbowscrew.model import Marker, Recording, RigidBody, Source
+from elbowscrew.model import QualityWarning, Recording, RigidBody, Source, invalid_warning, out_of_reach
 from elbowscrew.tables import METERS
 
 Float = NDArray[np.float64]
@@ -61,12 +62,13 @@ def read(path: Path, options: ReadOptions) -> Recording:
     if not is_rate(rate):
         msg = f"{path}: POINT:RATE is {rate:g}, no possible frame rate; export the take again"
         raise RecordingError(msg)
-    bodies = _bodies(content, METERS[unit])
-    markers = _markers(content, METERS[unit], options)
+    bodies, warnings = _bodies(content, METERS[unit])
+    grown = _markers(content, METERS[unit], options)
+    markers = tuple(marker.finish() for marker in grown)
     if not bodies and not markers:
         names = ", ".join(content.labels("POINT")[:8]) or "none"
         msg = f"{path}: no rigid bodies (rotations) in the file (markers: {names}); {ASK_FOR_MARKERS}"
-        raise RecordingError(msg)
+        raise NoBodiesError(msg)
     count = bodies[0].loss.size if bodies else len(markers[0].position)
     if not count or content.frames not in (0, count):
         msg = f"{path}: the file is cut: its header tells of {content.frames} frames, it has {count}; export it again"
@@ -79,7 +81,7 @@ def read(path: Path, options: ReadOptions) -> Recording:
         frame=frame,
         time_s=(frame - frame[0]) / rate,
         rate_hz=rate,
-        markers=tuple(markers),
+        markers=markers,
         source=Source(
             path=str(path),
             sha256=digest,
@@ -87,6 +89,7 @@ def read(path: Path, options: ReadOptions) -> Recording:
             length_unit=unit,
             rotation_type="matrix" if bodies else "",
         ),
+        warnings=(*warnings, *(warning for marker in grown for warning in marker.warnings())),
     )
 
 
@@ -119,7 +122,7 @@ def _open(path: Path) -> _Content:
     raise RecordingError(msg)
 
 
-def _markers(content: _Content, scale: float, options: ReadOptions) -> list[Marker]:
+def _markers(content: _Content, scale: float, options: ReadOptions) -> list[GrowingMarker]:
     found = []
     for k, name in enumerate(content.labels("POINT")[: content.points.shape[1]]):
         if options.wants(name):
@@ -127,18 +130,19 @@ def _markers(content: _Content, scale: float, options: ReadOptions) -> list[Mark
             if content.residuals.shape[-2:] == content.points.shape[-2:]:
                 # A negative residual says: not seen.
                 position = np.where((content.residuals[0, k] >= 0.0)[:, None], position, np.nan)
-            found.append(Marker(name=name, position=position))
+            found.append(GrowingMarker(name))
+            found[-1].append(position)
     return found
 
 
-def _bodies(content: _Content, scale: float) -> list[RigidBody]:
+def _bodies(content: _Content, scale: float) -> tuple[list[RigidBody], list[QualityWarning]]:
     # Rotations may be written more often than points; the points give the clock.
     ratio = max(1, int((content.value("ROTATION", "RATIO") or [1])[0]))
     rotations = content.rotations[..., ::ratio]
     if not rotations.size:
-        return []
+        return [], []
     labels = content.labels("ROTATION")
-    bodies = []
+    bodies, warnings = [], []
     for k in range(rotations.shape[2]):
         matrix = np.moveaxis(rotations[:, :, k], -1, 0)
         name = labels[k] if k < len(labels) else f"rotation {k + 1}"
@@ -146,9 +150,15 @@ def _bodies(content: _Content, scale: float) -> list[RigidBody]:
         with np.errstate(all="ignore"):
             departure = np.abs(np.swapaxes(R, 1, 2) @ R - np.eye(3)).max(axis=(1, 2))
             solved = (departure < _ORTHOGONAL) & (np.linalg.det(np.where(np.isfinite(R), R, 0.0)) > 0.0)
+            position = scale * matrix[:, :3, 3]
+        solved &= ~out_of_reach(position)
+        # Zeros and NaN are what is written for a body that was not solved; anything else is damage.
+        invalid = ~solved & np.isfinite(R).all(axis=(1, 2)) & R.any(axis=(1, 2))
+        if invalid.any():
+            warnings.append(invalid_warning(name, int(invalid.sum())))
         matrix = np.where(solved[:, None, None], matrix, np.nan)
-        bodies.append(RigidBody.from_matrices(name, matrix[:, :3, :3], scale * matrix[:, :3, 3]))
-    return bodies
+        bodies.append(RigidBody.from_matrices(name, matrix[:, :3, :3], np.where(solved[:, None], position, np.nan)))
+    return bodies, warnings
 
 
 # Single precision leaves 1e-6; a block of zeros, or of anything else, is no rotation.

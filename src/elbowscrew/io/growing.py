@@ -7,7 +7,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowscrew.model import QualityWarning, RigidBody, TrackingLoss, invalid_warning
+from elbowscrew.model import (
+    Marker,
+    QualityWarning,
+    RigidBody,
+    TrackingLoss,
+    invalid_marker_warning,
+    invalid_warning,
+    out_of_reach,
+)
 
 Float = NDArray[np.float64]
 
@@ -65,3 +73,26 @@ class GrowingBody:
     def warnings(self) -> list[QualityWarning]:
         """Tell of poses that cannot be."""
         return [invalid_warning(self._name, self._invalid)] if self._invalid else []
+
+
+class GrowingMarker:
+    """The positions of one marker of a file, of which only plausible ones count."""
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+        self._position = Growing((3,))
+        self._far = 0
+
+    def append(self, position: Float) -> None:
+        """Add frames: positions (n, 3) in meters."""
+        far = out_of_reach(position)
+        self._position.append(np.where(far[:, None], np.nan, position))
+        self._far += int(far.sum())
+
+    def finish(self) -> Marker:
+        """Give the marker."""
+        return Marker(name=self._name, position=self._position.finish())
+
+    def warnings(self) -> list[QualityWarning]:
+        """Tell of places that cannot be."""
+        return [invalid_marker_warning(f"marker {self._name!r}", self._far)] if self._far else []

@@ -16,7 +16,7 @@ from elbowscrew.io.cluster_shapes import OddShapes
 from elbowscrew.io.growing import Growing, GrowingBody
 from elbowscrew.io.motive_header import BodyColumns, Header
 from elbowscrew.io.source import TextSource
-from elbowscrew.model import QualityWarning, RigidBody
+from elbowscrew.model import QualityWarning, RigidBody, invalid_marker_warning, out_of_reach
 
 Float = NDArray[np.float64]
 
@@ -90,6 +90,7 @@ def _sample(
         return BodySample(offsets={}, mirrored=by_version, by_version=by_version)
     numbers = list(triples)
     markers = scale * np.stack([cells[:, [place[k] for k in xyz]] for xyz in triples.values()], axis=1)
+    markers = np.where(out_of_reach(markers)[..., None], np.nan, markers)
     if body.fitted and header.pairs.get("Coordinate Space", "").casefold() == "local":
         # There the Rigid Body Marker columns are the offsets themselves.
         offsets = _median_where_known(markers)
@@ -98,7 +99,7 @@ def _sample(
     found = {}
     for mirrored in (False, True):
         quat, position = _pose_cells(cells, place, body, scale, order, mirrored=mirrored)
-        pose = RigidBody.from_quaternions(body.name, quat, position).dual_quat_lab_body
+        pose = RigidBody.from_quaternions(body.name, quat, position, only_plausible=True).dual_quat_lab_body
         found[mirrored] = _offsets_at_rest(transform_points(conjugate(pose)[:, None, :], markers))
     undecided = bool(found[False]) == bool(found[True])  # a body that does not move rests either way
     mirrored = by_version if undecided else bool(found[True])
@@ -152,7 +153,7 @@ class BodyBuilder:
         self._store = GrowingBody(body.name)
         self._error, self._residual = Growing(), Growing()
         self._seen = {number: xyz for number, xyz in body.seen.items() if number in sample.offsets}
-        self._partly_blank = 0
+        self._partly_blank = self._far_markers = 0
         offsets = [sample.offsets[number] for number in self._seen]
         self.odd_shapes = OddShapes(body.name, np.stack(offsets)) if len(offsets) >= _FEWEST_OF_A_SHAPE else None
 
@@ -175,6 +176,9 @@ class BodyBuilder:
             self._error.append(self._scale * block[:, place[body.error]])
         if self._seen:
             seen = self._scale * np.stack([block[:, [place[k] for k in xyz]] for xyz in self._seen.values()], axis=1)
+            far = out_of_reach(seen)
+            self._far_markers += int(far.sum())
+            seen = np.where(far[..., None], np.nan, seen)
             residual = self._rms_residual(pose, seen)
             self._residual.append(residual)
             if self.odd_shapes is not None:
@@ -213,6 +217,8 @@ class BodyBuilder:
                 f"body {name!r} has some but not all cells of its pose in {self._partly_blank} frames: taken as lost"
             )
             found.append(QualityWarning(code="partly-blank", message=message))
+        if self._far_markers:
+            found.append(invalid_marker_warning(f"the markers of body {name!r}: together they", self._far_markers))
         if not offsets_known and (self._body.fitted or self._body.seen):
             message = f"the markers of body {name!r} are not at rest in it: they are not used"
             found.append(QualityWarning(code="markers-unused", message=message))

@@ -12,12 +12,12 @@ from elbowscrew.geometry import quaternion
 from elbowscrew.io.cells import read_blocks
 from elbowscrew.io.clock import check_frames, cut_warnings, frame_rate
 from elbowscrew.io.cluster_shapes import swap_warnings
-from elbowscrew.io.growing import Growing
+from elbowscrew.io.growing import Growing, GrowingMarker
 from elbowscrew.io.motive_bodies import BodyBuilder, sample_bodies
 from elbowscrew.io.motive_header import BodyColumns, Header, body_columns, marker_columns, parse_header
 from elbowscrew.io.options import ReadOptions, stated_unit
 from elbowscrew.io.source import TextSource
-from elbowscrew.model import Marker, QualityWarning, Recording, Source
+from elbowscrew.model import QualityWarning, Recording, Source
 from elbowscrew.tables import METERS
 
 Float = NDArray[np.float64]
@@ -42,14 +42,14 @@ def read(source: TextSource, options: ReadOptions) -> Recording:
     columns = sorted({0, 1}.union(*(builder.columns for builder in builders), *wanted.values()))
     place = {column: k for k, column in enumerate(columns)}
     frames, times = Growing(dtype=np.int64), Growing()
-    positions = {name: Growing((3,)) for name in wanted}
+    markers = {name: GrowingMarker(name) for name in wanted}
     line = header.lines
     for block in read_blocks(source, header.lines, columns, header.width, exact=header.whole):
         check_frames(source, line, block)
         frames.append(block[:, 0].astype(np.int64))
         times.append(block[:, 1])
         for name, triple in wanted.items():
-            positions[name].append(METERS[unit] * block[:, [place[k] for k in triple]])
+            markers[name].append(METERS[unit] * block[:, [place[k] for k in triple]])
         for builder in builders:
             builder.append(block, columns)
         line += len(block)
@@ -61,13 +61,15 @@ def read(source: TextSource, options: ReadOptions) -> Recording:
     rate, warnings = frame_rate(source.path, stated_rate, frame, time_s)
     for builder in builders:
         warnings += builder.warnings(header.version)
+    for marker in markers.values():
+        warnings += marker.warnings()
     warnings += swap_warnings([one for builder in builders if (one := builder.odd_shapes) is not None], frame)
     return Recording(
         bodies=tuple(builder.finish() for builder in builders),
         frame=frame,
         time_s=time_s,
         rate_hz=rate,
-        markers=tuple(Marker(name=name, position=kept.finish()) for name, kept in positions.items()),
+        markers=tuple(marker.finish() for marker in markers.values()),
         source=Source(
             path=str(source.path),
             sha256=source.sha256,

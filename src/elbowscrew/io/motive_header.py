@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from itertools import islice
 from typing import Final
 
-from elbowscrew.errors import RecordingError
+from elbowscrew.errors import NoBodiesError, RecordingError
 from elbowscrew.io.options import ASK_FOR_MARKERS, ReadOptions
 from elbowscrew.io.source import TextSource
 
@@ -173,7 +173,7 @@ def body_columns(source: TextSource, header: Header, *, needed: bool = True) -> 
             f"{source.path}: no rigid bodies in the file (found: {found}); in Motive, solve the bodies and tick "
             f"'Rigid Bodies' in the export{or_markers}"
         )
-        raise RecordingError(msg)
+        raise NoBodiesError(msg)
     bodies = []
     for (identifier, name), columns in groups.items():
         rotation = _labeled(source, columns, "rotation", name)

@@ -13,13 +13,13 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowscrew.errors import RecordingError
+from elbowscrew.errors import NoBodiesError, RecordingError
 from elbowscrew.io.cells import read_blocks
 from elbowscrew.io.clock import check_frames, counted_rate, cut_warnings
-from elbowscrew.io.growing import Growing, GrowingBody
+from elbowscrew.io.growing import Growing, GrowingBody, GrowingMarker
 from elbowscrew.io.options import ASK_FOR_MARKERS, ReadOptions
 from elbowscrew.io.source import TextSource
-from elbowscrew.model import Marker, Recording, Source
+from elbowscrew.model import Recording, Source
 from elbowscrew.tables import METERS
 
 Float = NDArray[np.float64]
@@ -42,12 +42,12 @@ def read(source: TextSource, options: ReadOptions) -> Recording:
     if not bodies and not markers:
         seen = ", ".join(list(things)[:8]) or "none"
         msg = f"{source.path}:{line}: no rigid bodies in the table (markers: {seen}); {ASK_FOR_MARKERS}"
-        raise RecordingError(msg)
+        raise NoBodiesError(msg)
     wanted = sorted({0, 1}.union(*(parts.values() for parts in (*bodies.values(), *markers.values()))))
     place = {column: k for k, column in enumerate(wanted)}
     frames, times = Growing(dtype=np.int64), Growing()
     grown = {name: GrowingBody(name) for name in bodies}
-    positions = {name: Growing((3,)) for name in markers}
+    grown_markers = {name: GrowingMarker(name) for name in markers}
     number = line
     for block in read_blocks(source, line, wanted, len(names), exact=False):
         check_frames(source, number, block)
@@ -57,7 +57,7 @@ def read(source: TextSource, options: ReadOptions) -> Recording:
             cells = block[:, [place[parts[part]] for part in _POSE]]
             grown[name].append(cells[:, :4], scales[name] * cells[:, 4:])
         for name, parts in markers.items():
-            positions[name].append(scales[name] * block[:, [place[parts[axis]] for axis in "xyz"]])
+            grown_markers[name].append(scales[name] * block[:, [place[parts[axis]] for axis in "xyz"]])
         number += len(block)
     frame, time_s = frames.finish(), times.finish()
     if not frame.size:
@@ -68,7 +68,7 @@ def read(source: TextSource, options: ReadOptions) -> Recording:
         frame=frame,
         time_s=time_s,
         rate_hz=counted_rate(source.path, frame, time_s),
-        markers=tuple(Marker(name=name, position=kept.finish()) for name, kept in positions.items()),
+        markers=tuple(marker.finish() for marker in grown_markers.values()),
         source=Source(
             path=str(source.path),
             sha256=source.sha256,
@@ -78,6 +78,7 @@ def read(source: TextSource, options: ReadOptions) -> Recording:
         ),
         warnings=(
             *(warning for body in grown.values() for warning in body.warnings()),
+            *(warning for marker in grown_markers.values() for warning in marker.warnings()),
             *cut_warnings(source, "", frame.size),
         ),
     )

@@ -7,13 +7,13 @@ from typing import Final
 
 import numpy as np
 
-from elbowscrew.errors import RecordingError
+from elbowscrew.errors import NoBodiesError, RecordingError
 from elbowscrew.io.cells import read_blocks
 from elbowscrew.io.clock import check_frames, cut_warnings, frame_rate
-from elbowscrew.io.growing import Growing
+from elbowscrew.io.growing import Growing, GrowingMarker
 from elbowscrew.io.options import ASK_FOR_MARKERS, ReadOptions, stated_unit
 from elbowscrew.io.source import TextSource
-from elbowscrew.model import Marker, Recording, Source
+from elbowscrew.model import Recording, Source
 from elbowscrew.tables import METERS
 
 _HEADER_LINES: Final = 5
@@ -48,17 +48,17 @@ def read(source: TextSource, options: ReadOptions) -> Recording:
     if not wanted:
         told = ", ".join(list(names)[:8])
         msg = f"{source.path}: no rigid bodies in the file (markers: {told}); {ASK_FOR_MARKERS}"
-        raise RecordingError(msg)
+        raise NoBodiesError(msg)
     columns = [0, 1, *(k + axis for k in wanted.values() for axis in range(3))]
     frames, times = Growing(dtype=np.int64), Growing()
-    positions = [Growing((3,)) for _ in wanted]
+    markers = [GrowingMarker(name) for name in wanted]
     line = _HEADER_LINES
     for block in read_blocks(source, line, columns, max(columns) + 1):
         check_frames(source, line, block)
         frames.append(block[:, 0].astype(np.int64))
         times.append(block[:, 1])
-        for k, kept in enumerate(positions):
-            kept.append(METERS[unit] * block[:, 2 + 3 * k : 5 + 3 * k])
+        for k, marker in enumerate(markers):
+            marker.append(METERS[unit] * block[:, 2 + 3 * k : 5 + 3 * k])
         line += len(block)
     frame, time_s = frames.finish(), times.finish()
     if not frame.size:
@@ -71,7 +71,7 @@ def read(source: TextSource, options: ReadOptions) -> Recording:
         frame=frame,
         time_s=time_s,
         rate_hz=rate,
-        markers=tuple(Marker(name=name, position=kept.finish()) for name, kept in zip(wanted, positions, strict=True)),
+        markers=tuple(marker.finish() for marker in markers),
         source=Source(path=str(source.path), sha256=source.sha256, layout="TRC", length_unit=unit),
-        warnings=(*warnings, *cut),
+        warnings=(*warnings, *cut, *(warning for marker in markers for warning in marker.warnings())),
     )

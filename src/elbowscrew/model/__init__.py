@@ -8,8 +8,10 @@ from elbowscrew.model.recording import (
     RigidBody,
     Source,
     TrackingLoss,
+    invalid_marker_warning,
     invalid_warning,
     marker_matches,
+    out_of_reach,
 )
 from elbowscrew.model.results import (
     Analysis,
@@ -38,6 +40,8 @@ __all__ = [
     "Source",
     "Spread",
     "TrackingLoss",
+    "invalid_marker_warning",
     "invalid_warning",
     "marker_matches",
+    "out_of_reach",
 ]

@@ -73,6 +73,18 @@ def invalid_warning(body: str, frames: int) -> QualityWarning:
     return QualityWarning(code="invalid-pose", message=message)
 
 
+def out_of_reach(position: Float) -> Bool:
+    """Places (..., 3), in meters, that no camera sees, as they are over 10 km away: shape (...); none where NaN."""
+    farther: Bool = np.any(np.abs(position) > _FARTHEST_M, axis=-1)
+    return farther
+
+
+def invalid_marker_warning(owner: str, places: int) -> QualityWarning:
+    """Say that markers have places that cannot be."""
+    message = f"{owner} has {places} places over {_FARTHEST_M / 1000:g} km away: taken as not seen"
+    return QualityWarning(code="invalid-marker", message=message)
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class RigidBody(Brief):
     """The poses of one rigid body.
@@ -133,8 +145,7 @@ class RigidBody(Brief):
         reason[(reason == TrackingLoss.NONE) & zero] = TrackingLoss.ZERO
         if only_plausible:
             size = quaternion.norm(np.where(blank[:, None], 1.0, q))
-            reach = np.abs(np.where(blank[:, None], 0.0, d)).max(axis=1, initial=0.0)
-            invalid = (np.abs(size - 1.0) > _NORM_TOLERANCE) | (reach > _FARTHEST_M)
+            invalid = (np.abs(size - 1.0) > _NORM_TOLERANCE) | out_of_reach(d)
             reason[(reason == TrackingLoss.NONE) & invalid] = TrackingLoss.INVALID
         lost = (reason != TrackingLoss.NONE)[:, None]
         pose = dual_quaternion.dual_quat_from_pose(
