@@ -18,7 +18,7 @@ import numpy as np
 
 with atheris.instrument_imports(include=["elbowscrew"]):
     from elbowscrew import analyze, read_recording
-    from elbowscrew.errors import ElbowscrewError
+    from elbowscrew.errors import ElbowscrewError, NoBodiesError
     from elbowscrew.results import save_simulation
     from elbowscrew.settings import Settings
     from elbowscrew.simulate import simulate_trial
@@ -53,13 +53,20 @@ def seeds(folder: Path) -> None:
         "PathFileType\t4\t(X/Y/Z)\tt.trc",
         "DataRate\tUnits",
         "100\tmm",
-        "Frame#\tTime\tm1\t\t\tm2\t\t",
-        "\t\tX1\tY1\tZ1",
+        "Frame#\tTime\ta1\t\t\ta2\t\t\ta3\t\t\tf1\t\t\tf2\t\t\tf3\t\t",
+        "\t\t" + "\t".join(f"{axis}{k}" for k in range(1, 7) for axis in "XYZ"),
     ]
-    trc += [f"{k + 1}\t{k / 100}\t1\t2\t{k}\t4\t5\t{k}" for k in range(FRAMES)]
+    trc += [
+        f"{k + 1}\t{k / 100}\t0\t0\t0\t90\t0\t0\t0\t60\t0\t"
+        f"0\t0\t{300 + k}\t{100 * np.cos(0.05 * k)}\t0\t{300 + k + 100 * np.sin(0.05 * k)}\t0\t80\t{300 + k}"
+        for k in range(FRAMES)
+    ]
     (folder / "markers.trc").write_text("\n".join(trc) + "\n")
     for path in folder.glob("*.truth.json"):
         path.unlink()
+
+
+ARM, FOREARM = ("a*",), ("f*",)
 
 
 def one(data: bytes) -> None:
@@ -71,7 +78,10 @@ def one(data: bytes) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")  # a warning of NumPy is a number that nobody looked at
         try:
-            recording = read_recording(TARGET, units=None, markers=("m1",))
+            try:
+                recording = read_recording(TARGET)
+            except NoBodiesError:
+                recording = read_recording(TARGET, markers=(*ARM, *FOREARM))
         except ElbowscrewError as error:
             outcomes[type(error).__name__] = outcomes.get(type(error).__name__, 0) + 1
             check_message(str(error))
@@ -81,7 +91,8 @@ def one(data: bytes) -> None:
             assert np.allclose(size[body.tracked], 1.0)
             assert np.isnan(body.dual_quat_lab_body[~body.tracked]).all()
         try:
-            analysis = analyze(recording, Settings(min_tracked_percent=0, min_angle_deg=1))
+            chosen = {} if recording.bodies else {"arm_markers": ARM, "forearm_markers": FOREARM}
+            analysis = analyze(recording, Settings(min_tracked_percent=0, min_angle_deg=1, **chosen))
         except ElbowscrewError as error:
             kind = f"analysis: {type(error).__name__}"
             outcomes[kind] = outcomes.get(kind, 0) + 1
