@@ -110,26 +110,30 @@ TOKENS = tuple(
     """|nan|inf|-1e400|1e308|-0|0|1|1e-320|99999999999999999999|-5|0.5|x|"|"1,2"|1,5| 1 |1e5|frame|Rigid Body|Rotation|W
     Frame|6.5|\x00|\xff""".encode("latin-1").split(b"|")
 )
+NUMBERS = b"|0|1|-1|0.5|-0.5|7|-7|1e-9|1e308|1e150|-1e5|3e4|0.0|-0|1e-320|180|-180|90".split(b"|")
 
 
 def mutate(data: bytes, max_size: int, seed: int) -> bytes:
-    """Half the time change whole cells and lines, so that mutants get past the header; else let atheris."""
+    """Mostly change whole cells and lines, so that many mutants get past the header; else let atheris."""
     rng = random.Random(seed)  # noqa: S311 - no secret
-    if rng.random() < 0.5:
+    if rng.random() < 0.1:
         return bytes(atheris.Mutate(data, max_size))
     lines = data.split(b"\n")
     for _ in range(rng.randint(1, 3)):
-        row = rng.randrange(len(lines))
-        delimiter = rng.choice([b",", b",", b",", b";", b"\t"])
+        row = rng.randrange(len(lines)) if rng.random() < 0.2 else rng.randrange(len(lines) // 2, len(lines))
+        delimiter = max(b",;\t", key=lines[row].count).to_bytes()
         cells = lines[row].split(delimiter)
         column = rng.randrange(len(cells))
-        action = rng.randrange(6)
-        if action <= 2:
-            cells[column] = rng.choice(TOKENS)
-        elif action == 3:
-            del cells[column]
+        action = rng.randrange(8)
+        if action <= 3:
+            cells[column] = rng.choice(TOKENS if action == 0 else NUMBERS)
         elif action == 4:
+            del cells[column]
+        elif action == 5:
             cells.insert(column, rng.choice(TOKENS))
+        elif action == 6:
+            lines[row] = lines[rng.randrange(len(lines) // 2, len(lines))]
+            continue
         else:
             lines.insert(row, lines[rng.randrange(len(lines))])
             continue
@@ -143,7 +147,15 @@ def main() -> None:
     corpus = SCRATCH / "corpus"
     corpus.mkdir()
     seeds(corpus)
-    arguments = [sys.argv[0], f"-runs={count}", "-max_len=32768", "-timeout=10", "-print_final_stats=1", str(corpus)]
+    arguments = [
+        sys.argv[0],
+        f"-runs={count}",
+        "-max_len=32768",
+        "-timeout=10",
+        "-mutate_depth=2",
+        "-print_final_stats=1",
+        str(corpus),
+    ]
     atheris.Setup([*arguments, *sys.argv[2:]], one, custom_mutator=mutate)
     atheris.Fuzz()
 
