@@ -56,7 +56,7 @@ class Settings(BaseModel):
     min_angle_deg: float = Field(10.0, gt=0, lt=180, description="Least angle that gives an axis, in degrees")
     inversion: int | None = Field(None, description="Frame where the motion turns back")
     keyframes: tuple[int, ...] | None = Field(None, min_length=2, description="Frames the model passes through")
-    method: Literal["dlb", "sclerp", "sdlb"] = Field("dlb", description="Interpolation of poses")
+    method: Literal["dlb", "sclerp", "sdlb", "dib", "catmull-rom"] = Field("dlb", description="Interpolation of poses")
     blend: Literal["piecewise", "global"] = Field("piecewise", description="Phase by phase, or all poses at once")
     law: Literal["cycloidal", "linear"] = Field("cycloidal", description="Law of motion in each phase")
     knots: Literal["law", "chord", "uniform", "angle"] = Field("law", description="Parameter of the keyframes")

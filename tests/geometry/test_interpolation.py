@@ -19,6 +19,7 @@ from elbowscrew.geometry import (
     lagrange_weights,
     nlerp,
     sclerp,
+    screw_from_dual_quat,
     sdlb,
 )
 from elbowscrew.geometry import dual_quaternion as dq
@@ -57,8 +58,17 @@ def test_the_way_round_is_kept_on_request() -> None:
     line = ([0.0, 0.0, 1.0], [0.0, 0.0, 0.0])
     start, end = dual_quat_from_screw(0.0, 0.0, *line), dual_quat_from_screw(np.radians(200.0), 0.2, *line)
     half = dual_quat_from_screw(np.radians(100.0), 0.1, *line)
-    assert sclerp(start, end, 0.5, shortest_path=False) == pytest.approx(half)
-    assert sdlb(start, end, 0.5, shortest_path=False)[:4] == pytest.approx(half[:4])
+    assert sclerp(start, end, 0.5, way="as given") == pytest.approx(half)
+    assert sdlb(start, end, 0.5, way="as given")[:4] == pytest.approx(half[:4])
+    assert sclerp(start, end, 0.5, way="longest") == pytest.approx(half)
+    assert sclerp(start, -end, 0.5, way="longest") == pytest.approx(half)
+    assert nlerp(start[:4], end[:4], 0.5, way="longest") == pytest.approx(half[:4])
+    three = np.stack([start, half, end])
+    blend = dib(three, lagrange_weights([0.25, 0.95], [0.0, 0.5, 1.0]), way="as given").dual_quat
+    assert np.degrees(screw_from_dual_quat(blend).angle) == pytest.approx([50.0, 190.0], abs=1e-6)
+    assert catmull_rom(three, [0.0, 0.5, 1.0], 0.5, way="longest")[0] == pytest.approx(-half[0])
+    with pytest.raises(ValueError, match="'longest'"):
+        sclerp(start, end, 0.5, way="short")  # type: ignore[arg-type]
     back = dual_quat_from_screw(np.radians(-80.0), 0.1, *line)
     assert sclerp(start, end, 0.5)[:4] == pytest.approx(back[:4])
 
@@ -83,7 +93,7 @@ def test_blending_meets_the_keyframes_and_broadcasts() -> None:
 def test_a_blend_that_cancels_is_undefined() -> None:
     line = ([0.0, 0.0, 1.0], [0.0, 0.0, 0.0])
     start, end = dual_quat_from_screw(0.0, 0.0, *line), dual_quat_from_screw(2 * np.pi, 0.0, *line)
-    assert np.isnan(sdlb(start, end, 0.5, shortest_path=False)).all()
+    assert np.isnan(sdlb(start, end, 0.5, way="as given")).all()
 
 
 def test_equal_knots_are_refused() -> None:
@@ -168,7 +178,7 @@ def test_nlerp_goes_the_way_of_slerp() -> None:
     assert abs(half @ theirs) == pytest.approx(1.0)
     assert nlerp(a, -b, 0.3) == pytest.approx(nlerp(a, b, 0.3))
     assert nlerp(a, b, np.zeros((2, 3))).shape == (2, 3, 4)
-    assert np.isnan(nlerp(a, -a, 0.5, shortest_path=False)).all()
+    assert np.isnan(nlerp(a, -a, 0.5, way="as given")).all()
 
 
 def test_a_chain_puts_every_link_into_the_root() -> None:

@@ -1,4 +1,4 @@
-"""Poses from markers, and the dual matrices they stand on."""
+"""Poses from markers."""
 
 from __future__ import annotations
 
@@ -8,52 +8,11 @@ from numpy.typing import NDArray
 from poses import SHAPES, random_poses
 from scipy.spatial.transform import Rotation
 
-from elbowscrew.geometry import dual_matrix, fit_poses, fit_poses_dual_qr
 from elbowscrew.geometry import dual_quaternion as dq
-from elbowscrew.geometry.dual_matrix import DualMatrix
+from elbowscrew.geometry import fit_poses, fit_poses_dual_qr
 
 Float = NDArray[np.float64]
 BODY = np.array([[0.04, 0, 0.01], [-0.03, 0.05, 0], [0, -0.04, 0.01], [0.01, 0.02, -0.06], [0.02, -0.03, 0.05]])
-
-
-def random_dual(shape: tuple[int, ...], seed: int) -> DualMatrix:
-    rng = np.random.default_rng(seed)
-    return DualMatrix(rng.normal(size=shape), rng.normal(size=shape))
-
-
-def assert_equal(one: DualMatrix, other: DualMatrix, tolerance: float = 1e-9) -> None:
-    assert one.real == pytest.approx(other.real, abs=tolerance)
-    assert one.dual == pytest.approx(other.dual, abs=tolerance)
-
-
-def test_pseudoinverse_and_qr_of_a_thousand_dual_matrices() -> None:
-    A = random_dual((1000, 3, 5), 1)
-    regular = np.linalg.cond(A.real) < 100
-    A = DualMatrix(A.real[regular], A.dual[regular])
-    assert_equal(dual_matrix.multiply(dual_matrix.multiply(A, dual_matrix.pseudoinverse(A)), A), A, 1e-8)
-    tall = dual_matrix.transpose(A)
-    assert_equal(dual_matrix.multiply(dual_matrix.multiply(tall, dual_matrix.pseudoinverse(tall)), tall), tall, 1e-8)
-    B = random_dual((1000, 3, 3), 2)
-    regular = np.linalg.cond(B.real) < 100
-    B = DualMatrix(B.real[regular], B.dual[regular])
-    Q, R = dual_matrix.qr(B)
-    one = DualMatrix(np.broadcast_to(np.eye(3), Q.real.shape), np.zeros(Q.real.shape))
-    assert_equal(dual_matrix.multiply(dual_matrix.transpose(Q), Q), one)
-    assert_equal(dual_matrix.multiply(Q, R), B)
-    assert np.abs(np.tril(R.real, -1)).max() == 0.0
-    assert (np.diagonal(R.real, axis1=-2, axis2=-1) > 0).all()
-    assert_equal(dual_matrix.multiply(B, dual_matrix.inverse(B)), one, 1e-8)
-
-
-def test_a_singular_real_part_has_no_inverse() -> None:
-    flat = DualMatrix(np.diag([1.0, 1.0, 0.0]), np.eye(3))
-    with pytest.raises(np.linalg.LinAlgError):
-        dual_matrix.inverse(flat)
-    deficient = random_dual((1000, 3, 5), 4)
-    deficient.real[:, 2] = deficient.real[:, 0] - 2.0 * deficient.real[:, 1]
-    for k in range(0, 1000, 50):
-        with pytest.raises(np.linalg.LinAlgError, match="full rank"):
-            dual_matrix.pseudoinverse(DualMatrix(deficient.real[k], deficient.dual[k]))
 
 
 @pytest.mark.parametrize("fit", [fit_poses, fit_poses_dual_qr])

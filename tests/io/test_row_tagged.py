@@ -51,6 +51,7 @@ def edited(tmp_path: Path, old: str, new: str) -> Path:
     [
         ("righthanded", "lefthanded", "left-handed"),
         ('rigidbody,"Forearm",2', 'rigidbody,"Forearm",7', "not certain which pose is whose"),
+        ('rigidbody,"Forearm",2,3,', 'rigidbody,"Forearm",2,4,1,2,1e308,', "10 km"),
         ("frame,7,0.07000000,2", "frame,7,0.07000000,3", "cut"),
         ("frame,7,0.07000000,2", "frame,7,abc,2", "expected a number, found 'abc'"),
         ("frame,7,0.07000000,2,2", "frame,7,0.07000000,2,1", "twice in the frame"),

@@ -14,6 +14,7 @@ from elbowscrew.geometry import dual_quat_from_screw, line_through
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.model import TrackingLoss
 from elbowscrew.motion.laws import LAWS
+from elbowscrew.motion.modeling import METHODS
 
 Float = NDArray[np.float64]
 FRAMES, TURN = 101, 40
@@ -64,7 +65,7 @@ def test_linear_sclerp_of_a_uniform_screw_is_exact() -> None:
     assert np.nanmax(result.angle_error) < 1e-7
 
 
-@pytest.mark.parametrize("method", ["dlb", "sclerp", "sdlb"])
+@pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("blend", ["piecewise", "global"])
 @pytest.mark.parametrize("law", ["cycloidal", "linear"])
 def test_with_law_knots_the_model_meets_every_keyframe_at_its_own_time(method: Any, blend: Any, law: Any) -> None:

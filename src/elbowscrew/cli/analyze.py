@@ -111,7 +111,7 @@ def analyze(
         ),
     ] = None,
     method: Annotated[
-        Literal["dlb", "sclerp", "sdlb"] | None,
+        Literal["dlb", "sclerp", "sdlb", "dib", "catmull-rom"] | None,
         typer.Option(rich_help_panel=_MODEL, help="Interpolation of poses.", show_default="dlb"),
     ] = None,
     blend: Annotated[

@@ -9,7 +9,7 @@ from elbowscrew.geometry.dual_matrix import DualMatrix
 from elbowscrew.geometry.dual_number import DualNumber
 from elbowscrew.geometry.interpolation import (
     IterativeBlend,
-    catmull_rom,
+    WayRound,
     chain,
     dib,
     dlb,
@@ -30,6 +30,7 @@ from elbowscrew.geometry.screw import (
     screw_from_dual_matrix,
     screw_from_dual_quat,
 )
+from elbowscrew.geometry.spline import catmull_rom
 
 __all__ = [
     "DualMatrix",
@@ -37,6 +38,7 @@ __all__ = [
     "FittedPose",
     "IterativeBlend",
     "Screw",
+    "WayRound",
     "catmull_rom",
     "chain",
     "compose_screws",

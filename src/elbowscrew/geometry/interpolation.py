@@ -1,13 +1,13 @@
 """Interpolation and blending of poses: ScLERP, sDLB, DLB.
 
-By default the poses are first brought to the same sign of the double cover (shortest path). A caller that already
-knows which of ``Q`` and ``-Q`` belongs to the motion, as in a measured series made continuous, passes
-``shortest_path=False`` and the signs are used as they are.
+`Q` and `-Q` are one pose, but the blends of `Q1` with the one and with the other go round different ways. By default
+it is the shorter way (``way="shortest"``); ``"longest"`` is the other one. A caller that knows which of the two signs
+belongs to the motion, as in a measured series made continuous, says ``"as given"``.
 """
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,8 +15,21 @@ from numpy.typing import ArrayLike, NDArray
 from elbowscrew.geometry import dual_quaternion, quaternion
 from elbowscrew.geometry._small_angle import VANISHING_NORM, length
 
+WayRound = Literal["shortest", "longest", "as given"]
 
-def sclerp(start: ArrayLike, end: ArrayLike, fraction: ArrayLike, *, shortest_path: bool = True) -> NDArray[np.float64]:
+
+def _choose_signs(quats: NDArray[np.float64], reference: NDArray[np.float64], way: WayRound) -> NDArray[np.float64]:
+    """Quaternions or dual quaternions (..., k) with the sign that goes that way round from the reference."""
+    if way == "as given":
+        return quats
+    if way not in ("shortest", "longest"):
+        msg = f"way must be 'shortest', 'longest' or 'as given', found {way!r}"
+        raise ValueError(msg)
+    near = np.sum(quats[..., :4] * reference[..., :4], axis=-1, keepdims=True) >= 0.0
+    return np.where(near == (way == "shortest"), quats, -quats)
+
+
+def sclerp(start: ArrayLike, end: ArrayLike, fraction: ArrayLike, *, way: WayRound = "shortest") -> NDArray[np.float64]:
     """Screw linear interpolation ``Q1 (Q1* Q2)^t``: constant speed along and about one screw.
 
     Parameters
@@ -25,8 +38,8 @@ def sclerp(start: ArrayLike, end: ArrayLike, fraction: ArrayLike, *, shortest_pa
         Unit dual quaternions.
     fraction : array_like, shape (...)
         t; 0 gives the start, 1 the end. Shapes broadcast.
-    shortest_path : bool
-        Take the end's sign nearer the start.
+    way : {"shortest", "longest", "as given"}
+        Which way round: with the end's sign nearer the start, farther from it, or as it stands.
 
     Returns
     -------
@@ -45,14 +58,12 @@ def sclerp(start: ArrayLike, end: ArrayLike, fraction: ArrayLike, *, shortest_pa
     array([0., 0., 2.])
     """
     first = np.asarray(start, dtype=np.float64)
-    last = np.asarray(end, dtype=np.float64)
-    if shortest_path:
-        last = dual_quaternion.align_signs(last, first)
+    last = _choose_signs(np.asarray(end, dtype=np.float64), first, way)
     step = dual_quaternion.multiply(dual_quaternion.conjugate(first), last)
     return dual_quaternion.multiply(first, dual_quaternion.power(step, fraction))
 
 
-def sdlb(start: ArrayLike, end: ArrayLike, fraction: ArrayLike, *, shortest_path: bool = True) -> NDArray[np.float64]:
+def sdlb(start: ArrayLike, end: ArrayLike, fraction: ArrayLike, *, way: WayRound = "shortest") -> NDArray[np.float64]:
     """Blend linearly between two poses, ``(1-t) Q1 + t Q2``, and normalize by the dual norm.
 
     Parameters and result as in `sclerp`; NaN where the blend vanishes.
@@ -63,7 +74,7 @@ def sdlb(start: ArrayLike, end: ArrayLike, fraction: ArrayLike, *, shortest_path
     """
     t = np.asarray(fraction, dtype=np.float64)
     poses = np.stack(np.broadcast_arrays(start, end), axis=-2)
-    return dlb(poses, np.stack([1.0 - t, t], axis=-1), shortest_path=shortest_path)
+    return dlb(poses, np.stack([1.0 - t, t], axis=-1), way=way)
 
 
 def lagrange_weights(fraction: ArrayLike, knots: ArrayLike) -> NDArray[np.float64]:
@@ -102,7 +113,7 @@ def lagrange_weights(fraction: ArrayLike, knots: ArrayLike) -> NDArray[np.float6
     return weights
 
 
-def dlb(poses: ArrayLike, weights: ArrayLike, *, shortest_path: bool = True) -> NDArray[np.float64]:
+def dlb(poses: ArrayLike, weights: ArrayLike, *, way: WayRound = "shortest") -> NDArray[np.float64]:
     """Blend poses: weighted sum, normalized by the dual norm.
 
     Parameters
@@ -111,8 +122,8 @@ def dlb(poses: ArrayLike, weights: ArrayLike, *, shortest_path: bool = True) -> 
         Unit dual quaternions.
     weights : array_like, shape (..., n)
         One for each pose, adding up to 1; they may be negative (`lagrange_weights`).
-    shortest_path : bool
-        Take each pose's sign nearer the first one.
+    way : {"shortest", "longest", "as given"}
+        Signs of all poses nearer the first one's, farther from it, or as they stand.
 
     Returns
     -------
@@ -123,13 +134,17 @@ def dlb(poses: ArrayLike, weights: ArrayLike, *, shortest_path: bool = True) -> 
     ----------
     P 33, algorithm 2.
     """
-    Q = np.asarray(poses, dtype=np.float64)
-    if shortest_path:
-        Q = dual_quaternion.align_signs(Q, Q[..., :1, :])
+    Q = _signs_from_first(poses, way)
     w = np.asarray(weights, dtype=np.float64)
     blend = (w[..., None, :] @ Q)[..., 0, :]
     vanishing = length(blend[..., :4]) < VANISHING_NORM
     return np.where(vanishing[..., None], np.nan, dual_quaternion.normalize(blend))
+
+
+def _signs_from_first(poses: ArrayLike, way: WayRound) -> NDArray[np.float64]:
+    Q = np.asarray(poses, dtype=np.float64)
+    chosen = _choose_signs(Q, Q[..., :1, :], way)
+    return np.concatenate([Q[..., :1, :], chosen[..., 1:, :]], axis=-2)
 
 
 class IterativeBlend(NamedTuple):
@@ -155,7 +170,7 @@ def dib(
     *,
     tolerance: float = 1e-12,
     max_iterations: int = 100,
-    shortest_path: bool = True,
+    way: WayRound = "shortest",
 ) -> IterativeBlend:
     """Dual quaternion iterative blending: from DLB on, ``B <- B exp(sum_i w_i log(B* Q_i))`` until the step is small.
 
@@ -170,7 +185,7 @@ def dib(
         Largest step at which to stop.
     max_iterations : int
         Stop here in any case; look at the residual then.
-    shortest_path : bool
+    way : {"shortest", "longest", "as given"}
         As in `dlb`.
 
     Returns
@@ -182,22 +197,22 @@ def dib(
     ----------
     P algorithm 3.
     """
-    Q = np.asarray(poses, dtype=np.float64)
+    Q = _signs_from_first(poses, way)
     w = np.asarray(weights, dtype=np.float64)
-    blend = dlb(Q, w, shortest_path=shortest_path)
+    blend = dlb(Q, w, way="as given")
     scale = 1.0 + np.max(length(dual_quaternion.pose_from_dual_quat(Q)[1]), axis=-1, initial=0.0)
     residual = np.full(blend.shape[:-1], np.inf)
     done = 0
     while done < max_iterations and np.any(residual > tolerance):
         steps = dual_quaternion.multiply(dual_quaternion.conjugate(blend)[..., None, :], Q)
-        step = (w[..., None, :] @ dual_quaternion.log(dual_quaternion.canonical(steps)))[..., 0, :]
+        step = (w[..., None, :] @ dual_quaternion.log(steps))[..., 0, :]
         blend = dual_quaternion.normalize(dual_quaternion.multiply(blend, dual_quaternion.exp(step)))
         residual = np.maximum(length(step[..., :3]), length(step[..., 3:]) / scale)
         done += 1
     return IterativeBlend(blend, done, residual)
 
 
-def nlerp(start: ArrayLike, end: ArrayLike, fraction: ArrayLike, *, shortest_path: bool = True) -> NDArray[np.float64]:
+def nlerp(start: ArrayLike, end: ArrayLike, fraction: ArrayLike, *, way: WayRound = "shortest") -> NDArray[np.float64]:
     """Blend linearly between two rotations and normalize, shape (..., 4): the path of slerp at another speed.
 
     Parameters
@@ -205,82 +220,19 @@ def nlerp(start: ArrayLike, end: ArrayLike, fraction: ArrayLike, *, shortest_pat
     start, end : array_like, shape (..., 4)
         Unit quaternions.
     fraction : array_like, shape (...)
-    shortest_path : bool
-        Take the end's sign nearer the start.
+    way : {"shortest", "longest", "as given"}
+        Which way round: with the end's sign nearer the start, farther from it, or as it stands.
 
     References
     ----------
     K 44. For poses it is `sdlb`.
     """
     first, last = np.asarray(start, dtype=np.float64), np.asarray(end, dtype=np.float64)
-    if shortest_path:
-        last = np.where(np.sum(first * last, axis=-1, keepdims=True) < 0.0, -last, last)
+    last = _choose_signs(last, first, way)
     t = np.asarray(fraction, dtype=np.float64)[..., None]
     blend = (1.0 - t) * first + t * last
     vanishing = length(blend)[..., None] < VANISHING_NORM
     return np.where(vanishing, np.nan, quaternion.normalize(blend))
-
-
-def catmull_rom(
-    poses: ArrayLike, knots: ArrayLike, parameter: ArrayLike, *, shortest_path: bool = True
-) -> NDArray[np.float64]:
-    """Smooth motion through all keyframes at their knots: the Barry-Goldman pyramid, ScLERP in place of lerp.
-
-    Parameters
-    ----------
-    poses : array_like, shape (n, 8)
-        Unit dual quaternions, at least two.
-    knots : array_like, shape (n,)
-        Increasing, at any distances.
-    parameter : array_like, shape (...)
-        Where to evaluate; beyond the ends the end segments go on.
-    shortest_path : bool
-        Take each pose's sign nearer the one before.
-
-    Returns
-    -------
-    ndarray, shape (..., 8)
-        The velocity is continuous at the knots. Beyond the ends the first and the last step are repeated.
-
-    References
-    ----------
-    K, section on splines; Barry and Goldman 1988.
-    """
-    Q = np.asarray(poses, dtype=np.float64)
-    t = np.asarray(knots, dtype=np.float64)
-    if Q.ndim != 2 or len(Q) < 2 or t.shape != (len(Q),) or (np.diff(t) <= 0.0).any():
-        msg = f"expected two poses or more with increasing knots, found {Q.shape} and {t.tolist()}"
-        raise ValueError(msg)
-    if shortest_path:
-        Q = dual_quaternion.continuous_signs(Q)
-    before = sclerp(Q[0], Q[1], -1.0, shortest_path=False)
-    after = sclerp(Q[-2], Q[-1], 2.0, shortest_path=False)
-    Q = np.concatenate([before[None], Q, after[None]])
-    t = np.concatenate([[2.0 * t[0] - t[1]], t, [2.0 * t[-1] - t[-2]]])
-    x = np.asarray(parameter, dtype=np.float64)
-    first = np.clip(np.searchsorted(t, x, side="right") - 1, 1, len(t) - 3) - 1
-    level = [Q[first + k] for k in range(4)]
-    for width in (1, 2, 3):
-        level = [_between(level[k], level[k + 1], x, *_span(t, first, k, width)) for k in range(len(level) - 1)]
-    return level[0]
-
-
-def _span(
-    knots: NDArray[np.float64], first: NDArray[np.intp], k: int, width: int
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Ends of the interval a node of the pyramid blends over: the middle one at the top, wider ones below."""
-    low, high = (k, k + 1) if width == 1 else (k, k + 2) if width == 2 else (1, 2)
-    return knots[first + low], knots[first + high]
-
-
-def _between(
-    start: NDArray[np.float64],
-    end: NDArray[np.float64],
-    x: NDArray[np.float64],
-    low: NDArray[np.float64],
-    high: NDArray[np.float64],
-) -> NDArray[np.float64]:
-    return sclerp(start, end, (x - low) / (high - low), shortest_path=False)
 
 
 def chain(poses: ArrayLike) -> NDArray[np.float64]:

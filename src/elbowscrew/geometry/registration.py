@@ -101,7 +101,8 @@ def fit_poses_dual_qr(body_points: ArrayLike, points: ArrayLike) -> FittedPose:
     rotation = np.where(fixed[..., None, None], Q.real, np.eye(3))
     pose = dual_quat_from_dual_matrix(DualMatrix(rotation, np.where(fixed[..., None, None], Q.dual, 0.0)))
     mirrored = np.linalg.det(np.where(np.isfinite(rotation), rotation, np.eye(3))) < 0.0
-    fixed &= ~mirrored
+    # Seen as if flattened: the triangular factor is far from the identity, and the pose from being one.
+    fixed &= ~mirrored & (np.min(np.diagonal(R.real, axis1=-2, axis2=-1), axis=-1) > _FLATNESS)
     return FittedPose(np.where(fixed[..., None], pose, np.nan), np.where(fixed, deviation, np.nan))
 
 

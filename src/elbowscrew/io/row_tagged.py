@@ -16,7 +16,7 @@ from elbowscrew.io.clock import LAST_FRAME, LATEST_TIME_S, counted_rate, cut_war
 from elbowscrew.io.growing import Growing, GrowingBody
 from elbowscrew.io.options import ReadOptions
 from elbowscrew.io.source import TextSource
-from elbowscrew.model import QualityWarning, Recording, Source, TrackingLoss
+from elbowscrew.model import QualityWarning, Recording, Source, TrackingLoss, out_of_reach
 
 TAGS: Final = ("comment", "info", "righthanded", "lefthanded", "frame", "trackable", "rigidbody")
 _DEFINITIONS: Final = ("trackable", "rigidbody")
@@ -101,6 +101,9 @@ def _parse(source: TextSource) -> _Parsed:
                 offsets = [_finite(cell) for cell in row[4 : 4 + 3 * count]]
                 if identifier in parsed.names or len(offsets) != 3 * count:
                     msg = f"body {row[1]!r} is defined twice" if identifier in parsed.names else "the row is cut"
+                    raise ValueError(msg)
+                if out_of_reach(np.array(offsets)):
+                    msg = f"a marker of body {row[1]!r} lies over 10 km from it"
                     raise ValueError(msg)
                 parsed.names[identifier] = row[1]
                 parsed.bodies[identifier] = GrowingBody(row[1])

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowscrew.errors import SettingError
-from elbowscrew.geometry import dlb, lagrange_weights, sclerp, sdlb
+from elbowscrew.geometry import catmull_rom, dib, dlb, lagrange_weights, sclerp, sdlb
 from elbowscrew.model import Keyframes
 from elbowscrew.motion.laws import Law
 
@@ -18,9 +18,10 @@ Method = Callable[[Float, Float, Float], Float]
 
 
 _LARGEST_WEIGHT: Final = 100.0
+_LARGEST_STEP: Final = 1e-9
 
 
-def _dlb(poses: Float, knots: Float, parameter: Float) -> Float:
+def _weights(parameter: Float, knots: Float) -> Float:
     weights = lagrange_weights(parameter, knots)
     largest = float(np.abs(weights).max(initial=0.0))
     if not largest <= _LARGEST_WEIGHT:
@@ -29,14 +30,33 @@ def _dlb(poses: Float, knots: Float, parameter: Float) -> Float:
             "their noise with them; give fewer keyframes, or --method sclerp"
         )
         raise SettingError(msg)
-    return dlb(poses, weights, shortest_path=False)
+    return weights
+
+
+def _dlb(poses: Float, knots: Float, parameter: Float) -> Float:
+    return dlb(poses, _weights(parameter, knots), way="as given")
+
+
+def _dib(poses: Float, knots: Float, parameter: Float) -> Float:
+    blend = dib(poses, _weights(parameter, knots), way="as given")
+    if (blend.residual > _LARGEST_STEP).any():
+        msg = (
+            f"--method dib: the blend still moves by {blend.residual.max():.2g} rad after {blend.iterations} "
+            "iterations; give keyframes that are nearer each other, or --method dlb"
+        )
+        raise SettingError(msg)
+    return blend.dual_quat
+
+
+def _catmull_rom(poses: Float, knots: Float, parameter: Float) -> Float:
+    return catmull_rom(poses, knots, parameter, way="as given")
 
 
 def _between_neighbors(two_poses: Callable[..., Float]) -> Method:
     def method(poses: Float, knots: Float, parameter: Float) -> Float:
         k = np.clip(np.searchsorted(knots, parameter, side="right") - 1, 0, knots.size - 2)
         local = (parameter - knots[k]) / (knots[k + 1] - knots[k])
-        return two_poses(poses[k], poses[k + 1], local, shortest_path=False)
+        return two_poses(poses[k], poses[k + 1], local, way="as given")
 
     return method
 
@@ -45,6 +65,8 @@ METHODS: Final[dict[str, Method]] = {
     "dlb": _dlb,
     "sclerp": _between_neighbors(sclerp),
     "sdlb": _between_neighbors(sdlb),
+    "dib": _dib,
+    "catmull-rom": _catmull_rom,
 }
 """Each takes keyframe poses (K, 8), their knots (K,) and parameters (n,) and gives poses (n, 8).
 
