@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any, Final, Literal
 
 from elbowscrew.errors import UsageError
+from elbowscrew.io.joint_summary import joint_summary
 from elbowscrew.io.optitrack_writer import motive_columns_lines, row_tagged_lines
 from elbowscrew.io.staging import result_folder, write_files
 from elbowscrew.io.summary import summary_from_analysis
@@ -32,7 +33,7 @@ def save_analysis(
     force: bool = False,
     figure_formats: Sequence[str] | None = None,
 ) -> Path:
-    """Write ``screw.csv``, ``interpolation.csv``, ``summary.json`` and ``figures/`` into a folder, whole or not at all.
+    """Write the tables, ``summary.json``, ``joint.json`` and ``figures/`` into a folder, whole or not at all.
 
     Parameters
     ----------
@@ -63,8 +64,12 @@ def save_analysis(
         raise UsageError(msg)
     with result_folder(target, force=force) as staged:
         write_tables(staged, analysis)
-        text = json.dumps(summary_from_analysis(analysis), indent=2, ensure_ascii=False, allow_nan=False)
-        (staged / "summary.json").write_text(text + "\n", encoding="utf-8")
+        for name, content in (
+            ("summary.json", summary_from_analysis(analysis)),
+            ("joint.json", joint_summary(analysis)),
+        ):
+            text = json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False)
+            (staged / name).write_text(text + "\n", encoding="utf-8")
         if formats:
             _write_figures(staged / "figures", analysis, formats)
     return target

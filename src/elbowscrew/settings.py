@@ -9,7 +9,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Final, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+import numpy as np
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
 
 from elbowscrew.errors import UsageError
 from elbowscrew.tables import AngleUnit, LengthUnit
@@ -54,6 +55,16 @@ class Settings(BaseModel):
     max_speed_m_s: float = Field(15.0, gt=0, description="Fastest motion of a body, in meters a second")
     min_tracked_percent: float = Field(50.0, ge=0, le=100, description="Least share of frames tracked")
     min_angle_deg: float = Field(10.0, gt=0, lt=180, description="Least angle that gives an axis, in degrees")
+    axis_sd_deg: float | None = Field(
+        None, gt=0, lt=90, description="Give an axis where its direction is known this well, in degrees"
+    )
+    marker_noise_mm: float | None = Field(
+        None, gt=0, le=100, description="Noise of each coordinate of each marker, in millimeters"
+    )
+    noise: Literal["auto", "residuals", "still", "error-column", "none"] = Field(
+        "auto", description="Where the noise of the poses is known from"
+    )
+    robust: bool = Field(False, description="Weigh outliers down in the joint's axis")
     inversion: int | None = Field(None, description="Frame where the motion turns back")
     keyframes: tuple[int, ...] | None = Field(None, min_length=2, description="Frames the model passes through")
     method: Literal["dlb", "sclerp", "sdlb", "dib", "catmull-rom"] = Field("dlb", description="Interpolation of poses")
@@ -82,6 +93,19 @@ class Settings(BaseModel):
     def figure_formats(self) -> tuple[str, ...]:
         """Formats to write, without doubles; empty for no figures."""
         return tuple(dict.fromkeys(kind for kind in self.figure_format if kind != "none"))
+
+    @field_validator("axis_sd_deg", mode="before")
+    @classmethod
+    def _angle_with_unit(cls, value: object) -> object:
+        """Take ``2deg`` and ``0.03rad`` for angles, too."""
+        if not isinstance(value, str):
+            return value
+        number, unit = value.strip().removesuffix("deg").removesuffix("rad"), value.strip()[-3:]
+        try:
+            return float(np.degrees(float(number))) if unit == "rad" else float(number)
+        except ValueError as error:
+            msg = f"expected degrees or an angle with its unit, as in 2deg, found {value!r}"
+            raise ValueError(msg) from error
 
     @model_validator(mode="after")
     def _check_keyframes(self) -> Settings:

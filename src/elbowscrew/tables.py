@@ -72,6 +72,12 @@ SCREW_COLUMNS: Final = (
     _column("filled", "filled", Quantity.INTEGER),
     _column("arm_loss", "arm_loss", Quantity.LABEL),
     _column("forearm_loss", "forearm_loss", Quantity.LABEL),
+    _column("theta_sd", "angle_sd", Quantity.ANGLE),
+    _column("slide_sd", "slide_sd", Quantity.LENGTH),
+    _column("axis_sd", "axis_sd", Quantity.ANGLE),
+    _column("point_sd", "point_sd", Quantity.LENGTH),
+    _column("axis_cone95", "axis_cone", Quantity.ANGLE),
+    _column("point_radius95", "point_radius", Quantity.LENGTH),
 )
 
 INTERPOLATION_COLUMNS: Final = (

@@ -15,7 +15,8 @@ from elbowscrew.io.writing import write_csv, write_tables
 
 SCREW_NAMES = (
     "frame time_s valid theta_deg slide_mm axis_x axis_y axis_z point_x_mm point_y_mm point_z_mm "
-    "e0 e1 e2 e3 d_x_mm d_y_mm d_z_mm filled arm_loss forearm_loss"
+    "e0 e1 e2 e3 d_x_mm d_y_mm d_z_mm filled arm_loss forearm_loss "
+    "theta_sd_deg slide_sd_mm axis_sd_deg point_sd_mm axis_cone95_deg point_radius95_mm"
 ).split()
 INTERPOLATION_NAMES = (
     "frame time_s phase t theta_deg slide_mm e0 e1 e2 e3 d_x_mm d_y_mm d_z_mm "

@@ -95,6 +95,29 @@ def analyze(
         float | None,
         typer.Option(metavar="DEG", rich_help_panel=_MOTION, help="Least angle for an axis.", show_default="10"),
     ] = None,
+    axis_sd: Annotated[
+        str | None,
+        typer.Option(
+            metavar="DEG", rich_help_panel=_MOTION, help="Least precision of an axis, in place of --min-angle: 2deg."
+        ),
+    ] = None,
+    marker_noise: Annotated[
+        float | None,
+        typer.Option(
+            metavar="MM",
+            rich_help_panel=_MOTION,
+            help="Noise of each coordinate of a marker.",
+            show_default="from the recording",
+        ),
+    ] = None,
+    noise: Annotated[
+        Literal["auto", "residuals", "still", "error-column", "none"] | None,
+        typer.Option(rich_help_panel=_MOTION, help="Where the noise is known from.", show_default="auto"),
+    ] = None,
+    robust: Annotated[
+        bool | None,
+        typer.Option("--robust/--no-robust", rich_help_panel=_MOTION, help="Weigh outliers down in the joint's axis."),
+    ] = None,
     keyframes: Annotated[
         str | None,
         typer.Option(
@@ -190,6 +213,10 @@ def analyze(
             "express_in": express_in,
             "max_gap": max_gap,
             "min_angle": min_angle,
+            "axis_sd": axis_sd,
+            "marker_noise": marker_noise,
+            "noise": noise,
+            "robust": robust,
             "keyframes": options.frame_numbers(keyframes),
             "inversion": inversion,
             "method": method,

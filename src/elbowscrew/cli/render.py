@@ -56,6 +56,7 @@ def analysis_table(summary: Mapping[str, Any], folder: Path) -> None:
             f"direction ({_vector(motion['mean_axis']['direction'], 4)}), "
             f"point ({_vector(motion['mean_axis']['point_mm'], 1)}) mm, in the {motion['expressed_in']} frame",
         ),
+        ("Joint axis", _joint_axis(motion)),
         (
             "Dispersion",
             f"median {motion['axis_dispersion_deg']:.2f} deg over the {motion['axis_frames']} frames with an axis",
@@ -190,6 +191,17 @@ def _number(value: float | None) -> str:
 
 def _vector(values: Iterable[float], decimals: int) -> str:
     return ", ".join(f"{value:.{decimals}f}" for value in values)
+
+
+def _joint_axis(motion: Mapping[str, Any]) -> str:
+    axis = motion["joint_axis"]
+    if axis is None:
+        return "none: the motion has no single axis"
+    return (
+        f"direction ({_vector(axis['direction'], 4)}) within {axis['axis_cone95_deg']:.2g} deg, "
+        f"point ({_vector(axis['point_mm'], 1)}) within {axis['point_radius95_mm']:.2g} mm "
+        f"({axis['model'].replace('_', '-')}, 95 %)"
+    )
 
 
 def _radius(model: Mapping[str, Any]) -> str:

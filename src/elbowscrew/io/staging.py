@@ -19,6 +19,12 @@ RESULT_FILES: Final = (
     "screw.csv",
     "interpolation.csv",
     "summary.json",
+    "joint.json",
+    "instantaneous.csv",
+    "steps.csv",
+    "repetitions.csv",
+    "repetition_curve.csv",
+    "anatomy.csv",
     *(f"figures/{name}.{kind}" for name in FIGURE_NAMES for kind in FIGURE_FORMATS),
 )
 """All that a result folder may hold."""

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from elbowscrew._version import __version__
 from elbowscrew.errors import SettingError
 from elbowscrew.io.options import ASK_FOR_MARKERS
-from elbowscrew.model import Analysis, BodyQuality, QualityWarning, Recording, Spread
+from elbowscrew.model import Analysis, BodyQuality, JointAxis, QualityWarning, Recording, Spread
 from elbowscrew.motion.quality import body_quality, check_bodies, clock_quality
 from elbowscrew.motion.selection import choose_bodies
 from elbowscrew.settings import Settings
@@ -157,6 +157,22 @@ def _motion(analysis: Analysis) -> dict[str, Any]:
         "axis_dispersion_rms_deg": _statistic(_rms, np.degrees(axis.deviation)),
         "axis_dispersion_max_deg": _statistic(np.nanmax, np.degrees(axis.deviation)),
         "axis_distance_rms_mm": _statistic(_rms, 1000.0 * axis.distance),
+        "single_axis": analysis.joint_axis.single,
+        "joint_axis": _joint_axis(analysis.joint_axis),
+    }
+
+
+def _joint_axis(axis: JointAxis) -> dict[str, Any] | None:
+    """Say the preferred fit with its interval; the rest stands in ``joint.json``."""
+    if axis.best is None:
+        return None
+    return {
+        "model": axis.preferred,
+        "direction": axis.best.line.direction.tolist(),
+        "point_mm": (1000.0 * axis.best.line.point).tolist(),
+        "axis_cone95_deg": float(np.degrees(axis.best.axis_cone)),
+        "point_radius95_mm": 1000.0 * axis.best.point_radius,
+        "pitch_mm_per_rad": 1000.0 * axis.best.pitch,
     }
 
 

@@ -1,5 +1,6 @@
 """What flows through the program: recordings in, results out; frozen, in SI units and radians."""
 
+from elbowscrew.model.joint_axis import FittedJoint, JointAxis, LineEstimate, PoseNoise
 from elbowscrew.model.quality import BodyQuality, ClockQuality, Spread
 from elbowscrew.model.recording import (
     Marker,
@@ -28,11 +29,15 @@ __all__ = [
     "BodyPoints",
     "BodyQuality",
     "ClockQuality",
+    "FittedJoint",
     "InterpolatedMotion",
+    "JointAxis",
     "JointMotion",
     "Keyframes",
+    "LineEstimate",
     "Marker",
     "MeanAxis",
+    "PoseNoise",
     "QualityWarning",
     "Recording",
     "RigidBody",

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from elbowscrew import tables
 from elbowscrew.model.brief import Brief
+from elbowscrew.model.joint_axis import JointAxis
 from elbowscrew.model.quality import BodyQuality
 from elbowscrew.model.recording import QualityWarning, Recording, RigidBody
 
@@ -66,6 +67,12 @@ class ScrewMotion(Brief):
         Unit direction, and the point (m) of the axis nearest the origin, in the frame the screw is expressed in.
     euler_parameters, translation : ndarray, shape (N, 4) and (N, 3)
         The displacement itself: sign-continuous e0..e3, and d in meters.
+    angle_sd, slide_sd : ndarray, shape (N,)
+        Standard deviations (rad, m) from the noise of both bodies' poses; NaN where it is not known.
+    axis_sd, point_sd : ndarray, shape (N,)
+        Of the direction (rad) and of the place across the axis at `axis_point` (m), both components together.
+    axis_cone, point_radius : ndarray, shape (N,)
+        Half-angle (rad) of the cone, and radius (m) of the circle, that hold 95 %.
     """
 
     frame: NDArray[np.int64]
@@ -80,6 +87,12 @@ class ScrewMotion(Brief):
     axis_point: Float
     euler_parameters: Float
     translation: Float
+    angle_sd: Float
+    slide_sd: Float
+    axis_sd: Float
+    point_sd: Float
+    axis_cone: Float
+    point_radius: Float
 
     @property
     def axis_known(self) -> Bool:
@@ -105,12 +118,16 @@ class MeanAxis(Brief):
     distance : ndarray, shape (N,)
         Distance between each frame's axis and the mean axis, across the latter where it passes the forearm at the
         reference, meters; NaN where there is no axis.
+    excursion, place_excursion : float
+        Largest angle (rad) between two of the axes, and largest distance (m) between two of their places in that plane.
     """
 
     direction: Float
     point: Float
     deviation: Float
     distance: Float
+    excursion: float
+    place_excursion: float
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -214,6 +231,7 @@ class Analysis(Brief):
     joint : JointMotion
     screw : ScrewMotion
     mean_axis : MeanAxis
+    joint_axis : JointAxis
     keyframes : Keyframes
     interpolated : InterpolatedMotion
     points : BodyPoints
@@ -231,6 +249,7 @@ class Analysis(Brief):
     joint: JointMotion
     screw: ScrewMotion
     mean_axis: MeanAxis
+    joint_axis: JointAxis
     keyframes: Keyframes
     interpolated: InterpolatedMotion
     points: BodyPoints

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -13,19 +12,21 @@ from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat
 from elbowscrew.model import (
     Analysis,
     BodyPoints,
-    BodyQuality,
     InterpolatedMotion,
+    JointAxis,
     JointMotion,
     Keyframes,
     MeanAxis,
+    PoseNoise,
     QualityWarning,
     Recording,
     RigidBody,
     ScrewMotion,
-    marker_matches,
 )
+from elbowscrew.motion.bodies import tracked_bodies
 from elbowscrew.motion.clock import elapsed_time
 from elbowscrew.motion.difference import (
+    DEFAULT_RADIUS,
     angle_between,
     origin_distance,
     points_from_markers,
@@ -33,20 +34,19 @@ from elbowscrew.motion.difference import (
     rms_displacement,
 )
 from elbowscrew.motion.helical import HelicalSeries, helical_series
+from elbowscrew.motion.joint_axis import estimate_joint_axis, forearm_line
 from elbowscrew.motion.keyframes import choose_rows, keyframes_at, row_of_frame
 from elbowscrew.motion.laws import LAWS
-from elbowscrew.motion.marker_poses import body_from_markers
 from elbowscrew.motion.mean_axis import mean_axis_of
 from elbowscrew.motion.modeling import METHODS, ModeledPoses, model_motion
-from elbowscrew.motion.quality import body_quality, check_bodies
+from elbowscrew.motion.pose_noise import pose_noise
 from elbowscrew.motion.relative import displacement, expressed, frame_change, joint_from_bodies
-from elbowscrew.motion.selection import choose_bodies
+from elbowscrew.motion.uncertainty import ScrewErrors, known_errors, least_angle, no_errors, screw_errors
 from elbowscrew.settings import Settings
 
 Float = NDArray[np.float64]
 
-DEFAULT_RADIUS: Final = 0.05
-"""Radius of gyration (m) of the points of a forearm whose markers are not known."""
+_LARGE_NOISE_RATIO: Final = 2.0
 
 
 def analyze(recording: Recording, settings: Settings | None = None) -> Analysis:
@@ -84,7 +84,7 @@ def analyze(recording: Recording, settings: Settings | None = None) -> Analysis:
     211
     """
     wanted = settings or Settings()
-    arm, forearm, broken_rows, quality, warnings = _tracked_bodies(recording, wanted)
+    arm, forearm, broken_rows, quality, warnings = tracked_bodies(recording, wanted)
     elapsed = elapsed_time(recording)
     joint = joint_from_bodies(
         arm,
@@ -101,7 +101,8 @@ def analyze(recording: Recording, settings: Settings | None = None) -> Analysis:
     )
     D = displacement(joint)
     D_expressed = expressed(D, joint, wanted.express_in)
-    series = _measured_series(D_expressed, joint, wanted)
+    noise = _Noise.of(arm, forearm, recording.rate_hz, wanted)
+    series, errors = _measured_series(D, D_expressed, joint, noise, wanted)
     screw = ScrewMotion(
         frame=recording.frame,
         time_s=recording.time_s,
@@ -115,6 +116,12 @@ def analyze(recording: Recording, settings: Settings | None = None) -> Analysis:
         axis_point=series.point,
         euler_parameters=D_expressed[:, :4],
         translation=pose_from_dual_quat(D_expressed)[1],
+        angle_sd=errors.angle,
+        slide_sd=errors.slide,
+        axis_sd=errors.axis,
+        point_sd=errors.point,
+        axis_cone=errors.axis_cone,
+        point_radius=errors.point_radius,
     )
     rows, inversion_row = choose_rows(series.angle, recording.frame, wanted.keyframes, wanted.inversion)
     keyframes = keyframes_at(
@@ -129,7 +136,10 @@ def analyze(recording: Recording, settings: Settings | None = None) -> Analysis:
     )
     modeled = model_motion(D, elapsed, keyframes, METHODS[wanted.method], LAWS[wanted.law])
     points = _body_points(forearm, wanted)
+    mean_axis = _mean_axis(series, joint, wanted)
+    joint_axis = _joint_axis(series, joint, mean_axis, noise, wanted)
     warnings += _keyframe_warnings(keyframes, inversion_row, joint, modeled)
+    warnings += _axis_warnings(joint_axis, noise)
     return Analysis(
         recording=recording,
         settings=wanted,
@@ -137,7 +147,8 @@ def analyze(recording: Recording, settings: Settings | None = None) -> Analysis:
         forearm=forearm,
         joint=joint,
         screw=screw,
-        mean_axis=_mean_axis(series, joint, wanted),
+        mean_axis=mean_axis,
+        joint_axis=joint_axis,
         keyframes=keyframes,
         interpolated=_compared(modeled, D, series, joint, keyframes, points, screw, wanted),
         points=points,
@@ -146,69 +157,86 @@ def analyze(recording: Recording, settings: Settings | None = None) -> Analysis:
     )
 
 
-def _chosen_bodies(recording: Recording, settings: Settings) -> tuple[RigidBody | None, RigidBody]:
-    """Choose arm and forearm among the bodies of the file and those built from markers."""
-    patterns = {"arm": settings.arm_markers, "forearm": settings.forearm_markers}
-    built = {
-        role: body_from_markers(recording, f"{role} markers", wanted, settings.pose_method)
-        for role, wanted in patterns.items()
-        if wanted is not None
-    }
-    shared = [m.name for m in recording.markers if all(marker_matches(m.name, p or ()) for p in patterns.values())]
-    if len(built) == 2 and shared:
-        msg = f"markers {', '.join(shared)} are chosen for both bodies; give each marker to one of them"
+class _Noise(NamedTuple):
+    """Noise of the two bodies' poses, None where it is not known."""
+
+    arm: PoseNoise | None
+    forearm: PoseNoise | None
+    arm_moves: bool
+
+    @classmethod
+    def of(cls, arm: RigidBody | None, forearm: RigidBody, rate_hz: float, settings: Settings) -> _Noise:
+        found = None if arm is None else pose_noise(arm, rate_hz, settings)
+        return cls(found, pose_noise(forearm, rate_hz, settings), arm is not None)
+
+    @property
+    def known(self) -> bool:
+        return self.forearm is not None and (self.arm is not None or not self.arm_moves)
+
+
+def _measured_series(
+    D: Float, D_expressed: Float, joint: JointMotion, noise: _Noise, settings: Settings
+) -> tuple[HelicalSeries, ScrewErrors]:
+    """Screws of all frames, with their errors, each axis known as well as the settings want it."""
+    limit, least = np.inf, np.radians(settings.min_angle_deg)
+    errors = no_errors(len(D))
+    if noise.forearm is not None and noise.known:
+        change = frame_change(joint, settings.express_in)
+        errors = screw_errors(D, joint, noise.arm, noise.forearm, change, settings.reference_window)
+        if settings.axis_sd_deg is not None:
+            limit = np.radians(settings.axis_sd_deg)
+            least = least_angle(limit, joint, noise.arm, noise.forearm)
+    elif settings.axis_sd_deg is not None:
+        msg = "--axis-sd: the noise of the poses is not known here; give --marker-noise MM, or --min-angle in its place"
         raise SettingError(msg)
-    for role, body in built.items():
-        if getattr(settings, role) is not None:
-            msg = f"--{role} and --{role}-markers both say what the {role} is; give one of them (for {body.name!r})"
-            raise SettingError(msg)
-    names = {role: built[role].name if role in built else getattr(settings, role) for role in ("arm", "forearm")}
-    bodies = (*recording.bodies, *built.values())
-    if not bodies:
-        msg = "the recording has no rigid bodies and no markers were chosen: give --arm-markers and --forearm-markers"
-        raise SettingError(msg)
-    return choose_bodies(replace(recording, bodies=bodies), names["arm"], names["forearm"])
-
-
-class _Bodies(NamedTuple):
-    arm: RigidBody | None
-    forearm: RigidBody
-    broken_rows: NDArray[np.intp]
-    quality: tuple[BodyQuality, ...]
-    warnings: tuple[QualityWarning, ...]
-
-
-def _tracked_bodies(recording: Recording, settings: Settings) -> _Bodies:
-    arm, forearm = _chosen_bodies(recording, settings)
-    chosen = (forearm,) if arm is None else (arm, forearm)
-    checked, warnings = check_bodies(recording, chosen, settings)
-    for found in checked:
-        body = found.body
-        share = 100.0 * float(body.tracked.mean()) if body.loss.size else 0.0
-        if share < settings.min_tracked_percent or not body.tracked.any():
-            reasons = ", ".join(f"{count} {reason}" for reason, count in body.loss_counts().items())
-            msg = (
-                f"body {body.name!r} is tracked in {share:.1f} % of {body.loss.size} frames ({reasons}); at least "
-                f"{settings.min_tracked_percent:g} % are needed (--min-tracked; "
-                "for leaps see --max-turn and --max-speed, for frozen poses --frozen)"
-            )
-            raise AnalysisError(msg)
-    quality = tuple(body_quality(raw, found, recording) for raw, found in zip(chosen, checked, strict=True))
-    proximal = None if arm is None else checked[0].body
-    broken_rows = np.unique(np.concatenate([found.broken_rows for found in checked]))
-    return _Bodies(proximal, checked[-1].body, broken_rows, quality, (*recording.warnings, *warnings))
-
-
-def _measured_series(D: Float, joint: JointMotion, settings: Settings) -> HelicalSeries:
-    series = helical_series(D, np.radians(settings.min_angle_deg), joint.reference_row)
+    series = helical_series(D_expressed, least, joint.reference_row)
+    unsure = errors.axis > limit
+    series.line[unsure], series.slide[unsure] = np.nan, np.nan
     peak = int(np.nanargmax(np.abs(series.angle)))
     if not np.isfinite(series.line[joint.measured]).any():
+        needed = "the --axis-sd asked for" if settings.axis_sd_deg else f"{settings.min_angle_deg:g} deg"
         msg = (
             f"the largest rotation since the reference is {np.degrees(abs(series.angle[peak])):.3g} deg, less than the "
-            f"{settings.min_angle_deg:g} deg an axis needs: no rotation to analyze (--min-angle sets the limit)"
+            f"{needed} an axis needs: no rotation to analyze (--min-angle sets the limit)"
         )
         raise AnalysisError(msg)
-    return series.reversed() if series.angle[peak] < 0.0 else series
+    series = series.reversed() if series.angle[peak] < 0.0 else series
+    return series, known_errors(errors, series.angle, np.isfinite(series.slide))
+
+
+def _joint_axis(
+    series: HelicalSeries, joint: JointMotion, mean: MeanAxis, noise: _Noise, settings: Settings
+) -> JointAxis:
+    line = np.concatenate([mean.direction, np.cross(mean.point, mean.direction)])
+    return estimate_joint_axis(
+        joint,
+        series.angle,
+        forearm_line(line, frame_change(joint, settings.express_in)),
+        {"arm": noise.arm, "forearm": noise.forearm},
+        arm_moves=noise.arm_moves,
+        express_in=settings.express_in,
+        robust=settings.robust,
+    )
+
+
+def _axis_warnings(joint_axis: JointAxis, noise: _Noise) -> tuple[QualityWarning, ...]:
+    warnings = []
+    if not joint_axis.single:
+        message = (
+            f"the motion has no single axis: a hinge leaves {100.0 * joint_axis.unexplained:.0f} % of its rotation "
+            "unexplained, so that no joint axis is fitted, and the mean axis is but a mean"
+        )
+        warnings.append(QualityWarning(code="no-single-axis", message=message))
+    if not noise.known:
+        message = "the noise of the poses is not known, so that axes have no error bars; --marker-noise MM gives them"
+        warnings.append(QualityWarning(code="noise-unknown", message=message, severity="note"))
+    elif joint_axis.best is not None and joint_axis.best.noise_ratio > _LARGE_NOISE_RATIO:
+        message = (
+            f"the poses leave a hinge by {joint_axis.best.noise_ratio:.1f} times what their noise explains: the joint "
+            "is no perfect hinge, or the markers move on the skin; the joint axis' interval is that of the residuals"
+        )
+        warnings.append(QualityWarning(code="beyond-noise", message=message, severity="note"))
+    return tuple(warnings)
 
 
 def _mean_axis(series: HelicalSeries, joint: JointMotion, settings: Settings) -> MeanAxis:

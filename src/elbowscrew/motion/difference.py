@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -11,6 +13,9 @@ from elbowscrew.geometry.quaternion import rotation_matrix_from_quat
 from elbowscrew.model import BodyPoints
 
 Float = NDArray[np.float64]
+
+DEFAULT_RADIUS: Final = 0.05
+"""Radius of gyration (m) of the points of a body whose markers are not known."""
 
 
 def angle_between(pose_a: Float, pose_b: Float) -> Float:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -9,6 +11,8 @@ from elbowscrew.geometry._small_angle import divide, length
 from elbowscrew.model import MeanAxis
 
 Float = NDArray[np.float64]
+
+_MOST_COMPARED: Final = 1000
 
 
 def mean_axis_of(angle: Float, line: Float, near: Float) -> MeanAxis:
@@ -43,5 +47,19 @@ def mean_axis_of(angle: Float, line: Float, near: Float) -> MeanAxis:
     center = point + ((near - point) @ direction) * direction
     foot = np.cross(line[:, :3], line[:, 3:]) - center
     along = line[:, :3] @ direction
-    distance = length(foot - divide(foot @ direction, along)[:, None] * line[:, :3])
-    return MeanAxis(direction=direction, point=point, deviation=deviation, distance=distance)
+    place = foot - divide(foot @ direction, along)[:, None] * line[:, :3]
+    chosen = np.flatnonzero(known)
+    chosen = chosen[np.linspace(0, chosen.size - 1, min(chosen.size, _MOST_COMPARED)).astype(np.int64)]
+    return MeanAxis(
+        direction=direction,
+        point=point,
+        deviation=deviation,
+        distance=length(place),
+        excursion=float(2.0 * np.arcsin(min(0.5 * _largest_distance(line[chosen, :3]), 1.0))),
+        place_excursion=_largest_distance(place[chosen]),
+    )
+
+
+def _largest_distance(points: Float) -> float:
+    """Between any two of the points (M, 3)."""
+    return max(float(np.nanmax(length(points - one), initial=0.0)) for one in points)

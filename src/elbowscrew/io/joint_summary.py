@@ -1,0 +1,102 @@
+"""The joint's axis by all estimators, ready for ``joint.json``; units in the names, None where nothing is known."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowscrew.model import Analysis, FittedJoint, LineEstimate, PoseNoise
+
+Float = NDArray[np.float64]
+
+
+def joint_summary(analysis: Analysis) -> dict[str, Any]:
+    """Estimates of the joint's axis with their intervals, the dispersion about it, and the noise behind them."""
+    axis = analysis.joint_axis
+    return {
+        "expressed_in": analysis.settings.express_in,
+        "single_axis": axis.single,
+        "preferred": axis.preferred,
+        "unexplained_share": axis.unexplained if np.isfinite(axis.unexplained) else None,
+        "hinge": _fitted(axis.hinge),
+        "screw_hinge": _fitted(axis.screw_hinge),
+        "weighted_mean": _line(axis.weighted_mean),
+        "sara": _line(axis.sara),
+        "dispersion": dispersion_summary(analysis),
+        "noise": {name: _noise(noise) for name, noise in axis.noise.items()},
+    }
+
+
+def dispersion_summary(analysis: Analysis) -> dict[str, float | None]:
+    """How far the finite axes of the frames lie from their mean, in direction and in place."""
+    mean = analysis.mean_axis
+    deviation, distance = np.degrees(mean.deviation), 1000.0 * mean.distance
+    return {
+        "direction_median_deg": _of(np.nanmedian, deviation),
+        "direction_rms_deg": _of(_rms, deviation),
+        "direction_95_deg": _of(_high, deviation),
+        "direction_max_deg": _of(np.nanmax, deviation),
+        "direction_excursion_deg": float(np.degrees(mean.excursion)),
+        "place_median_mm": _of(np.nanmedian, distance),
+        "place_rms_mm": _of(_rms, distance),
+        "place_95_mm": _of(_high, distance),
+        "place_max_mm": _of(np.nanmax, distance),
+        "place_excursion_mm": 1000.0 * mean.place_excursion,
+    }
+
+
+def _fitted(fit: FittedJoint | None) -> dict[str, Any] | None:
+    if fit is None:
+        return None
+    return {
+        **_line(fit.line),
+        "axis_sd_deg": float(np.degrees(fit.axis_sd)),
+        "axis_cone95_deg": float(np.degrees(fit.axis_cone)),
+        "point_sd_mm": 1000.0 * fit.point_sd,
+        "point_radius95_mm": 1000.0 * fit.point_radius,
+        "pitch_mm_per_rad": 1000.0 * fit.pitch,
+        "pitch_sd_mm_per_rad": 1000.0 * fit.pitch_sd,
+        "residual_rotation_deg": float(np.degrees(fit.residual_rotation)),
+        "residual_translation_mm": 1000.0 * fit.residual_translation,
+        "noise_ratio": fit.noise_ratio if np.isfinite(fit.noise_ratio) else None,
+        "frames": int(fit.used.size),
+        "frames_that_count_as_one": fit.correlation,
+        "outlier_share": float(np.mean(fit.weight < 0.5)),
+    }
+
+
+def _line(line: LineEstimate) -> dict[str, list[float]]:
+    return {
+        "direction": line.direction.tolist(),
+        "point_mm": (1000.0 * line.point).tolist(),
+        "direction_in_arm": line.direction_arm.tolist(),
+        "point_in_arm_mm": (1000.0 * line.point_arm).tolist(),
+        "direction_in_forearm": line.direction_forearm.tolist(),
+        "point_in_forearm_mm": (1000.0 * line.point_forearm).tolist(),
+    }
+
+
+def _noise(noise: PoseNoise | None) -> dict[str, Any] | None:
+    if noise is None:
+        return None
+    deviation = np.sqrt(np.diag(noise.covariance))
+    return {
+        "source": noise.source,
+        "marker_noise_mm": None if noise.marker_noise is None else 1000.0 * noise.marker_noise,
+        "rotation_sd_deg": np.degrees(deviation[:3]).tolist(),
+        "position_sd_mm": (1000.0 * deviation[3:]).tolist(),
+    }
+
+
+def _rms(values: Float) -> Any:
+    return np.sqrt(np.nanmean(values**2))
+
+
+def _high(values: Float) -> Any:
+    return np.nanpercentile(values, 95)
+
+
+def _of(function: Any, values: Float) -> float | None:
+    return float(function(values)) if np.isfinite(values).any() else None

@@ -1,0 +1,140 @@
+"""The axis of the joint as a whole, and the noise it is known with; frozen, in SI units and radians."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Final, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowscrew.model.brief import Brief
+
+Float = NDArray[np.float64]
+
+_SURE: Final = 3.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class PoseNoise(Brief):
+    """Noise of one body's poses, alike in all frames and independent from frame to frame.
+
+    Attributes
+    ----------
+    covariance : ndarray, shape (6, 6)
+        Of the rotation vector (rad) and of the origin's place (m), in the body's frame.
+    source : str
+        Where it is known from.
+    marker_noise : float or None
+        Standard deviation of each coordinate of each marker, meters; None if it was found without markers.
+    """
+
+    covariance: Float
+    source: str
+    marker_noise: float | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class LineEstimate(Brief):
+    """One estimate of a joint's line, in the frame the screws are expressed in.
+
+    Attributes
+    ----------
+    direction, point : ndarray, shape (3,)
+        Unit vector, and the point (m) nearest the origin.
+    direction_arm, point_arm, direction_forearm, point_forearm : ndarray, shape (3,)
+        The same line in the frames of the two bodies.
+    """
+
+    direction: Float
+    point: Float
+    direction_arm: Float
+    point_arm: Float
+    direction_forearm: Float
+    point_forearm: Float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class FittedJoint(Brief):
+    """A hinge or screw-hinge fitted to all relative poses by maximum likelihood.
+
+    Attributes
+    ----------
+    line : LineEstimate
+    covariance : ndarray, shape (P, P)
+        Of tilt and shift (two each) of the line in the arm, the same in the forearm, slide at the reference, and the
+        pitch of a screw-hinge.
+    axis_sd, point_sd : float
+        Of the line as expressed: direction (rad) and place at the point nearest the forearm (m), both components.
+    axis_cone, point_radius : float
+        Half-angle (rad) and radius (m) that hold 95 %.
+    pitch, pitch_sd : float
+        Slide for each radian (m/rad); 0 for a hinge.
+    residual_rotation, residual_translation : float
+        RMS over the frames of what the model leaves: rotation across the axis (rad), and translation at the axis (m).
+    noise_ratio : float
+        RMS of the whitened residuals: 1 where the stated noise explains them.
+    correlation : float
+        How many frames count as one: integrated autocorrelation of the residuals, 1 for white noise.
+    used : ndarray, shape (F,)
+        Rows of the frames fitted.
+    weight : ndarray, shape (F,)
+        Of each of them: 1, or less for outliers of a robust fit.
+    """
+
+    line: LineEstimate
+    covariance: Float
+    axis_sd: float
+    point_sd: float
+    axis_cone: float
+    point_radius: float
+    pitch: float
+    pitch_sd: float
+    residual_rotation: float
+    residual_translation: float
+    noise_ratio: float
+    correlation: float
+    used: NDArray[np.int64]
+    weight: Float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class JointAxis(Brief):
+    """All estimates of the joint's axis, side by side.
+
+    Attributes
+    ----------
+    single : bool
+        Whether the motion has one axis at all; without, no fit is given.
+    hinge, screw_hinge : FittedJoint or None
+        Maximum likelihood; the screw-hinge slides in proportion to its angle.
+    weighted_mean, sara : LineEstimate
+        Mean of the finite helical axes with weights ``sin^2(theta/2)`` (Woltring 1994), and the symmetrical axis of
+        rotation approach (Ehrig, Taylor, Duda and Heller 2007).
+    unexplained : float
+        RMS rotation that a hinge leaves over the RMS rotation about it: 0 for a hinge, 1 and more for a ball joint.
+    noise : mapping of str to PoseNoise or None
+        Of "arm" and "forearm".
+    """
+
+    single: bool
+    hinge: FittedJoint | None
+    screw_hinge: FittedJoint | None
+    weighted_mean: LineEstimate
+    sara: LineEstimate
+    unexplained: float
+    noise: Mapping[str, PoseNoise | None]
+
+    @property
+    def preferred(self) -> Literal["hinge", "screw_hinge"] | None:
+        """The fit to believe: the screw-hinge where its pitch is over three standard deviations, else the hinge."""
+        if self.hinge is None or self.screw_hinge is None:
+            return None
+        pitched = abs(self.screw_hinge.pitch) > _SURE * self.screw_hinge.pitch_sd
+        return "screw_hinge" if pitched else "hinge"
+
+    @property
+    def best(self) -> FittedJoint | None:
+        """The preferred fit itself; None where the motion has no single axis."""
+        return self.screw_hinge if self.preferred == "screw_hinge" else self.hinge

@@ -1,0 +1,301 @@
+"""The joint's line from all relative poses at once: maximum likelihood of a hinge or screw-hinge, and SARA.
+
+The model of frame i is ``J_i = A Z(theta_i, s_0 + p theta_i) F^-1 exp(e_i)``: A is a pose whose z axis is the line in
+the arm, F one whose z axis is the line in the forearm, Z the screw motion along z. All frames share the two lines (four
+parameters each), s_0 and the pitch p; each has its own angle, which is eliminated. No pose is the reference, so that no
+pose's noise is shared by all. ``docs/joint-axis.md`` derives the bound that the covariance attains.
+"""
+
+from __future__ import annotations
+
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowscrew.geometry import dual_quaternion as dq
+from elbowscrew.geometry._small_angle import length
+from elbowscrew.geometry.quaternion import quat_from_rotation_matrix, rotation_matrix_from_quat
+from elbowscrew.geometry.twist import adjoint
+
+Float = NDArray[np.float64]
+
+_ITERATIONS: Final = 30
+_SMALL_STEP: Final = 1e-10
+_HALVINGS: Final = 12
+_ROBUST_ROUNDS: Final = 30
+# Residuals across the angle have 5 degrees of freedom a frame: median of chi-square, and Tukey's constant that keeps
+# 95 % efficiency there (Kudraszow and Maronna 2011 tabulate it for M-estimates of several dimensions).
+_FREEDOM: Final = 5
+_MEDIAN_SQUARE: Final = 4.351
+_TUKEY: Final = 6.10
+_SHARED_HINGE: Final = (0, 1, 3, 4)  # tilts about x and y, shifts along x and y
+
+
+class LineFit(NamedTuple):
+    """Result of `fit_joint`.
+
+    Attributes
+    ----------
+    arm, forearm : ndarray, shape (8,)
+        Poses A and F: the line is their z axis.
+    angle : ndarray, shape (F,)
+        Of each frame about the line, radians.
+    pitch : float
+    residual : ndarray, shape (F, 6)
+        What is left of each pose, as a twist in the frame of the line (z along it) on the forearm's side.
+    weight : ndarray, shape (F,)
+    information : ndarray, shape (P, P)
+        Inverse of the covariance of the shared parameters under the stated noise.
+    noise_ratio, correlation : float
+        Whitened RMS of the residuals, and the number of frames that count as one.
+    """
+
+    arm: Float
+    forearm: Float
+    angle: Float
+    pitch: float
+    residual: Float
+    weight: Float
+    information: Float
+    noise_ratio: float
+    correlation: float
+
+    def covariance(self, *, noise_known: bool) -> Float:
+        """Covariance of the shared parameters, shape (P, P).
+
+        That of the stated noise; larger where the residuals are larger or go together from frame to frame. Where the
+        noise is not known, the residuals alone tell of it.
+        """
+        inverse: Float = np.asarray(np.linalg.inv(self.information), dtype=np.float64)
+        least = 1.0 if noise_known else 0.0
+        return inverse * max(self.noise_ratio, least) ** 2 * self.correlation
+
+
+def fit_joint(
+    joint: Float, covariance: Float, line: Float, near: Float, *, screw: bool = False, robust: bool = False
+) -> LineFit:
+    """Fit a hinge or screw-hinge to relative poses by maximum likelihood.
+
+    Parameters
+    ----------
+    joint : ndarray, shape (F, 8)
+        Forearm in the arm, any signs, in order of time.
+    covariance : ndarray, shape (F, 6, 6)
+        Of each pose's error in the forearm's frame (`joint_covariance`); its scale does not move the fit.
+    line : ndarray, shape (6,)
+        Start: the line in the arm.
+    near : ndarray, shape (3,)
+        The line's origin is put at its point nearest this one, in the arm.
+    screw : bool
+        Let the slide grow with the angle.
+    robust : bool
+        Tukey's biweight after a start by weights 1/distance, in place of least squares.
+
+    References
+    ----------
+    Gauss and Newton with the frames' angles eliminated; robust: Maronna, Martin and Yohai 2006.
+    """
+    W: Float = np.asarray(np.linalg.inv(covariance), dtype=np.float64)
+    A = _line_pose(line, near)
+    # The forearm's line: where the arm's is seen from it, in the middle of the motion.
+    F = dq.normalize(dq.multiply(dq.conjugate(joint[len(joint) // 2]), A))
+    angle = _angles(joint, A, F)
+    pitch, weight = 0.0, np.ones(len(joint))
+    best = _Step(A, F, angle, pitch)
+    for _ in range(_ITERATIONS):
+        best, size = _step(best, joint, W, weight, screw)
+        if size < _SMALL_STEP:
+            break
+    if robust:
+        for k in range(_ROBUST_ROUNDS):
+            distance = np.sqrt(np.maximum(_square(best, joint, W), 0.0))
+            scale = float(np.median(distance)) / np.sqrt(_MEDIAN_SQUARE)
+            relative = distance / max(scale, np.finfo(np.float64).tiny)
+            if k < _ROBUST_ROUNDS // 3:
+                weight = 1.0 / np.maximum(relative, 1.0)
+            else:
+                weight = np.maximum(1.0 - (relative / _TUKEY) ** 2, 0.0) ** 2
+            best, size = _step(best, joint, W, weight, screw)
+            if k > _ROBUST_ROUNDS // 3 and size < _SMALL_STEP:
+                break
+    return _result(best, joint, W, weight, screw)
+
+
+class _Step(NamedTuple):
+    arm: Float
+    forearm: Float
+    angle: Float
+    pitch: float
+
+
+def _line_pose(line: Float, near: Float) -> Float:
+    """A pose with the z axis along a line, its origin at the line's point nearest `near`."""
+    h = line[:3] / length(line[:3])
+    foot = np.cross(h, line[3:])
+    origin = foot + ((near - foot) @ h) * h
+    x = np.eye(3)[int(np.argmin(np.abs(h)))]
+    x = x - (x @ h) * h
+    x = x / length(x)
+    return dq.dual_quat_from_pose(quat_from_rotation_matrix(np.stack([x, np.cross(h, x), h], axis=1)), origin)
+
+
+def _angles(joint: Float, A: Float, F: Float) -> Float:
+    """Angle about the line that fits each pose best: twice the argument of its scalar and z part, made continuous."""
+    Z = dq.multiply(dq.multiply(dq.conjugate(A), joint), F)
+    half: Float = np.unwrap(np.arctan2(Z[:, 3], Z[:, 0]), period=np.pi)
+    return 2.0 * half
+
+
+def _residual(at: _Step, joint: Float) -> Float:
+    """Twist (F, 6) that leads from the model's pose to the measured one, in the frame of the line."""
+    half = 0.5 * np.stack([at.angle, at.pitch * at.angle], axis=1)
+    zero = np.zeros((len(joint), 2))
+    screw = dq.exp(np.concatenate([zero, half[:, :1], zero, half[:, 1:]], axis=1))
+    rest = dq.multiply(dq.multiply(dq.conjugate(screw), dq.conjugate(at.arm)), dq.multiply(joint, at.forearm))
+    return 2.0 * dq.log(dq.canonical(rest))
+
+
+def _weights_in_line(at: _Step, W: Float) -> Float:
+    """Information matrices in the frame of the line: ``Ad(F)^T W Ad(F)``."""
+    turned = adjoint(at.forearm)
+    return np.swapaxes(turned, -1, -2) @ W @ turned
+
+
+def _square(at: _Step, joint: Float, W: Float) -> Float:
+    """Squared whitened distance of each frame, its angle at the optimum."""
+    residual, W_line = _residual(at, joint), _weights_in_line(at, W)
+    along = np.array([0.0, 0.0, 1.0, 0.0, 0.0, at.pitch])
+    weighted = (W_line @ residual[..., None])[..., 0]
+    free = W_line @ along
+    square: Float = np.sum(weighted * residual, axis=1) - (weighted @ along) ** 2 / (free @ along)
+    return square
+
+
+def _derivatives(at: _Step, screw: bool) -> Float:
+    """Derivatives (F, 6, P) of the model's pose by the shared parameters, in the frame of the line."""
+    half = 0.5 * np.stack([at.angle, at.pitch * at.angle], axis=1)
+    zero = np.zeros((at.angle.size, 2))
+    back = adjoint(dq.conjugate(dq.exp(np.concatenate([zero, half[:, :1], zero, half[:, 1:]], axis=1))))
+    arm = back[:, :, list(_SHARED_HINGE)]
+    forearm = np.broadcast_to(-np.eye(6)[:, list(_SHARED_HINGE)], arm.shape)
+    slide = np.broadcast_to(np.eye(6)[:, 5:], (at.angle.size, 6, 1))
+    columns = [arm, forearm, slide]
+    if screw:
+        columns.append(slide * at.angle[:, None, None])
+    return np.concatenate(columns, axis=2)
+
+
+def _normal_equations(at: _Step, joint: Float, W: Float, weight: Float, screw: bool) -> tuple[Float, ...]:
+    residual, W_line = _residual(at, joint), _weights_in_line(at, W)
+    G = _derivatives(at, screw)
+    along = np.array([0.0, 0.0, 1.0, 0.0, 0.0, at.pitch])
+    WG = W_line @ G
+    free = W_line @ along
+    own = free @ along
+    mixed = np.einsum("fip,i->fp", WG, along)
+    pull = np.einsum("fip,fi->fp", WG, residual)
+    own_pull = np.einsum("fi,fi->f", free, residual)
+    information = np.einsum("f,fip,fiq->pq", weight, G, WG) - np.einsum("f,fp,fq->pq", weight / own, mixed, mixed)
+    gradient = weight @ (pull - mixed * (own_pull / own)[:, None])
+    return information, gradient, own_pull / own, mixed / own[:, None], residual
+
+
+def _step(at: _Step, joint: Float, W: Float, weight: Float, screw: bool) -> tuple[_Step, float]:
+    """One step of Gauss and Newton; its size in radians and meters."""
+    information, gradient, own, mixed, _ = _normal_equations(at, joint, W, weight, screw)
+    scale = np.sqrt(np.maximum(np.diag(information), np.finfo(np.float64).tiny))
+    step = np.linalg.lstsq(information / np.outer(scale, scale), gradient / scale, rcond=1e-13)[0] / scale
+    cost = weight @ _square(at, joint, W)
+    for _ in range(_HALVINGS):  # a full step may lead too far where the poses are far from any hinge
+        after = _moved(at, step, own - mixed @ step, screw=screw)
+        if weight @ _square(after, joint, W) <= cost:
+            return after, float(np.abs(step).max())
+        step, own = 0.5 * step, 0.5 * own
+    return at, 0.0
+
+
+def _moved(at: _Step, step: Float, turn: Float, *, screw: bool) -> _Step:
+    tilt = np.zeros((2, 6))
+    tilt[0, list(_SHARED_HINGE)] = step[:4]
+    tilt[1, list(_SHARED_HINGE)] = step[4:8]
+    # The slide at angle 0 is a shift of the forearm's frame against its line: Z(0, s) F^-1 = (F Z(0, -s))^-1.
+    tilt[1, 5] = -step[8]
+    arm = dq.normalize(dq.multiply(at.arm, dq.exp(0.5 * tilt[0])))
+    forearm = dq.normalize(dq.multiply(at.forearm, dq.exp(0.5 * tilt[1])))
+    return _Step(arm, forearm, at.angle + turn, at.pitch + (float(step[9]) if screw else 0.0))
+
+
+def _result(at: _Step, joint: Float, W: Float, weight: Float, screw: bool) -> LineFit:
+    information, _, own, _, residual = _normal_equations(at, joint, W, weight, screw)
+    residual = residual - own[:, None] * np.array([0.0, 0.0, 1.0, 0.0, 0.0, at.pitch])
+    W_line = _weights_in_line(at, W)
+    square = np.einsum("fi,fij,fj->f", residual, W_line, residual)
+    count = weight.sum()
+    freedom = max(_FREEDOM * count - len(information), 1.0)
+    in_forearm = residual @ adjoint(at.forearm).T
+    whitened = np.einsum("fji,fj->fi", np.linalg.cholesky(W), in_forearm) * np.sqrt(weight)[:, None]
+    return LineFit(
+        arm=at.arm,
+        forearm=at.forearm,
+        angle=at.angle + own,
+        pitch=at.pitch,
+        residual=residual,
+        weight=weight,
+        information=information,
+        noise_ratio=float(np.sqrt((weight * square).sum() / freedom)),
+        correlation=_integrated_autocorrelation(whitened),
+    )
+
+
+def _integrated_autocorrelation(series: Float) -> float:
+    """Number of successive rows that count as one, of series (F, k): ``1 + 2 sum rho`` up to Sokal's window."""
+    count = len(series)
+    if count < 8:
+        return 1.0
+    size = 1 << (2 * count - 1).bit_length()
+    spectrum = np.abs(np.fft.rfft(series - series.mean(axis=0), size, axis=0)) ** 2
+    covariance = np.fft.irfft(spectrum.sum(axis=1), size)[: count // 2]
+    if not covariance[0] > 0.0:
+        return 1.0
+    summed = 2.0 * np.cumsum(covariance / covariance[0]) - 1.0
+    window = np.flatnonzero(np.arange(summed.size) >= 5.0 * summed)
+    return max(float(summed[window[0]] if window.size else summed.max()), 1.0)
+
+
+def sara_lines(joint: Float, angle: Float) -> tuple[Float, Float]:
+    """Symmetrical axis of rotation: the lines (6,) in arm and forearm whose points stay nearest each other.
+
+    Solves ``R_i c_F - c_A = -t_i`` for the point in both bodies by least squares; the axis is the direction in which
+    the solution is not determined.
+
+    Parameters
+    ----------
+    joint : ndarray, shape (F, 8)
+    angle : ndarray, shape (F,)
+        Of the motion, for the sense of the axis: positive about it.
+
+    References
+    ----------
+    Ehrig, Taylor, Duda and Heller 2007, Journal of Biomechanics 40.
+    """
+    quat, position = dq.pose_from_dual_quat(joint)
+    R = rotation_matrix_from_quat(quat)
+    count = len(joint)
+    # Normal equations of the 3F x 6 system, about the mean positions so that no digit is lost.
+    mean_R, mean_t = R.mean(axis=0), position.mean(axis=0)
+    square = np.block([[np.eye(3), -mean_R.T], [-mean_R, np.eye(3)]])
+    right = np.concatenate([-np.einsum("fji,fj->i", R, position) / count, mean_t])
+    values, vectors = np.linalg.eigh(square)
+    axis = vectors[:, 0]
+    solution = vectors[:, 1:] @ ((vectors[:, 1:].T @ right) / values[1:])
+    forearm, arm = axis[:3] / length(axis[:3]), axis[3:] / length(axis[3:])
+    # A right-handed turn by the change of angle between the two most different frames tells the sense.
+    low, high = int(np.argmin(angle)), int(np.argmax(angle))
+    turn = dq.canonical(dq.multiply(dq.conjugate(joint[low]), joint[high]))
+    half = 0.5 * (angle[high] - angle[low])
+    sense = np.sign(turn[1:4] @ forearm * (np.sin(half) * np.sign(np.cos(half)) or 1.0)) or 1.0
+    lines = [
+        np.concatenate([sense * h, np.cross(p, sense * h)]) for h, p in ((arm, solution[3:]), (forearm, solution[:3]))
+    ]
+    return lines[0], lines[1]

@@ -1,0 +1,154 @@
+"""How noisy the poses of a body are, and where that is known from."""
+
+from __future__ import annotations
+
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowscrew.geometry.dual_quaternion import align_signs, conjugate, log, multiply, normalize
+from elbowscrew.model import PoseNoise, RigidBody
+from elbowscrew.motion.difference import DEFAULT_RADIUS
+from elbowscrew.settings import Settings
+
+Float = NDArray[np.float64]
+
+# A mean distance in space is this much less than the RMS one, for a normal error.
+_MEAN_TO_RMS: Final = float(np.sqrt(8.0 / (3.0 * np.pi)))
+_ASSUMED_MARKERS: Final = 4
+_STILL_S: Final = 0.5
+_FEWEST_STILL_FRAMES: Final = 20
+_LARGEST_DRIFT: Final = 3.0
+_STILL_NOISE_M: Final = 0.001
+
+
+def pose_noise(body: RigidBody, rate_hz: float, settings: Settings) -> PoseNoise | None:
+    """Noise of a body's poses, from the source that the settings name, or from the first there is.
+
+    Parameters
+    ----------
+    body : RigidBody
+        Its tracked poses are looked at.
+    rate_hz : float
+    settings : Settings
+        ``marker_noise_mm`` is the user's word and the strongest; else ``noise`` says the source. By itself it is the
+        residuals of the markers, then a still stretch of the take, then the error column of the file.
+
+    Returns
+    -------
+    PoseNoise or None
+        None if there is no source.
+    """
+    if settings.marker_noise_mm is not None:
+        return _from_marker_noise(body, settings.marker_noise_mm / 1000.0, "option", settings)
+    sources = {"residuals": _from_residuals, "still": _from_still_stretch, "error-column": _from_error_column}
+    chosen = sources if settings.noise == "auto" else [name for name in sources if name == settings.noise]
+    for name in chosen:
+        found = sources[name](body, rate_hz, settings)
+        if found is not None:
+            return found
+    return None
+
+
+def covariance_from_markers(offsets: Float, marker_noise: float) -> Float:
+    """Covariance of a pose fitted to markers: ``sigma^2 (sum_k J_k^T J_k)^-1`` with ``J_k = [-[x_k]x, 1]``.
+
+    Parameters
+    ----------
+    offsets : ndarray, shape (M, 3)
+        The markers about the body's origin; at least three that are not on one line.
+    marker_noise : float
+        Standard deviation of each coordinate of each marker.
+
+    Returns
+    -------
+    ndarray, shape (6, 6)
+        Of the rotation vector (rad) and of the origin's place, in the body's frame. For markers about their centroid
+        the rotation's part is that of Woltring 1985.
+    """
+    count = len(offsets)
+    square = np.zeros((6, 6))
+    cross = np.cross(offsets[:, None, :], np.eye(3))  # row a of marker k: x_k cross e_a
+    square[:3, :3] = np.einsum("kai,kbi->ab", cross, cross)
+    square[:3, 3:] = cross.sum(axis=0).T
+    square[3:, :3] = square[:3, 3:].T
+    square[3:, 3:] = count * np.eye(3)
+    return np.asarray(marker_noise**2 * np.linalg.inv(square), dtype=np.float64)
+
+
+def _from_marker_noise(body: RigidBody, marker_noise: float, source: str, settings: Settings) -> PoseNoise:
+    offsets = body.marker_offsets
+    if offsets is not None and _fix_a_pose(offsets):
+        return PoseNoise(
+            covariance=covariance_from_markers(offsets, marker_noise), source=source, marker_noise=marker_noise
+        )
+    # Of the cluster nothing is known but its size: as many points as a common cluster has, spread alike in space.
+    radius = DEFAULT_RADIUS if settings.radius_mm is None else settings.radius_mm / 1000.0
+    turn, place = marker_noise**2 / (_ASSUMED_MARKERS * np.array([2.0 / 3.0 * radius**2, 1.0]))
+    covariance = np.diag([turn] * 3 + [place] * 3)
+    return PoseNoise(covariance=covariance, source=f"{source}, markers assumed", marker_noise=marker_noise)
+
+
+def _from_residuals(body: RigidBody, rate_hz: float, settings: Settings) -> PoseNoise | None:
+    square = None if body.marker_residual is None else body.marker_residual[body.tracked] ** 2
+    return _from_square(body, square, "marker residuals", settings)
+
+
+def _from_error_column(body: RigidBody, rate_hz: float, settings: Settings) -> PoseNoise | None:
+    reported = None if body.reported_error is None else body.reported_error[body.tracked]
+    square = None if reported is None else (reported / _MEAN_TO_RMS) ** 2
+    return _from_square(body, square, "error column", settings)
+
+
+def _from_square(body: RigidBody, square: Float | None, source: str, settings: Settings) -> PoseNoise | None:
+    """Marker noise of mean squared residuals: a pose takes 6 of the 3 M degrees of freedom."""
+    known = None if square is None else square[np.isfinite(square)]
+    if known is None or not known.size or not known.any():
+        return None
+    count = _ASSUMED_MARKERS if body.marker_offsets is None else len(body.marker_offsets)
+    if count < 3:
+        return None
+    freedom = 3 * count - 6
+    # The median of a chi-square over its mean (Wilson and Hilferty): astray markers move it little.
+    median = (1.0 - 2.0 / (9.0 * freedom)) ** 3
+    return _from_marker_noise(body, float(np.sqrt(count * np.median(known) / (freedom * median))), source, settings)
+
+
+class _Stretch(NamedTuple):
+    covariance: Float
+    size: float
+
+
+def _from_still_stretch(body: RigidBody, rate_hz: float, settings: Settings) -> PoseNoise | None:
+    """Covariance of the poses in the stillest half second, about a steady drift."""
+    frames = max(_FEWEST_STILL_FRAMES, round(_STILL_S * rate_hz))
+    count = body.loss.size // frames
+    radius = DEFAULT_RADIUS if settings.radius_mm is None else settings.radius_mm / 1000.0
+    blocks = body.dual_quat_lab_body[: count * frames].reshape(count, frames, 8)
+    blocks = blocks[np.isfinite(blocks).all(axis=(1, 2))]
+    if not len(blocks):
+        return None
+    aligned = align_signs(blocks, blocks[:, :1])
+    local = 2.0 * log(multiply(conjugate(normalize(aligned.mean(axis=1))[:, None, :]), aligned))
+    ramp = np.linspace(-1.0, 1.0, frames)
+    slope = np.einsum("f,bfk->bk", ramp, local) / (ramp @ ramp)
+    rest = local - local.mean(axis=1, keepdims=True) - ramp[:, None] * slope[:, None, :]
+    scale = np.array([radius] * 3 + [1.0] * 3)
+    size = np.sqrt(np.sum((rest * scale) ** 2, axis=(1, 2)) / frames)
+    drift = np.sqrt(np.sum((slope * scale) ** 2, axis=1))
+    still = (drift <= _LARGEST_DRIFT * size) & (size <= _STILL_NOISE_M) & (size > 0.0)
+    if not still.any():
+        return None
+    # The stillest of many is stiller than the noise: the median of those within its double says what is usual.
+    like = still & (size <= 2.0 * size[still].min())
+    rest = rest[like].reshape(-1, 6)
+    covariance = rest.T @ rest / (len(rest) * (1.0 - 2.0 / frames))
+    return PoseNoise(covariance=covariance, source="still stretch", marker_noise=None)
+
+
+def _fix_a_pose(offsets: Float) -> bool:
+    if len(offsets) < 3:
+        return False
+    spread = np.linalg.svd(offsets - offsets.mean(axis=0), compute_uv=False)
+    return bool(spread[1] > 1e-3 * spread[0])
