@@ -49,19 +49,77 @@ def multiply(left: ArrayLike, right: ArrayLike) -> NDArray[np.float64]:
 
 
 def conjugate(dual_quat: ArrayLike) -> NDArray[np.float64]:
-    """Quaternion conjugate ``q* + eps q0*`` (P 41), shape (..., 8). For a unit dual quaternion it is the inverse."""
+    """Quaternion conjugate ``q* + eps q0*``; for a unit dual quaternion it is the inverse.
+
+    Parameters
+    ----------
+    dual_quat : array_like, shape (..., 8)
+        Any dual quaternions.
+
+    Returns
+    -------
+    ndarray, shape (..., 8)
+
+    References
+    ----------
+    P 41; W.
+
+    Examples
+    --------
+    >>> conjugate([1, 2, 3, 4, 5, 6, 7, 8])
+    array([ 1., -2., -3., -4.,  5., -6., -7., -8.])
+    """
     conjugated: NDArray[np.float64] = np.multiply(np.asarray(dual_quat, dtype=np.float64), _QUATERNION_CONJUGATE)
     return conjugated
 
 
 def dual_conjugate(dual_quat: ArrayLike) -> NDArray[np.float64]:
-    """Conjugate of the dual unit ``q - eps q0``, shape (..., 8)."""
+    """Conjugate of the dual unit ``q - eps q0``.
+
+    Parameters
+    ----------
+    dual_quat : array_like, shape (..., 8)
+        Any dual quaternions.
+
+    Returns
+    -------
+    ndarray, shape (..., 8)
+
+    References
+    ----------
+    Kavan, Collins, O'Sullivan and Žára 2006.
+
+    Examples
+    --------
+    >>> dual_conjugate([1, 2, 3, 4, 5, 6, 7, 8])
+    array([ 1.,  2.,  3.,  4., -5., -6., -7., -8.])
+    """
     conjugated: NDArray[np.float64] = np.multiply(np.asarray(dual_quat, dtype=np.float64), _DUAL_CONJUGATE)
     return conjugated
 
 
 def full_conjugate(dual_quat: ArrayLike) -> NDArray[np.float64]:
-    """Both conjugates, ``q* - eps q0*``, shape (..., 8): the one that moves points, ``Q (1 + eps p) Q^``."""
+    """Both conjugates, ``q* - eps q0*``: the one that moves points, ``Q (1 + eps p) Q^``.
+
+    Parameters
+    ----------
+    dual_quat : array_like, shape (..., 8)
+        Any dual quaternions.
+
+    Returns
+    -------
+    ndarray, shape (..., 8)
+
+    References
+    ----------
+    K 32; Kavan, Collins, O'Sullivan and Žára 2006.
+
+    Examples
+    --------
+    >>> shift, point = [1, 0, 0, 0, 0, 0, 0, 1], [1, 0, 0, 0, 0, 5, 0, 0]
+    >>> multiply(multiply(shift, point), full_conjugate(shift))
+    array([1., 0., 0., 0., 0., 5., 0., 2.])
+    """
     conjugated: NDArray[np.float64] = np.multiply(
         np.asarray(dual_quat, dtype=np.float64), _QUATERNION_CONJUGATE * _DUAL_CONJUGATE
     )
@@ -69,11 +127,26 @@ def full_conjugate(dual_quat: ArrayLike) -> NDArray[np.float64]:
 
 
 def norm(dual_quat: ArrayLike) -> DualNumber:
-    """Norm, a dual number: ``|q| + eps <q, q0>/|q|``; the dual part is NaN where q = 0.
+    """Norm, a dual number: ``|q| + eps <q, q0>/|q|``.
+
+    Parameters
+    ----------
+    dual_quat : array_like, shape (..., 8)
+        Any dual quaternions.
+
+    Returns
+    -------
+    DualNumber, shape (...)
+        The dual part is NaN where q = 0.
 
     References
     ----------
     P 42, with the real part's norm where the dual part's is printed.
+
+    Examples
+    --------
+    >>> norm([[3, 4, 0, 0, 5, 0, 0, 0]])
+    DualNumber(real=array([5.]), dual=array([3.]))
     """
     Q = np.asarray(dual_quat, dtype=np.float64)
     real = length(Q[..., :4])
@@ -81,7 +154,27 @@ def norm(dual_quat: ArrayLike) -> DualNumber:
 
 
 def normalize(dual_quat: ArrayLike) -> NDArray[np.float64]:
-    """Unit dual quaternion, shape (..., 8): divided by the dual norm, so that also ``<q, q0> = 0``; NaN where q = 0."""
+    """Unit dual quaternion: divided by the dual norm, so that also ``<q, q0> = 0``.
+
+    Parameters
+    ----------
+    dual_quat : array_like, shape (..., 8)
+        Any dual quaternions.
+
+    Returns
+    -------
+    ndarray, shape (..., 8)
+        NaN where q = 0.
+
+    References
+    ----------
+    P 12-13; K's listing divides by the squared norm of q, which leaves ``<q, q0>`` as it is.
+
+    Examples
+    --------
+    >>> normalize([2, 0, 0, 0, 6, 0, 0, 8])
+    array([1., 0., 0., 0., 0., 0., 0., 4.])
+    """
     Q = np.asarray(dual_quat, dtype=np.float64)
     real_norm = length(Q[..., :4])[..., None]
     real = divide(Q[..., :4], real_norm)
@@ -90,7 +183,27 @@ def normalize(dual_quat: ArrayLike) -> NDArray[np.float64]:
 
 
 def inverse(dual_quat: ArrayLike) -> NDArray[np.float64]:
-    """Inverse ``Q* / |Q|^2`` (P 43), shape (..., 8), of any dual quaternion with q != 0; NaN where q = 0."""
+    """Inverse ``Q* / |Q|^2`` of any dual quaternion with q != 0.
+
+    Parameters
+    ----------
+    dual_quat : array_like, shape (..., 8)
+        Any dual quaternions.
+
+    Returns
+    -------
+    ndarray, shape (..., 8)
+        NaN where q = 0.
+
+    References
+    ----------
+    P 43; W.
+
+    Examples
+    --------
+    >>> inverse([2, 0, 0, 0, 0, 0, 0, 4]) + 0.0
+    array([ 0.5,  0. ,  0. ,  0. ,  0. ,  0. ,  0. , -1. ])
+    """
     Q = np.asarray(dual_quat, dtype=np.float64)
     real, dual = (part[..., None] for part in norm(Q))
     Qc = conjugate(Q)
@@ -100,7 +213,7 @@ def inverse(dual_quat: ArrayLike) -> NDArray[np.float64]:
 
 
 def dual_quat_from_pose(quat: ArrayLike, position: ArrayLike) -> NDArray[np.float64]:
-    """Pose as a unit dual quaternion: ``q + eps 1/2 d q`` (P 9-11, unit scale).
+    """Pose as a unit dual quaternion: ``q + eps 1/2 d q``.
 
     Parameters
     ----------
@@ -112,6 +225,18 @@ def dual_quat_from_pose(quat: ArrayLike, position: ArrayLike) -> NDArray[np.floa
     Returns
     -------
     ndarray, shape (..., 8)
+
+    References
+    ----------
+    P 9-11, of norm 1 where 2 is printed; K 25; W.
+
+    Examples
+    --------
+    The numerical example of P section 2, with the norm that is printed there:
+
+    >>> (2 * dual_quat_from_pose([0.5**0.5, 0, 0, 0.5**0.5], [2, 2, 1])).round(4) + 0.0
+    array([ 1.4142,  0.    ,  0.    ,  1.4142, -0.7071,  2.8284,  0.    ,
+            0.7071])
     """
     q = np.asarray(quat, dtype=np.float64)
     d = np.asarray(position, dtype=np.float64)
@@ -125,13 +250,58 @@ def dual_quat_from_pose(quat: ArrayLike, position: ArrayLike) -> NDArray[np.floa
 
 
 def pose_from_dual_quat(dual_quat: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Orientation (..., 4) and position (..., 3) of unit dual quaternions (..., 8): ``d = 2 q0 q*`` (P 16a)."""
+    """Orientation and position of unit dual quaternions: ``d = 2 q0 q*``.
+
+    Parameters
+    ----------
+    dual_quat : array_like, shape (..., 8)
+        Unit dual quaternions.
+
+    Returns
+    -------
+    quat : ndarray, shape (..., 4)
+        Unit quaternions, body to frame.
+    position : ndarray, shape (..., 3)
+        Position of the body's origin, in the unit of length of the pose.
+
+    References
+    ----------
+    P 16, K 29.
+
+    Examples
+    --------
+    >>> pose_from_dual_quat([0, 0, 0, 1, 0, -1, 1, 0])
+    (array([0., 0., 0., 1.]), array([2., 2., 0.]))
+    """
     Q = np.asarray(dual_quat, dtype=np.float64)
     return Q[..., :4].copy(), 2.0 * quaternion.multiply(Q[..., 4:], quaternion.conjugate(Q[..., :4]))[..., 1:]
 
 
 def matrix_from_dual_quat(dual_quat: ArrayLike) -> NDArray[np.float64]:
-    """Homogeneous matrices, shape (..., 4, 4), of unit dual quaternions (..., 8); the rotation is P 17's."""
+    """Homogeneous matrices of unit dual quaternions.
+
+    Parameters
+    ----------
+    dual_quat : array_like, shape (..., 8)
+        Unit dual quaternions.
+
+    Returns
+    -------
+    ndarray, shape (..., 4, 4)
+        ``[[R, d], [0, 1]]``.
+
+    References
+    ----------
+    P 17; W.
+
+    Examples
+    --------
+    >>> matrix_from_dual_quat(dual_quat_from_pose([0, 0, 0, 1], [1, 2, 3]))
+    array([[-1.,  0.,  0.,  1.],
+           [ 0., -1.,  0.,  2.],
+           [ 0.,  0.,  1.,  3.],
+           [ 0.,  0.,  0.,  1.]])
+    """
     quat, position = pose_from_dual_quat(dual_quat)
     matrix = np.zeros((*quat.shape[:-1], 4, 4))
     matrix[..., :3, :3] = quaternion.rotation_matrix_from_quat(quat)
@@ -141,7 +311,27 @@ def matrix_from_dual_quat(dual_quat: ArrayLike) -> NDArray[np.float64]:
 
 
 def dual_quat_from_matrix(matrix: ArrayLike) -> NDArray[np.float64]:
-    """Unit dual quaternions, shape (..., 8), of homogeneous matrices (..., 4, 4)."""
+    """Unit dual quaternions of homogeneous matrices.
+
+    Parameters
+    ----------
+    matrix : array_like, shape (..., 4, 4)
+        ``[[R, d], [0, 1]]`` with a rotation matrix R; the last row is not looked at.
+
+    Returns
+    -------
+    ndarray, shape (..., 8)
+        The scalar part is not negative.
+
+    References
+    ----------
+    P 17; Shepperd 1978 for the quaternion.
+
+    Examples
+    --------
+    >>> dual_quat_from_matrix([[-1, 0, 0, 2], [0, -1, 0, 2], [0, 0, 1, 0], [0, 0, 0, 1]]) + 0.0
+    array([ 0.,  0.,  0.,  1.,  0.,  1., -1.,  0.])
+    """
     m = np.asarray(matrix, dtype=np.float64)
     return dual_quat_from_pose(quaternion.quat_from_rotation_matrix(m[..., :3, :3]), m[..., :3, 3])
 
@@ -217,13 +407,51 @@ def power(dual_quat: ArrayLike, exponent: ArrayLike) -> NDArray[np.float64]:
 
 
 def canonical(dual_quat: ArrayLike) -> NDArray[np.float64]:
-    """The one of ``Q`` and ``-Q`` whose scalar part is not negative, shape (..., 8): the rotation of at most pi."""
+    """The one of ``Q`` and ``-Q`` whose scalar part is not negative: the rotation of at most pi.
+
+    Parameters
+    ----------
+    dual_quat : array_like, shape (..., 8)
+        Unit dual quaternions.
+
+    Returns
+    -------
+    ndarray, shape (..., 8)
+
+    References
+    ----------
+    K, section on the shortest path.
+
+    Examples
+    --------
+    >>> canonical([[-0.6, 0, 0, 0.8, 1, 1, 1, 1]]) + 0.0
+    array([[ 0.6,  0. ,  0. , -0.8, -1. , -1. , -1. , -1. ]])
+    """
     Q = np.asarray(dual_quat, dtype=np.float64)
     return np.where(Q[..., :1] < 0.0, -Q, Q)
 
 
 def align_signs(dual_quat: ArrayLike, reference: ArrayLike) -> NDArray[np.float64]:
-    """Flip the sign of ``Q``, shape (..., 8), where its real part has a negative dot product with the reference's."""
+    """Flip the sign of ``Q`` where its real part has a negative dot product with the reference's.
+
+    Parameters
+    ----------
+    dual_quat, reference : array_like, shape (..., 8)
+        Dual quaternions to flip and those they are compared with; shapes broadcast.
+
+    Returns
+    -------
+    ndarray, shape (..., 8)
+
+    References
+    ----------
+    K, section on the shortest path.
+
+    Examples
+    --------
+    >>> align_signs([-0.6, 0, 0, 0.8, 0, 0, 0, 0], [1, 0, 0, 0, 0, 0, 0, 0]) + 0.0
+    array([ 0.6,  0. ,  0. , -0.8,  0. ,  0. ,  0. ,  0. ])
+    """
     Q = np.asarray(dual_quat, dtype=np.float64)
     R = np.asarray(reference, dtype=np.float64)
     return np.where(np.sum(Q[..., :4] * R[..., :4], axis=-1, keepdims=True) < 0.0, -Q, Q)
@@ -242,6 +470,16 @@ def continuous_signs(series: ArrayLike) -> NDArray[np.float64]:
     ndarray, shape (N, 8)
         Each row flipped, if need be, to a non-negative dot product of its real part with the last row that is no gap.
         The first one keeps its sign.
+
+    References
+    ----------
+    K, section on the shortest path, from frame to frame.
+
+    Examples
+    --------
+    >>> series = np.outer([1.0, -1.0, np.nan, -1.0], [0.6, 0, 0, 0.8, 0, 0, 0, 0])
+    >>> continuous_signs(series)[:, 3]
+    array([0.8, 0.8, nan, 0.8])
     """
     Q = np.array(series, dtype=np.float64)
     known = np.flatnonzero(np.isfinite(Q).all(axis=-1))
@@ -252,17 +490,31 @@ def continuous_signs(series: ArrayLike) -> NDArray[np.float64]:
 
 
 def transform_points(dual_quat: ArrayLike, points: ArrayLike) -> NDArray[np.float64]:
-    """Move points: ``R p + d``, shape (..., 3).
+    """Move points: ``R p + d``.
 
     Parameters
     ----------
     dual_quat : array_like, shape (..., 8)
         Unit dual quaternions.
     points : array_like, shape (..., 3)
+        Points in the body's frame, in the unit of length of the pose; shapes broadcast.
+
+    Returns
+    -------
+    ndarray, shape (..., 3)
 
     References
     ----------
     P 18; in dual quaternions ``Q (1 + eps p) (q* - eps q0*)``, where K 35 and W print an inverse that loses d.
+
+    Examples
+    --------
+    The numerical example of P section 4.
+
+    >>> pose = dual_quat_from_pose([0.5**0.5, 0, 0, 0.5**0.5], [2, 2, 1])
+    >>> transform_points(pose, [[1, 0, 0], [1, 2, 0]]).round(6) + 0.0
+    array([[2., 3., 1.],
+           [0., 3., 1.]])
     """
     quat, position = pose_from_dual_quat(dual_quat)
     return quaternion.rotate(quat, points) + position
@@ -284,7 +536,12 @@ def transform_lines(dual_quat: ArrayLike, lines: ArrayLike) -> NDArray[np.float6
 
     References
     ----------
-    P 20-21.
+    P 20-21; W.
+
+    Examples
+    --------
+    >>> transform_lines(dual_quat_from_pose([1, 0, 0, 0], [2, 0, 0]), [0, 0, 1, 0, 0, 0])
+    array([ 0.,  0.,  1.,  0., -2.,  0.])
     """
     quat, position = pose_from_dual_quat(dual_quat)
     line = np.asarray(lines, dtype=np.float64)

@@ -13,7 +13,7 @@ from typing import Final
 
 from elbowscrew.errors import OutputError
 
-FIGURE_NAMES: Final = ("theta", "euler_parameters", "axis", "error")
+FIGURE_NAMES: Final = ("theta", "euler_parameters", "axis", "joint_axis", "error")
 FIGURE_FORMATS: Final = ("png", "svg", "pdf")
 RESULT_FILES: Final = (
     "screw.csv",

@@ -42,14 +42,12 @@ def color_scale(analysis: Analysis) -> ScalarMappable:
 def plot_axes_in_space(ax: Axes3D, analysis: Analysis) -> Axes3D:
     """Draw the axes with the mean axis, the path of the forearm and the arm, in the frame they are expressed in."""
     unit = analysis.settings.length_unit
-    rows = _thinned(np.flatnonzero(analysis.screw.axis_known), _MOST_AXES)
     path, arm, clusters = _bodies(analysis)
     mean = _mean_frame(analysis, path)
     seen = path[np.isfinite(path).all(axis=1)]
     half = 0.55 * float(np.max(np.ptp(np.concatenate([seen, mean.center[None]]), axis=0)))
-    direction, point = analysis.screw.axis_direction[rows], analysis.screw.axis_point[rows]
-    middle = point + np.sum((mean.center - point) * direction, axis=1, keepdims=True) * direction
-    segments = length_in(np.stack([middle - half * direction, middle + half * direction], axis=1), unit)
+    rows, segments = axis_segments(analysis, mean.center, half)
+    segments = length_in(segments, unit)
     colors = color_scale(analysis).to_rgba(angle_in(analysis.screw.angle[rows], analysis.settings.angle_unit))
     ax.add_collection3d(Line3DCollection(list(segments), colors=colors, linewidths=0.7, alpha=0.8))
     ends = length_in(mean.center + 1.3 * half * np.outer([-1.0, 1.0], mean.direction), unit)
@@ -63,10 +61,23 @@ def plot_axes_in_space(ax: Axes3D, analysis: Analysis) -> Axes3D:
         label = "markers" if k == 0 else None
         ax.plot(*length_in(cluster, unit).T, ".", color="#666666", markersize=3, label=label)
         shown.append(length_in(cluster, unit))
-    _equal_aspect(ax, np.concatenate(shown))
+    equal_aspect(ax, np.concatenate(shown))
     for name, label in (("x", ax.set_xlabel), ("y", ax.set_ylabel), ("z", ax.set_zlabel)):
         label(f"{name} ({unit})", labelpad=-2)
     return ax
+
+
+def axis_segments(analysis: Analysis, center: Float, half: float) -> tuple[NDArray[np.int64], Float]:
+    """Rows (M,) of some of the frames with an axis, and pieces (M, 2, 3) of their axes about the center, meters."""
+    rows = _thinned(np.flatnonzero(analysis.screw.axis_known), _MOST_AXES)
+    direction, point = analysis.screw.axis_direction[rows], analysis.screw.axis_point[rows]
+    middle = point + np.sum((center - point) * direction, axis=1, keepdims=True) * direction
+    return rows, np.stack([middle - half * direction, middle + half * direction], axis=1)
+
+
+def forearm_path(analysis: Analysis) -> Float:
+    """Path (N, 3) of the forearm's origin in the frame the screws are expressed in, meters."""
+    return _bodies(analysis)[0]
 
 
 def plot_axis_directions(ax: Axes, analysis: Analysis) -> Axes:
@@ -118,6 +129,14 @@ def _scatter(ax: Axes, analysis: Analysis, rows: NDArray[np.int64], values: list
 def _mean_frame(analysis: Analysis, path: Float) -> _MeanFrame:
     axis = analysis.mean_axis
     n = axis.direction
+    across, names = directions_across(n)
+    center = axis.point + ((np.nanmean(path, axis=0) - axis.point) @ n) * n
+    return _MeanFrame(n, across, names, center)
+
+
+def directions_across(direction: Float) -> tuple[tuple[Float, Float], tuple[str, str]]:
+    """Two unit vectors across a direction (3,), and the coordinates that they lean to."""
+    n = direction
     order = np.argsort(np.abs(n), kind="stable")
     first, second = sorted(order[:2])
     u = np.eye(3)[first] - n[first] * n
@@ -125,8 +144,7 @@ def _mean_frame(analysis: Analysis, path: Float) -> _MeanFrame:
     v = np.cross(n, u)
     if v[second] < 0.0:
         v = -v
-    center = axis.point + ((np.nanmean(path, axis=0) - axis.point) @ n) * n
-    return _MeanFrame(n, (u, v), ("xyz"[first], "xyz"[second]), center)
+    return (u, v), ("xyz"[first], "xyz"[second])
 
 
 def _bodies(analysis: Analysis) -> tuple[Float, Float | None, list[Float]]:
@@ -151,7 +169,8 @@ def _thinned(rows: NDArray[np.int64], most: int) -> NDArray[np.int64]:
     return rows if rows.size <= most else rows[np.linspace(0, rows.size - 1, most).astype(np.int64)]
 
 
-def _equal_aspect(ax: Axes3D, points: Float) -> None:
+def equal_aspect(ax: Axes3D, points: Float) -> None:
+    """Show all the points (M, 3), each coordinate at the same scale."""
     low, high = points.min(axis=0), points.max(axis=0)
     middle, half = 0.5 * (low + high), 0.5 * float(np.max(high - low)) or 1.0
     bounds: Any = np.stack([middle - half, middle + half], axis=1)

@@ -1,4 +1,4 @@
-"""The four figures of a result, each by name."""
+"""The figures of a result, each by name."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from mpl_toolkits.mplot3d.axes3d import Axes3D
 
 from elbowscrew.model import Analysis
-from elbowscrew.plots import axis, series, style
+from elbowscrew.plots import axis, joint, series, style
 
 _WIDTH_MM: Final = 170.0
 
@@ -52,6 +52,26 @@ def axis_figure(analysis: Analysis) -> Figure:
     return figure
 
 
+def joint_axis_figure(analysis: Analysis) -> Figure:
+    """Make the figure of the joint's axis with its 95 % cone, in space and in three projections."""
+    figure = style.new_figure(_WIDTH_MM, 140.0)
+    grid = figure.add_gridspec(3, 2, height_ratios=[1.0, 0.75, 0.04])
+    space = cast(Axes3D, figure.add_subplot(grid[0, 0], projection="3d"))
+    joint.plot_joint_axis_in_space(space, analysis)
+    panels = [figure.add_subplot(place) for place in (grid[0, 1], grid[1, 0], grid[1, 1])]
+    joint.plot_axis_end_on(panels[0], analysis)
+    joint.plot_axis_from_the_side(panels[1], analysis, 0)
+    joint.plot_axis_from_the_side(panels[2], analysis, 1)
+    bar = figure.colorbar(axis.color_scale(analysis), cax=figure.add_subplot(grid[2, :]), orientation="horizontal")
+    bar.set_label(f"Angle θ ({analysis.settings.angle_unit})")
+    for ax, letter in ((space, "a"), *zip(panels, "bcd", strict=True)):
+        ax.set_title(letter, loc="left")
+    frame = f"{analysis.settings.express_in} frame"
+    figure.suptitle(f"Joint axis in the {frame} ({joint.confidence_text(analysis)})", fontsize=8.0)
+    figure.legend(*panels[1].get_legend_handles_labels(), loc="outside lower center", ncols=3)
+    return figure
+
+
 def error_figure(analysis: Analysis) -> Figure:
     """Make the figure of angle error and RMS displacement over time."""
     figure = style.new_figure(_WIDTH_MM, 100.0)
@@ -66,6 +86,7 @@ FIGURES: Final[dict[str, Callable[[Analysis], Figure]]] = {
     "theta": theta_figure,
     "euler_parameters": euler_parameters_figure,
     "axis": axis_figure,
+    "joint_axis": joint_axis_figure,
     "error": error_figure,
 }
 """A new figure is one function above and one entry here; it is saved as ``figures/<name>``."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -14,12 +14,17 @@ from elbowscrew.tables import angle_in, length_in
 
 Float = NDArray[np.float64]
 
+_NORMAL_95: Final = 1.959964
+
 
 def plot_theta(ax: Axes, analysis: Analysis) -> Axes:
     """Draw measured and modeled angle over time with the keyframes (the paper's figures 7 and 8)."""
     unit = analysis.settings.angle_unit
     angle = angle_in(analysis.screw.angle, unit)
+    reach = angle_in(_NORMAL_95 * analysis.screw.angle_sd, unit)
     time_s = analysis.screw.time_s
+    if np.isfinite(reach).any():
+        ax.fill_between(time_s, angle - reach, angle + reach, label="95 % interval", **style.BAND)
     ax.plot(time_s, angle, label="measured", **style.MEASURED)
     ax.plot(time_s, angle_in(analysis.interpolated.angle, unit), label=_model_label(analysis), **style.MODELED)
     rows = analysis.keyframes.row
@@ -106,7 +111,7 @@ def _over_time(ax: Axes, time_s: Float) -> Axes:
 
 
 def _model_label(analysis: Analysis) -> str:
-    names = {"dlb": "DLB", "sclerp": "ScLERP", "sdlb": "sDLB"}
+    names = {"dlb": "DLB", "sclerp": "ScLERP", "sdlb": "sDLB", "dib": "DIB", "catmull-rom": "Catmull-Rom"}
     method = analysis.settings.method
     return f"{names.get(method, method)} through {analysis.keyframes.row.size} poses"
 

@@ -22,6 +22,14 @@ FILLED: Final[dict[str, Any]] = {
     "facecolor": "none", "edgecolor": "#888888", "hatch": "//////", "linewidth": 0.0, "zorder": 0,
 }  # fmt: skip
 LEVEL: Final[dict[str, Any]] = {"color": "#666666", "linewidth": 0.8, "linestyle": (0, (1, 2))}
+SPREAD: Final[dict[str, Any]] = {
+    "color": "#CCCCCC", "alpha": 0.6, "linewidth": 0.0, "zorder": 1, "label": "95 % of the frames' axes",
+}  # fmt: skip
+CONFIDENCE: Final[dict[str, Any]] = {
+    "facecolor": "#EE7733", "edgecolor": "#AA3300", "alpha": 0.8, "linewidth": 0.8, "zorder": 1.5,
+    "label": "95 % confidence of the joint axis",
+}  # fmt: skip
+BAND: Final[dict[str, Any]] = {"color": "#888888", "alpha": 0.5, "linewidth": 0.0, "zorder": 1}
 # Viridis without its light end, which vanishes on white paper.
 COLORMAP: Final = ListedColormap(mpl.colormaps["viridis"](np.linspace(0.0, 0.88, 256)), name="angle")
 

@@ -1,0 +1,175 @@
+"""The joint's axis with what it is known to, among the axes of the frames: in space and in three projections."""
+
+from __future__ import annotations
+
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+from matplotlib.patches import Circle
+from mpl_toolkits.mplot3d.axes3d import Axes3D
+from numpy.typing import NDArray
+
+from elbowscrew.model import Analysis
+from elbowscrew.plots.axis import axis_segments, color_scale, directions_across, equal_aspect, forearm_path
+from elbowscrew.plots.style import CONFIDENCE, SPREAD
+from elbowscrew.tables import angle_in, length_in
+
+Float = NDArray[np.float64]
+
+_AROUND: Final = 48
+_ALONG: Final = 41
+_PERCENT: Final = 95.0
+_STEEPEST: Final = 1.4
+
+
+class _Bundle(NamedTuple):
+    """What is drawn, in the unit of length of the figures, in the frame the screws are expressed in.
+
+    The joint's axis passes `center` along `direction`, drawn `half` to either side; the axes of the frames are
+    `segments`. Each of `spread` and `confidence` is a half-angle (rad) and a radius.
+    """
+
+    direction: Float
+    center: Float
+    half: float
+    segments: Float
+    rows: NDArray[np.int64]
+    spread: tuple[float, float]
+    confidence: tuple[float, float] | None
+
+
+def plot_joint_axis_in_space(ax: Axes3D, analysis: Analysis) -> Axes3D:
+    """Draw the axes of the frames, the joint's axis, and the cones that hold 95 %."""
+    bundle = _bundle(analysis)
+    unit = analysis.settings.length_unit
+    colors = color_scale(analysis).to_rgba(angle_in(analysis.screw.angle[bundle.rows], analysis.settings.angle_unit))
+    for segment, color in zip(bundle.segments, colors, strict=True):
+        ax.plot(*segment.T, color=color, linewidth=0.6, alpha=0.8)
+    ends = _ends(bundle)
+    ax.plot(*ends.T, color="black", linewidth=1.6, label="joint axis")
+    u, v = directions_across(bundle.direction)[0]
+    along = np.linspace(-bundle.half, bundle.half, _ALONG)
+    turn = np.linspace(0.0, 2.0 * np.pi, _AROUND)
+    ring = np.cos(turn)[:, None] * u + np.sin(turn)[:, None] * v
+    for (angle, radius), look in _regions(bundle):
+        surface = (
+            bundle.center
+            + along[:, None, None] * bundle.direction
+            + _radius(along, angle, radius)[:, None, None] * ring
+        )
+        ax.plot_surface(
+            *np.moveaxis(surface, 2, 0), color=look.get("color", look.get("facecolor")), alpha=0.25, linewidth=0.0
+        )
+    path = length_in(forearm_path(analysis), unit)
+    ax.plot(*path.T, color="#D55E00", linewidth=1.2, label="forearm path")
+    equal_aspect(ax, np.concatenate([ends, path[np.isfinite(path).all(axis=1)]]))
+    for name, label in (("x", ax.set_xlabel), ("y", ax.set_ylabel), ("z", ax.set_zlabel)):
+        label(f"{name} ({unit})", labelpad=-2)
+    return ax
+
+
+def plot_axis_from_the_side(ax: Axes, analysis: Analysis, side: int) -> Axes:
+    """Draw the axes and the bands that hold 95 % along the joint's axis, what lies across it enlarged.
+
+    `side` is 0 or 1: across to which of the two directions.
+    """
+    bundle = _bundle(analysis)
+    unit = analysis.settings.length_unit
+    directions, names = directions_across(bundle.direction)
+    offset = bundle.segments - bundle.center
+    _add_segments(ax, analysis, bundle, np.stack([offset @ bundle.direction, offset @ directions[side]], axis=2))
+    along = np.linspace(-bundle.half, bundle.half, _ALONG)
+    for (angle, radius), look in _regions(bundle):
+        reach = _radius(along, angle, radius)
+        ax.fill_between(along, -reach, reach, **look)
+    ax.plot([-bundle.half, bundle.half], [0.0, 0.0], color="black", linewidth=1.3, zorder=4, label="joint axis")
+    ax.set_xlim(-bundle.half, bundle.half)
+    reach_of_view = 1.25 * _widest(bundle)
+    ax.set_ylim(-reach_of_view, reach_of_view)
+    ax.set_xlabel(f"Along the joint axis ({unit})")
+    ax.set_ylabel(f"Across, toward {names[side]} ({unit})")
+    return ax
+
+
+def plot_axis_end_on(ax: Axes, analysis: Analysis) -> Axes:
+    """Draw the axes as seen along the joint's axis, with the circles that hold 95 % at the forearm."""
+    bundle = _bundle(analysis)
+    unit = analysis.settings.length_unit
+    directions, names = directions_across(bundle.direction)
+    offset = bundle.segments - bundle.center
+    _add_segments(ax, analysis, bundle, np.stack([offset @ direction for direction in directions], axis=2))
+    for (_, radius), look in _regions(bundle):
+        ax.add_patch(Circle((0.0, 0.0), radius, **look))
+    ax.plot(0.0, 0.0, "+", color="black", markersize=8, markeredgewidth=1.2, zorder=4)
+    reach = 1.25 * _widest(bundle)
+    ax.set_xlim(-reach, reach)
+    ax.set_ylim(-reach, reach)
+    ax.set_box_aspect(1.0)
+    ax.set_xlabel(f"Across, toward {names[0]} ({unit})")
+    ax.set_ylabel(f"Across, toward {names[1]} ({unit})")
+    return ax
+
+
+def _add_segments(ax: Axes, analysis: Analysis, bundle: _Bundle, segments: Float) -> None:
+    angle = angle_in(analysis.screw.angle[bundle.rows], analysis.settings.angle_unit)
+    colors = color_scale(analysis).to_rgba(angle)
+    ax.add_collection(LineCollection(list(segments), colors=colors, linewidths=0.7, zorder=2))
+
+
+def _widest(bundle: _Bundle) -> float:
+    return max(float(_radius(np.array([bundle.half]), *region)[0]) for region, _ in _regions(bundle)) or 1.0
+
+
+def confidence_text(analysis: Analysis) -> str:
+    """Say in a line what the joint's axis is known to."""
+    best = analysis.joint_axis.best
+    if best is None:
+        return "the motion has no single axis: weighted mean of the frames' axes"
+    angle = angle_in(np.array(best.axis_cone), analysis.settings.angle_unit)
+    radius = length_in(np.array(best.point_radius), analysis.settings.length_unit)
+    model = str(analysis.joint_axis.preferred).replace("_", "-")
+    return (
+        f"{model}; 95 % confidence: {angle:.2g} {analysis.settings.angle_unit}, "
+        f"{radius:.2g} {analysis.settings.length_unit}"
+    )
+
+
+def _bundle(analysis: Analysis) -> _Bundle:
+    unit = analysis.settings.length_unit
+    best = analysis.joint_axis.best
+    line = analysis.joint_axis.weighted_mean if best is None else best.line
+    path = forearm_path(analysis)
+    seen = path[np.isfinite(path).all(axis=1)]
+    center = line.point + ((seen.mean(axis=0) - line.point) @ line.direction) * line.direction
+    half = 0.55 * float(np.max(np.ptp(np.concatenate([seen, center[None]]), axis=0)))
+    rows, segments = axis_segments(analysis, center, half)
+    mean = analysis.mean_axis
+    spread = np.nanpercentile(mean.deviation, _PERCENT), np.nanpercentile(mean.distance, _PERCENT)
+    return _Bundle(
+        direction=line.direction,
+        center=length_in(center, unit),
+        half=float(length_in(np.array(1.15 * half), unit)),
+        segments=length_in(segments, unit),
+        rows=rows,
+        spread=(float(spread[0]), float(length_in(np.array(spread[1]), unit))),
+        confidence=None if best is None else (best.axis_cone, float(length_in(np.array(best.point_radius), unit))),
+    )
+
+
+def _regions(bundle: _Bundle) -> list[tuple[tuple[float, float], dict[str, Any]]]:
+    regions: list[tuple[tuple[float, float], dict[str, Any]]] = [(bundle.spread, SPREAD)]
+    if bundle.confidence is not None:
+        regions.append((bundle.confidence, CONFIDENCE))
+    return regions
+
+
+def _radius(along: Float, angle: float, radius: float) -> Float:
+    """How far from the axis the region reaches: place and tilt err independently of each other."""
+    reach: Float = np.hypot(radius, np.tan(min(angle, _STEEPEST)) * along)
+    return reach
+
+
+def _ends(bundle: _Bundle) -> Float:
+    return bundle.center + bundle.half * np.outer([-1.0, 1.0], bundle.direction)
