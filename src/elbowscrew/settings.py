@@ -58,6 +58,9 @@ class Settings(BaseModel):
     axis_sd_deg: float | None = Field(
         None, gt=0, lt=90, description="Give an axis where its direction is known this well, in degrees"
     )
+    step_deg: float | None = Field(
+        None, gt=0, lt=180, description="Axes between successive poses so many degrees apart, too"
+    )
     marker_noise_mm: float | None = Field(
         None, gt=0, le=100, description="Noise of each coordinate of each marker, in millimeters"
     )

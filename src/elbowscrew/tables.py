@@ -32,6 +32,8 @@ class Quantity(Enum):
     NUMBER = "number"
     ANGLE = "angle"
     LENGTH = "length"
+    ANGULAR_VELOCITY = "angular velocity"
+    VELOCITY = "velocity"
     LABEL = "label"
 
 
@@ -60,24 +62,50 @@ _DISPLACEMENT: Final = (
     *_components(("d_x", "d_y", "d_z"), "translation", Quantity.LENGTH),
 )
 
-SCREW_COLUMNS: Final = (
-    _column("frame", "frame", Quantity.INTEGER),
-    _column("time_s", "time_s", Quantity.NUMBER),
-    _column("valid", "valid", Quantity.INTEGER),
-    _column("theta", "angle", Quantity.ANGLE),
-    _column("slide", "slide", Quantity.LENGTH),
+_AXIS: Final = (
     *_components(("axis_x", "axis_y", "axis_z"), "axis_direction", Quantity.NUMBER),
     *_components(("point_x", "point_y", "point_z"), "axis_point", Quantity.LENGTH),
-    *_DISPLACEMENT,
-    _column("filled", "filled", Quantity.INTEGER),
-    _column("arm_loss", "arm_loss", Quantity.LABEL),
-    _column("forearm_loss", "forearm_loss", Quantity.LABEL),
+)
+_ERRORS: Final = (
     _column("theta_sd", "angle_sd", Quantity.ANGLE),
     _column("slide_sd", "slide_sd", Quantity.LENGTH),
     _column("axis_sd", "axis_sd", Quantity.ANGLE),
     _column("point_sd", "point_sd", Quantity.LENGTH),
     _column("axis_cone95", "axis_cone", Quantity.ANGLE),
     _column("point_radius95", "point_radius", Quantity.LENGTH),
+)
+
+SCREW_COLUMNS: Final = (
+    _column("frame", "frame", Quantity.INTEGER),
+    _column("time_s", "time_s", Quantity.NUMBER),
+    _column("valid", "valid", Quantity.INTEGER),
+    _column("theta", "angle", Quantity.ANGLE),
+    _column("slide", "slide", Quantity.LENGTH),
+    *_AXIS,
+    *_DISPLACEMENT,
+    _column("filled", "filled", Quantity.INTEGER),
+    _column("arm_loss", "arm_loss", Quantity.LABEL),
+    _column("forearm_loss", "forearm_loss", Quantity.LABEL),
+    *_ERRORS,
+)
+
+INSTANTANEOUS_COLUMNS: Final = (
+    _column("frame", "frame", Quantity.INTEGER),
+    _column("time_s", "time_s", Quantity.NUMBER),
+    _column("angular_velocity", "angular_velocity", Quantity.ANGULAR_VELOCITY),
+    _column("slide_velocity", "slide_velocity", Quantity.VELOCITY),
+    *_AXIS,
+)
+
+STEP_COLUMNS: Final = (
+    _column("start_frame", "start_frame", Quantity.INTEGER),
+    _column("end_frame", "end_frame", Quantity.INTEGER),
+    _column("start_time_s", "start_time_s", Quantity.NUMBER),
+    _column("end_time_s", "end_time_s", Quantity.NUMBER),
+    _column("theta", "angle", Quantity.ANGLE),
+    _column("slide", "slide", Quantity.LENGTH),
+    *_AXIS,
+    *_ERRORS,
 )
 
 INTERPOLATION_COLUMNS: Final = (
@@ -116,6 +144,10 @@ def columns(
                 named[f"{column.name}_{angle_unit}"] = angle_in(values, angle_unit)
             case Quantity.LENGTH:
                 named[f"{column.name}_{length_unit}"] = length_in(values, length_unit)
+            case Quantity.ANGULAR_VELOCITY:
+                named[f"{column.name}_{angle_unit}_s"] = angle_in(values, angle_unit)
+            case Quantity.VELOCITY:
+                named[f"{column.name}_{length_unit}_s"] = length_in(values, length_unit)
             case Quantity.INTEGER:
                 named[column.name] = values.astype(np.int64)
             case Quantity.NUMBER | Quantity.LABEL:

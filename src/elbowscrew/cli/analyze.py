@@ -101,6 +101,10 @@ def analyze(
             metavar="DEG", rich_help_panel=_MOTION, help="Least precision of an axis, in place of --min-angle: 2deg."
         ),
     ] = None,
+    step: Annotated[
+        float | None,
+        typer.Option(metavar="DEG", rich_help_panel=_MOTION, help="Axes from pose to pose, so far apart: steps.csv."),
+    ] = None,
     marker_noise: Annotated[
         float | None,
         typer.Option(
@@ -214,6 +218,7 @@ def analyze(
             "max_gap": max_gap,
             "min_angle": min_angle,
             "axis_sd": axis_sd,
+            "step": step,
             "marker_noise": marker_noise,
             "noise": noise,
             "robust": robust,

@@ -15,10 +15,12 @@ _BLOCK_ROWS = 4096
 
 
 def write_tables(folder: Path, analysis: Analysis) -> None:
-    """Write ``screw.csv`` and ``interpolation.csv`` into a folder, in the units of the settings."""
+    """Write ``screw.csv``, ``interpolation.csv`` and what else was asked for, in the units of the settings."""
     units = analysis.settings.angle_unit, analysis.settings.length_unit
     write_csv(folder / "screw.csv", tables.columns(analysis.screw, tables.SCREW_COLUMNS, *units))
     write_csv(folder / "interpolation.csv", tables.columns(analysis.interpolated, tables.INTERPOLATION_COLUMNS, *units))
+    if analysis.steps is not None:
+        write_csv(folder / "steps.csv", tables.columns(analysis.steps, tables.STEP_COLUMNS, *units))
 
 
 def write_csv(path: Path, columns: dict[str, NDArray[Any]]) -> None:

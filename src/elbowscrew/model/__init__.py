@@ -1,5 +1,6 @@
 """What flows through the program: recordings in, results out; frozen, in SI units and radians."""
 
+from elbowscrew.model.axes import HelicalSteps, InstantaneousMotion
 from elbowscrew.model.joint_axis import FittedJoint, JointAxis, LineEstimate, PoseNoise
 from elbowscrew.model.quality import BodyQuality, ClockQuality, Spread
 from elbowscrew.model.recording import (
@@ -30,6 +31,8 @@ __all__ = [
     "BodyQuality",
     "ClockQuality",
     "FittedJoint",
+    "HelicalSteps",
+    "InstantaneousMotion",
     "InterpolatedMotion",
     "JointAxis",
     "JointMotion",

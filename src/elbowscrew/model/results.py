@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowscrew import tables
+from elbowscrew.model.axes import HelicalSteps
 from elbowscrew.model.brief import Brief
 from elbowscrew.model.joint_axis import JointAxis
 from elbowscrew.model.quality import BodyQuality
@@ -232,6 +233,8 @@ class Analysis(Brief):
     screw : ScrewMotion
     mean_axis : MeanAxis
     joint_axis : JointAxis
+    steps : HelicalSteps or None
+        None if none were asked for.
     keyframes : Keyframes
     interpolated : InterpolatedMotion
     points : BodyPoints
@@ -250,6 +253,7 @@ class Analysis(Brief):
     screw: ScrewMotion
     mean_axis: MeanAxis
     joint_axis: JointAxis
+    steps: HelicalSteps | None
     keyframes: Keyframes
     interpolated: InterpolatedMotion
     points: BodyPoints

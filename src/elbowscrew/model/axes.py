@@ -1,0 +1,80 @@
+"""Axes of the motion from pose to pose and of the moment; frozen, in SI units and radians; NaN where not known."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowscrew import tables
+from elbowscrew.model.brief import Brief
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+Float = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class InstantaneousMotion(Brief):
+    """Instantaneous helical axis of every frame, in the frame the screws are expressed in.
+
+    Attributes
+    ----------
+    frame, time_s : ndarray, shape (N,)
+    angular_velocity : ndarray, shape (N,)
+        About the axis, rad/s, positive as the angle grows.
+    slide_velocity : ndarray, shape (N,)
+        Along the axis, m/s; as the axis, NaN where the forearm turns too slowly.
+    axis_direction, axis_point : ndarray, shape (N, 3)
+        Unit direction, and the point (m) nearest the origin.
+    """
+
+    frame: NDArray[np.int64]
+    time_s: Float
+    angular_velocity: Float
+    slide_velocity: Float
+    axis_direction: Float
+    axis_point: Float
+
+    def to_frame(self, angle_unit: tables.AngleUnit = "deg", length_unit: tables.LengthUnit = "mm") -> pd.DataFrame:
+        """Return the columns of ``instantaneous.csv``."""
+        return tables.data_frame(self, tables.INSTANTANEOUS_COLUMNS, angle_unit, length_unit)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class HelicalSteps(Brief):
+    """Finite helical axes between successive poses, in the frame the screws are expressed in.
+
+    Attributes
+    ----------
+    start_frame, end_frame : ndarray of int64, shape (K,)
+    start_time_s, end_time_s : ndarray, shape (K,)
+    angle, slide : ndarray, shape (K,)
+        About and along the axis, rad and m; negative on the way back.
+    axis_direction, axis_point : ndarray, shape (K, 3)
+        Unit direction, the same way round throughout, and the point (m) nearest the origin.
+    angle_sd, slide_sd, axis_sd, point_sd, axis_cone, point_radius : ndarray, shape (K,)
+        As in `ScrewMotion`.
+    """
+
+    start_frame: NDArray[np.int64]
+    end_frame: NDArray[np.int64]
+    start_time_s: Float
+    end_time_s: Float
+    angle: Float
+    slide: Float
+    axis_direction: Float
+    axis_point: Float
+    angle_sd: Float
+    slide_sd: Float
+    axis_sd: Float
+    point_sd: Float
+    axis_cone: Float
+    point_radius: Float
+
+    def to_frame(self, angle_unit: tables.AngleUnit = "deg", length_unit: tables.LengthUnit = "mm") -> pd.DataFrame:
+        """Return the columns of ``steps.csv``."""
+        return tables.data_frame(self, tables.STEP_COLUMNS, angle_unit, length_unit)

@@ -1,0 +1,86 @@
+"""All axes of a measured motion: mean, of the joint as a whole, and from step to step."""
+
+from __future__ import annotations
+
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat
+from elbowscrew.model import HelicalSteps, JointAxis, MeanAxis, QualityWarning
+from elbowscrew.motion.helical_steps import helical_steps
+from elbowscrew.motion.joint_axis import estimate_joint_axis, forearm_line
+from elbowscrew.motion.mean_axis import mean_axis_of
+from elbowscrew.motion.measurement import Measurement
+from elbowscrew.settings import Settings
+
+Float = NDArray[np.float64]
+
+_LARGE_NOISE_RATIO: Final = 2.0
+
+
+class Axes(NamedTuple):
+    """Result of `find_axes`; steps are None if none were asked for."""
+
+    mean: MeanAxis
+    joint: JointAxis
+    steps: HelicalSteps | None
+    warnings: tuple[QualityWarning, ...]
+
+
+def find_axes(measured: Measurement, settings: Settings) -> Axes:
+    """Find the axes of a measured motion, by every way that the settings ask for."""
+    mean = _mean_axis(measured)
+    joint = estimate_joint_axis(
+        measured.joint,
+        measured.screw.angle,
+        forearm_line(np.concatenate([mean.direction, np.cross(mean.point, mean.direction)]), measured.change),
+        {"arm": measured.noise.arm, "forearm": measured.noise.forearm},
+        arm_moves=measured.noise.arm_moves,
+        express_in=settings.express_in,
+        robust=settings.robust,
+    )
+    return Axes(mean, joint, _steps(measured, mean, settings), _axis_warnings(joint, measured))
+
+
+def _mean_axis(measured: Measurement) -> MeanAxis:
+    """Take the mean over measured frames: a pose filled in says nothing that its neighbors do not."""
+    lines = np.where(measured.joint.measured[:, None], measured.line, np.nan)
+    return mean_axis_of(measured.screw.angle, lines, pose_from_dual_quat(measured.change)[1])
+
+
+def _steps(measured: Measurement, mean: MeanAxis, settings: Settings) -> HelicalSteps | None:
+    if settings.step_deg is None:
+        return None
+    return helical_steps(
+        measured.displacement,
+        measured.screw.angle,
+        measured.joint,
+        measured.screw.frame,
+        measured.screw.time_s,
+        measured.change,
+        step=float(np.radians(settings.step_deg)),
+        sense=mean.direction,
+        noise=measured.noise.known,
+    )
+
+
+def _axis_warnings(joint_axis: JointAxis, measured: Measurement) -> tuple[QualityWarning, ...]:
+    warnings = []
+    if not joint_axis.single:
+        message = (
+            f"the motion has no single axis: a hinge leaves {100.0 * joint_axis.unexplained:.0f} % of its rotation "
+            "unexplained, so that no joint axis is fitted, and the mean axis is but a mean"
+        )
+        warnings.append(QualityWarning(code="no-single-axis", message=message))
+    if measured.noise.known is None:
+        message = "the noise of the poses is not known, so that axes have no error bars; --marker-noise MM gives them"
+        warnings.append(QualityWarning(code="noise-unknown", message=message, severity="note"))
+    elif joint_axis.best is not None and joint_axis.best.noise_ratio > _LARGE_NOISE_RATIO:
+        message = (
+            f"the poses leave a hinge by {joint_axis.best.noise_ratio:.1f} times what their noise explains: the joint "
+            "is no perfect hinge, or the markers move on the skin; the joint axis' interval is that of the residuals"
+        )
+        warnings.append(QualityWarning(code="beyond-noise", message=message, severity="note"))
+    return tuple(warnings)

@@ -1,0 +1,75 @@
+"""The instantaneous helical axis, from the twist of the motion."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowscrew.geometry import dual_quaternion as dq
+from elbowscrew.geometry import point_nearest_origin
+from elbowscrew.geometry.twist import instantaneous_screw
+from elbowscrew.model import InstantaneousMotion
+
+Float = NDArray[np.float64]
+
+_STEP_TOLERANCE: Final = 0.5
+
+
+def instantaneous_motion(
+    displacement: Float,
+    measured: NDArray[np.bool_],
+    frame: NDArray[np.int64],
+    time_s: Float,
+    elapsed: Float,
+    rate_hz: float,
+    min_rate: float,
+    sense: Float,
+) -> InstantaneousMotion:
+    """Instantaneous helical axis of every frame, from the poses on either side of it.
+
+    The twist is that of the screw that leads from the pose before to the pose after, over the time between them: exact
+    for a steady screw motion. It is not given beside a gap.
+
+    Parameters
+    ----------
+    displacement : ndarray, shape (N, 8)
+        Smooth: the twist of unfiltered poses is mostly noise.
+    measured : ndarray of bool, shape (N,)
+    frame : ndarray of int64, shape (N,)
+    time_s, elapsed : ndarray, shape (N,)
+        The file's times and the even clock, seconds.
+    rate_hz : float
+    min_rate : float
+        Angular velocity (rad/s) below which there is no axis.
+    sense : ndarray, shape (3,)
+        Direction about which a positive angular velocity turns.
+
+    References
+    ----------
+    The twist ``2 Q' Q*``; Woltring 1994, Human Movement Science 13.
+    """
+    count = len(displacement)
+    twist = np.full((count, 6), np.nan)
+    usable = np.isfinite(displacement).all(axis=1) & measured
+    inner = np.flatnonzero(usable[:-2] & usable[1:-1] & usable[2:]) + 1
+    span = elapsed[inner + 1] - elapsed[inner - 1]
+    even = np.abs(span * rate_hz - 2.0) <= _STEP_TOLERANCE
+    inner, span = inner[even], span[even]
+    step = dq.multiply(displacement[inner + 1], dq.conjugate(displacement[inner - 1]))
+    twist[inner] = 2.0 * dq.log(dq.canonical(step)) / span[:, None]
+    screw = instantaneous_screw(twist)
+    turned = np.where(np.nan_to_num(screw.line[:, :3]) @ sense < 0.0, -1.0, 1.0)
+    gated = ~(screw.rate >= min_rate)
+    line = screw.line * turned[:, None]
+    slide_rate = screw.pitch * screw.rate * turned
+    line[gated], slide_rate[gated] = np.nan, np.nan
+    return InstantaneousMotion(
+        frame=frame,
+        time_s=time_s,
+        angular_velocity=screw.rate * turned,
+        slide_velocity=slide_rate,
+        axis_direction=line[:, :3],
+        axis_point=point_nearest_origin(line),
+    )

@@ -1,0 +1,170 @@
+"""From a recording to the measured motion of the joint: poses, displacement, and the screw of every frame."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowscrew.errors import AnalysisError, SettingError
+from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat
+from elbowscrew.model import BodyQuality, JointMotion, PoseNoise, QualityWarning, Recording, RigidBody, ScrewMotion
+from elbowscrew.motion.bodies import tracked_bodies
+from elbowscrew.motion.clock import elapsed_time
+from elbowscrew.motion.helical import HelicalSeries, helical_series
+from elbowscrew.motion.keyframes import row_of_frame
+from elbowscrew.motion.pose_noise import pose_noise
+from elbowscrew.motion.relative import displacement, expressed, frame_change, joint_from_bodies
+from elbowscrew.motion.uncertainty import ScrewErrors, known_errors, least_angle, no_errors, screw_errors
+from elbowscrew.settings import Settings
+
+Float = NDArray[np.float64]
+
+
+class JointNoise(NamedTuple):
+    """Noise of the two bodies' poses, None where it is not known."""
+
+    arm: PoseNoise | None
+    forearm: PoseNoise | None
+    arm_moves: bool
+
+    @classmethod
+    def of(cls, arm: RigidBody | None, forearm: RigidBody, rate_hz: float, settings: Settings) -> JointNoise:
+        """Find the noise of both; an arm that stands still has none."""
+        found = None if arm is None else pose_noise(arm, rate_hz, settings)
+        return cls(found, pose_noise(forearm, rate_hz, settings), arm is not None)
+
+    @property
+    def known(self) -> tuple[PoseNoise | None, PoseNoise] | None:
+        """Both, the arm's None if it stands still; None if one is not known."""
+        if self.forearm is None or (self.arm is None and self.arm_moves):
+            return None
+        return self.arm, self.forearm
+
+
+class Measurement(NamedTuple):
+    """What was measured, before anything is modeled.
+
+    Attributes
+    ----------
+    arm : RigidBody or None
+    forearm : RigidBody
+    elapsed : ndarray, shape (N,)
+        Even clock, seconds.
+    joint : JointMotion
+    displacement : ndarray, shape (N, 8)
+        Since the reference, in the forearm's frame there (P 35).
+    change : ndarray, shape (8,)
+        Pose of that frame in the one the screws are expressed in.
+    noise : JointNoise
+    line : ndarray, shape (N, 6)
+        Axes as Plücker vectors, as expressed.
+    screw : ScrewMotion
+    quality : tuple of BodyQuality
+    warnings : tuple of QualityWarning
+    """
+
+    arm: RigidBody | None
+    forearm: RigidBody
+    elapsed: Float
+    joint: JointMotion
+    displacement: Float
+    change: Float
+    noise: JointNoise
+    line: Float
+    screw: ScrewMotion
+    quality: tuple[BodyQuality, ...]
+    warnings: tuple[QualityWarning, ...]
+
+
+def measure(recording: Recording, settings: Settings) -> Measurement:
+    """Measure the motion of the joint (P 35) and the screw of every frame.
+
+    Raises
+    ------
+    SettingError, AnalysisError, RecordingError
+        As `elbowscrew.analyze`.
+    """
+    arm, forearm, broken_rows, quality, warnings = tracked_bodies(recording, settings)
+    elapsed = elapsed_time(recording)
+    joint = joint_from_bodies(
+        arm,
+        forearm,
+        recording.frame,
+        elapsed,
+        recording.rate_hz,
+        reference_row=None
+        if settings.reference is None
+        else row_of_frame(recording.frame, settings.reference, "reference"),
+        reference_window=settings.reference_window,
+        max_gap_s=settings.max_gap_s,
+        broken_rows=broken_rows,
+    )
+    D = displacement(joint)
+    D_expressed = expressed(D, joint, settings.express_in)
+    noise = JointNoise.of(arm, forearm, recording.rate_hz, settings)
+    series, errors = _measured_series(D, D_expressed, joint, noise, settings)
+    screw = ScrewMotion(
+        frame=recording.frame,
+        time_s=recording.time_s,
+        valid=joint.measured,
+        filled=joint.filled,
+        arm_loss=np.zeros(recording.frame.size, dtype="U1") if arm is None else arm.loss_labels(),
+        forearm_loss=forearm.loss_labels(),
+        angle=series.angle,
+        slide=series.slide,
+        axis_direction=series.direction,
+        axis_point=series.point,
+        euler_parameters=D_expressed[:, :4],
+        translation=pose_from_dual_quat(D_expressed)[1],
+        angle_sd=errors.angle,
+        slide_sd=errors.slide,
+        axis_sd=errors.axis,
+        point_sd=errors.point,
+        axis_cone=errors.axis_cone,
+        point_radius=errors.point_radius,
+    )
+    return Measurement(
+        arm=arm,
+        forearm=forearm,
+        elapsed=elapsed,
+        joint=joint,
+        displacement=D,
+        change=frame_change(joint, settings.express_in),
+        noise=noise,
+        line=series.line,
+        screw=screw,
+        quality=quality,
+        warnings=warnings,
+    )
+
+
+def _measured_series(
+    D: Float, D_expressed: Float, joint: JointMotion, noise: JointNoise, settings: Settings
+) -> tuple[HelicalSeries, ScrewErrors]:
+    """Screws of all frames, with their errors, each axis known as well as the settings want it."""
+    limit, least = np.inf, np.radians(settings.min_angle_deg)
+    errors = no_errors(len(D))
+    if noise.known is not None:
+        change = frame_change(joint, settings.express_in)
+        errors = screw_errors(D, joint, *noise.known, change, settings.reference_window)
+        if settings.axis_sd_deg is not None:
+            limit = np.radians(settings.axis_sd_deg)
+            least = least_angle(limit, joint, *noise.known)
+    elif settings.axis_sd_deg is not None:
+        msg = "--axis-sd: the noise of the poses is not known here; give --marker-noise MM, or --min-angle in its place"
+        raise SettingError(msg)
+    series = helical_series(D_expressed, least, joint.reference_row)
+    unsure = errors.axis > limit
+    series.line[unsure], series.slide[unsure] = np.nan, np.nan
+    peak = int(np.nanargmax(np.abs(series.angle)))
+    if not np.isfinite(series.line[joint.measured]).any():
+        needed = "the --axis-sd asked for" if settings.axis_sd_deg else f"{settings.min_angle_deg:g} deg"
+        msg = (
+            f"the largest rotation since the reference is {np.degrees(abs(series.angle[peak])):.3g} deg, less than the "
+            f"{needed} an axis needs: no rotation to analyze (--min-angle sets the limit)"
+        )
+        raise AnalysisError(msg)
+    series = series.reversed() if series.angle[peak] < 0.0 else series
+    return series, known_errors(errors, series.angle, np.isfinite(series.slide))
