@@ -38,6 +38,40 @@ def test_mechanical_hinges(
     assert np.percentile(slides, [5, 95]) == pytest.approx(spread, abs=0.011)
 
 
+def test_intervals_of_a_hinge_hold_in_the_robots_other_take(real_data: Path) -> None:
+    """The rigid bodies were made anew in between; the middle link's two hinges, seen from it, are the same ones."""
+    angle: list[float] = []
+    length: list[float] = []
+    spread: list[list[float]] = []
+    for take in ("v121_thomazach_20230627_0117", "v121_thomazach_20230706_122504"):
+        recording = read_recording(real_data / "real" / f"{take}.csv")
+        fits = []
+        for arm, forearm in ((1, 2), (2, 3)):
+            settings = Settings(
+                arm=f"Rigid Body {arm}",
+                forearm=f"Rigid Body {forearm}",
+                express_in="forearm" if arm == 1 else "arm",
+            )
+            analysis = analyze(recording, settings)
+            fit = analysis.joint_axis.hinge
+            assert analysis.joint_axis.single
+            assert fit is not None
+            assert fit.correlation > 50  # no white noise: see docs/joint-axis.md
+            fits.append(fit)
+        n, m = (fit.line.direction for fit in fits)
+        angle.append(float(np.arcsin(np.linalg.norm(np.cross(n, m)))))
+        between = fits[1].line.point - fits[0].line.point
+        between = between - (between @ n) / (m @ n) * m  # in the plane across the first hinge
+        length.append(float(np.linalg.norm(between)))
+        spread.append(
+            [float(np.hypot(fits[0].axis_sd, fits[1].axis_sd)), float(np.hypot(fits[0].point_sd, fits[1].point_sd))]
+        )
+    joint_spread = np.hypot(np.array(spread[0]), np.array(spread[1]))
+    assert abs(angle[0] - angle[1]) < 1.96 * joint_spread[0]
+    assert abs(length[0] - length[1]) < 1.96 * joint_spread[1]
+    assert length[0] == pytest.approx(0.216, abs=0.001)
+
+
 def test_simulated_curl_through_the_python_interface(real_data: Path) -> None:
     folder = real_data / "haexplorer_curl"
 
