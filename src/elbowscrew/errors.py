@@ -18,7 +18,13 @@ from __future__ import annotations
 
 
 class ElbowscrewError(Exception):
-    """Base of all errors that a file, a setting or a disk can cause."""
+    """Base of all errors that a file, a setting or a disk can cause.
+
+    Attributes
+    ----------
+    exit_code : int
+        What the command line exits with.
+    """
 
     exit_code = 1
 

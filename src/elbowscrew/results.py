@@ -38,7 +38,9 @@ def save_analysis(
     Parameters
     ----------
     analysis : Analysis
+        From `elbowscrew.analyze`.
     folder : path-like
+        Where to; it is made.
     force : bool
         Replace an earlier result.
     figure_formats : sequence of {"png", "svg", "pdf"}, optional
@@ -55,6 +57,14 @@ def save_analysis(
         If a result is there already, or the disk does not take it.
     UsageError
         If a figure format is not known.
+
+    Examples
+    --------
+    >>> import elbowscrew, tempfile
+    >>> analysis = elbowscrew.analyze(elbowscrew.simulate_trial().recording)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     (save_analysis(analysis, f"{folder}/result", figure_formats=()) / "screw.csv").exists()
+    True
     """
     target = Path(folder)
     formats = analysis.settings.figure_formats if figure_formats is None else tuple(figure_formats)
@@ -101,6 +111,7 @@ def save_simulation(
     Parameters
     ----------
     trial : SimulatedTrial
+        From `elbowscrew.simulate_trial`.
     path : path-like
         The export; the truth goes to the same name with ``.truth.json``.
     layout : {"motive", "row-tagged"}
@@ -118,9 +129,17 @@ def save_simulation(
     Raises
     ------
     UsageError
-        If the layout does not have the unit.
+        If the layout does not have the unit, or the path is no name of a file.
     OutputError
         If a file exists, or the disk does not take it.
+
+    Examples
+    --------
+    >>> import elbowscrew, tempfile
+    >>> trial = elbowscrew.simulate_trial(frames=60, inversion=30)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     [path.name for path in save_simulation(trial, f"{folder}/trial.csv")]
+    ['trial.csv', 'trial.truth.json']
     """
     export = Path(path)
     if not export.name or export.name in (".", ".."):

@@ -33,6 +33,65 @@ class Settings(BaseModel):
 
     The names here carry their units; on the command line and in TOML the unit is left out (`option_name`).
     An impossible value raises `UsageError` through `settings_from`, and pydantic's own error here.
+
+    Attributes
+    ----------
+    arm, forearm : str or None
+        Names or ids of the two bodies; None to go by the names in the file, "none" for an arm that stands still.
+    arm_markers, forearm_markers : tuple of str or None
+        Markers the bodies' poses are found from: names or patterns; None for the file's own bodies.
+    pose_method : {"svd", "dual-qr"}
+        How poses are found from markers.
+    reference : int or None
+        Frame all displacements are counted from; None for the first one tracked.
+    reference_window : int
+        Frames from the reference on whose mean is taken.
+    express_in : {"forearm", "arm", "lab"}
+        Frame the screw is written in.
+    max_gap_s : float
+        Longest gap that is filled, seconds.
+    frozen : {"lost", "keep"}
+        What poses that repeat to the last digit are taken for.
+    max_turn_deg_s, max_speed_m_s : float
+        Fastest motion of a body, beyond which it leaps.
+    min_tracked_percent : float
+        Least share of frames tracked.
+    min_angle_deg : float
+        Least angle that gives an axis.
+    axis_sd_deg : float or None
+        Give an axis where its direction is known this well, in place of `min_angle_deg`.
+    step_deg : float or None
+        Give axes between successive poses so far apart, too.
+    marker_noise_mm : float or None
+        Noise of each coordinate of each marker.
+    noise : {"auto", "residuals", "still", "error-column", "none"}
+        Where the noise of the poses is known from.
+    robust : bool
+        Weigh outliers down in the joint's axis.
+    inversion : int or None
+        Frame where the motion turns back; None for the frame of the largest angle.
+    keyframes : tuple of int or None
+        Frames the model passes through; None for start, inversion and end.
+    method : {"dlb", "sclerp", "sdlb", "dib", "catmull-rom"}
+        Interpolation of poses.
+    blend : {"piecewise", "global"}
+        Phase by phase, or all poses at once.
+    law : {"cycloidal", "linear"}
+        Law of motion in each phase.
+    knots : {"law", "chord", "uniform", "angle"}
+        Parameter of the keyframes.
+    radius_mm : float or None
+        Radius of gyration of the forearm's points; None for its markers, else 50 mm.
+    angle_unit : {"deg", "rad"}
+        Unit of angles in tables and figures.
+    length_unit : {"mm", "m"}
+        Unit of lengths in tables and figures.
+    figure_format : tuple of {"png", "svg", "pdf", "none"}
+        Formats of the figures.
+    units : {"m", "cm", "mm"} or None
+        Unit of length of a file that states none.
+    rotation : {"quaternion", "XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX"} or None
+        Rotation type of a file that states none.
     """
 
     model_config = ConfigDict(

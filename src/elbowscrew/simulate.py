@@ -45,6 +45,7 @@ class Simulation:
     frames : int
         Frames of one repetition, from the start to the end of its movement.
     rate_hz : float
+        Frames per second.
     top_deg : float
         Largest angle of the joint.
     inversion : int
@@ -60,10 +61,13 @@ class Simulation:
     sign_flips : bool
         Flip the sign of the quaternions at random, as exports do.
     arm : {"moving", "still"}
+        Whether the upper arm sways in the laboratory.
     repetitions : int
+        How many times the movement is done.
     rest_before_s, rest_after_s : float
         Rest before and after the movement, seconds.
     seed : int
+        Of all random numbers; the same seed gives the same trial.
     """
 
     frames: int = 450
@@ -130,6 +134,7 @@ class SimulatedTrial:
     Attributes
     ----------
     recording : Recording
+        The poses, fitted to the markers as seen.
     markers : mapping of str to ndarray, shape (N, M, 3)
         The markers of each body, by the body's name, in the laboratory, meters; NaN where not seen.
     truth : dict
@@ -147,12 +152,19 @@ def simulate_trial(simulation: Simulation | None = None, **settings: Any) -> Sim
     Parameters
     ----------
     simulation : Simulation, optional
+        A plain flexion and extension by default.
     **settings
         Fields of `Simulation` to change.
 
     Returns
     -------
     SimulatedTrial
+        With bodies named Upper Arm and Forearm.
+
+    Raises
+    ------
+    UsageError
+        If a value is not a possible one.
 
     Examples
     --------

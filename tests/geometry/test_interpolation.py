@@ -69,6 +69,8 @@ def test_the_way_round_is_kept_on_request() -> None:
     assert catmull_rom(three, [0.0, 0.5, 1.0], 0.5, way="longest")[0] == pytest.approx(-half[0])
     with pytest.raises(ValueError, match="'longest'"):
         sclerp(start, end, 0.5, way="short")  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="'longest'"):
+        catmull_rom(three, [0.0, 0.5, 1.0], 0.5, way="short")  # type: ignore[arg-type]
     back = dual_quat_from_screw(np.radians(-80.0), 0.1, *line)
     assert sclerp(start, end, 0.5)[:4] == pytest.approx(back[:4])
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -78,3 +80,12 @@ def test_deviation_tells_a_cluster_that_is_not_rigid() -> None:
         assert (fit(BODY, stretched).deviation > 100 * np.abs(fit(BODY, rigid).deviation).max()).all()
     # Stretching by 10 % along the first axis is the triangular factor itself.
     assert fit_poses_dual_qr(BODY, stretched).deviation == pytest.approx(np.full(50, 0.1), abs=1e-9)
+
+
+@pytest.mark.parametrize("fit", [fit_poses, fit_poses_dual_qr])
+@pytest.mark.parametrize("count", [1, 2])
+def test_one_or_two_markers_give_none(fit: Any, count: int) -> None:
+    found = fit(BODY[:count], np.broadcast_to(BODY[:count], (4, count, 3)))
+    assert np.isnan(found.dual_quat).all()
+    assert np.isnan(found.deviation).all()
+    assert found.dual_quat.shape == (4, 8)

@@ -5,11 +5,11 @@ Nothing here knows of time, files, units or names of bodies. The modules `quater
 """
 
 from elbowscrew.geometry import dual_matrix, dual_number, dual_quaternion, dual_vector, general, quaternion, twist
+from elbowscrew.geometry._ways import WayRound
 from elbowscrew.geometry.dual_matrix import DualMatrix
 from elbowscrew.geometry.dual_number import DualNumber
 from elbowscrew.geometry.interpolation import (
     IterativeBlend,
-    WayRound,
     chain,
     dib,
     dlb,

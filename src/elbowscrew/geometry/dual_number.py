@@ -355,8 +355,9 @@ def exp(x: DualNumber) -> DualNumber:
     >>> exp(dual_number(0.0, 2.0))
     DualNumber(real=array(1.), dual=array(2.))
     """
-    value = np.exp(x.real)
-    return dual_number(value, x.dual * value)
+    with np.errstate(over="ignore", invalid="ignore"):
+        value = np.exp(x.real)
+        return dual_number(value, x.dual * value)
 
 
 def log(x: DualNumber) -> DualNumber:
@@ -370,7 +371,7 @@ def log(x: DualNumber) -> DualNumber:
     Returns
     -------
     DualNumber, shape (...)
-        NaN real part where that of x is not positive.
+        NaN real part where that of x is not positive; NaN dual part where it is 0.
 
     References
     ----------
@@ -383,7 +384,8 @@ def log(x: DualNumber) -> DualNumber:
     """
     with np.errstate(invalid="ignore", divide="ignore"):
         value = np.log(x.real)
-    return dual_number(np.where(x.real > 0.0, value, np.nan), _divide(x.dual, x.real))
+    positive = x.real > 0.0
+    return dual_number(np.where(positive, value, np.nan), np.where(positive, _divide(x.dual, x.real), np.nan))
 
 
 def power(x: DualNumber, exponent: ArrayLike) -> DualNumber:
@@ -411,4 +413,5 @@ def power(x: DualNumber, exponent: ArrayLike) -> DualNumber:
     """
     t = np.asarray(exponent, dtype=np.float64)
     with np.errstate(invalid="ignore", divide="ignore"):
-        return dual_number(x.real**t, t * x.dual * x.real ** (t - 1.0))
+        slope = np.where(t == 0.0, 0.0, t * x.real ** (t - 1.0))
+        return dual_number(x.real**t, x.dual * slope)

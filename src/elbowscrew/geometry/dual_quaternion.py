@@ -62,7 +62,7 @@ def conjugate(dual_quat: ArrayLike) -> NDArray[np.float64]:
 
     References
     ----------
-    P 41; W.
+    P 41, K 32; W.
 
     Examples
     --------
@@ -87,7 +87,7 @@ def dual_conjugate(dual_quat: ArrayLike) -> NDArray[np.float64]:
 
     References
     ----------
-    Kavan, Collins, O'Sullivan and Žára 2006.
+    Kavan, Collins, Žára and O'Sullivan 2008.
 
     Examples
     --------
@@ -112,7 +112,7 @@ def full_conjugate(dual_quat: ArrayLike) -> NDArray[np.float64]:
 
     References
     ----------
-    K 32; Kavan, Collins, O'Sullivan and Žára 2006.
+    Kavan, Collins, Žára and O'Sullivan 2008.
 
     Examples
     --------
@@ -168,7 +168,7 @@ def normalize(dual_quat: ArrayLike) -> NDArray[np.float64]:
 
     References
     ----------
-    P 12-13; K's listing divides by the squared norm of q, which leaves ``<q, q0>`` as it is.
+    P 12-13; not K's listing, which divides by the squared norm of q.
 
     Examples
     --------
@@ -270,7 +270,7 @@ def pose_from_dual_quat(dual_quat: ArrayLike) -> tuple[NDArray[np.float64], NDAr
 
     Examples
     --------
-    >>> pose_from_dual_quat([0, 0, 0, 1, 0, -1, 1, 0])
+    >>> pose_from_dual_quat([0, 0, 0, 1, 0, 1, -1, 0])
     (array([0., 0., 0., 1.]), array([2., 2., 0.]))
     """
     Q = np.asarray(dual_quat, dtype=np.float64)
@@ -352,6 +352,13 @@ def exp(half_twist: ArrayLike) -> NDArray[np.float64]:
     References
     ----------
     P 45.
+
+    Examples
+    --------
+    Half a turn about z and a slide by 2 along it.
+
+    >>> exp([0, 0, np.pi / 2, 0, 0, 1]).round(12) + 0.0
+    array([ 0.,  0.,  0.,  1., -1.,  0.,  0.,  0.])
     """
     u = np.asarray(half_twist, dtype=np.float64)
     a, b = u[..., :3], u[..., 3:]
@@ -365,15 +372,30 @@ def exp(half_twist: ArrayLike) -> NDArray[np.float64]:
 
 
 def log(dual_quat: ArrayLike) -> NDArray[np.float64]:
-    """Logarithm of unit dual quaternions, shape (..., 6): the inverse of `exp`, half the dual rotation vector.
+    """Logarithm of unit dual quaternions: the inverse of `exp`, half the dual rotation vector.
 
     The angle is ``theta/2 = atan2(|v|, w)`` in [0, pi]: the sign of ``Q`` is taken as it stands, so that `-Q` is the
     motion the other way round. For the shorter one use ``canonical(Q)``. At ``w = -1`` the axis of the full turn is
     not defined and the result is NaN; towards it the result is as ill-conditioned as the axis.
 
+    Parameters
+    ----------
+    dual_quat : array_like, shape (..., 8)
+        Unit dual quaternions.
+
+    Returns
+    -------
+    ndarray, shape (..., 6)
+        ``theta/2 h + eps (s/2 h + theta/2 m)``: half the rotation vector (rad), then half its dual part (length).
+
     References
     ----------
     P 47, by atan2 in place of the arccosine.
+
+    Examples
+    --------
+    >>> log([0, 0, 0, 1, -1, 0, 0, 0]).round(6) + 0.0
+    array([0.      , 0.      , 1.570796, 0.      , 0.      , 1.      ])
     """
     Q = np.asarray(dual_quat, dtype=np.float64)
     w, v, w0, v0 = Q[..., :1], Q[..., 1:4], Q[..., 4:5], Q[..., 5:]
@@ -392,7 +414,9 @@ def power(dual_quat: ArrayLike, exponent: ArrayLike) -> NDArray[np.float64]:
     Parameters
     ----------
     dual_quat : array_like, shape (..., 8)
+        Unit dual quaternions.
     exponent : array_like, shape (...)
+        t; shapes broadcast.
 
     Returns
     -------
@@ -402,6 +426,12 @@ def power(dual_quat: ArrayLike, exponent: ArrayLike) -> NDArray[np.float64]:
     References
     ----------
     P 31 and 48.
+
+    Examples
+    --------
+    >>> power([0, 0, 0, 1, -1, 0, 0, 0], [1, 2]).round(12) + 0.0
+    array([[ 0.,  0.,  0.,  1., -1.,  0.,  0.,  0.],
+           [-1.,  0.,  0.,  0.,  0.,  0.,  0., -2.]])
     """
     return exp(np.asarray(exponent, dtype=np.float64)[..., None] * log(dual_quat))
 

@@ -16,18 +16,53 @@ Float = NDArray[np.float64]
 
 
 def scale(dual_quat: ArrayLike, factor: DualNumber) -> Float:
-    """Multiply dual quaternions (..., 8) by dual numbers (...)."""
+    """Multiply dual quaternions by dual numbers.
+
+    Parameters
+    ----------
+    dual_quat : array_like, shape (..., 8)
+        Any dual quaternions.
+    factor : DualNumber, shape (...)
+        Factors; shapes broadcast.
+
+    Returns
+    -------
+    ndarray, shape (..., 8)
+
+    References
+    ----------
+    P 40, of a dual quaternion without vector part.
+
+    Examples
+    --------
+    >>> scale([1, 0, 0, 2, 0, 0, 0, 0], dual_number.dual_number(2.0, 3.0))
+    array([2., 0., 0., 4., 3., 0., 0., 6.])
+    """
     Q = np.asarray(dual_quat, dtype=np.float64)
     real, dual = factor.real[..., None], factor.dual[..., None]
     return np.concatenate([real * Q[..., :4], real * Q[..., 4:] + dual * Q[..., :4]], axis=-1)
 
 
 def exp(dual_quat: ArrayLike) -> Float:
-    """Exponential ``exp(d)(cos|v| + v/|v| sin|v|)`` of any dual quaternion ``d + v``, shape (..., 8).
+    """Exponential ``exp(d)(cos|v| + v/|v| sin|v|)`` of any dual quaternion ``d + v``.
+
+    Parameters
+    ----------
+    dual_quat : array_like, shape (..., 8)
+        Any dual quaternions; |v| in radians.
+
+    Returns
+    -------
+    ndarray, shape (..., 8)
 
     References
     ----------
-    P 44.
+    P 37, 38, 44.
+
+    Examples
+    --------
+    >>> exp([0, 0, 0, np.pi / 2, 1, 0, 0, 0]).round(12) + 0.0
+    array([0., 0., 0., 1., 0., 0., 0., 1.])
     """
     Q = np.asarray(dual_quat, dtype=np.float64)
     rotation = dual_quaternion.exp(Q[..., [1, 2, 3, 5, 6, 7]])
@@ -35,13 +70,27 @@ def exp(dual_quat: ArrayLike) -> Float:
 
 
 def log(dual_quat: ArrayLike) -> Float:
-    """Logarithm ``ln|Q| + v/|v| atan2(|v|, d)`` of any dual quaternion with q != 0, shape (..., 8).
+    """Logarithm ``ln|Q| + v/|v| atan2(|v|, d)`` of any dual quaternion ``d + v`` with q != 0.
 
-    The angle is taken in [0, pi]; at a real part that is a negative number the axis is not defined: NaN.
+    Parameters
+    ----------
+    dual_quat : array_like, shape (..., 8)
+        Any dual quaternions.
+
+    Returns
+    -------
+    ndarray, shape (..., 8)
+        The angle is taken in [0, pi]; at a real part that is a negative number the axis is not defined: NaN.
 
     References
     ----------
     P 46, by atan2 in place of the arccosine.
+
+    Examples
+    --------
+    >>> log([0, 0, 0, 1, 0, 0, 0, 1]).round(6) + 0.0
+    array([0.      , 0.      , 0.      , 1.570796, 1.      , 0.      ,
+           0.      , 0.      ])
     """
     Q = np.asarray(dual_quat, dtype=np.float64)
     size = dual_number.log(dual_quaternion.norm(Q))
@@ -53,17 +102,77 @@ def log(dual_quat: ArrayLike) -> Float:
 
 
 def power(dual_quat: ArrayLike, exponent: ArrayLike) -> Float:
-    """Power ``exp(t ln Q)`` of any dual quaternion with q != 0, shape (..., 8) (P 48)."""
+    """Power ``exp(t ln Q)`` of any dual quaternion with q != 0.
+
+    Parameters
+    ----------
+    dual_quat : array_like, shape (..., 8)
+        Any dual quaternions.
+    exponent : array_like, shape (...)
+        Real exponent t; shapes broadcast.
+
+    Returns
+    -------
+    ndarray, shape (..., 8)
+        NaN where `log` is.
+
+    References
+    ----------
+    P 48.
+
+    Examples
+    --------
+    >>> power([2, 0, 0, 0, 0, 0, 0, 1], 2).round(12) + 0.0
+    array([4., 0., 0., 0., 0., 0., 0., 4.])
+    """
     return exp(np.asarray(exponent, dtype=np.float64)[..., None] * log(dual_quat))
 
 
 def left_matrix(dual_quat: ArrayLike) -> Float:
-    """Matrices (..., 8, 8) with ``left_matrix(A) @ B = A B`` (W)."""
+    """Matrices of the product as seen from its left factor: ``left_matrix(A) @ B = A B``.
+
+    Parameters
+    ----------
+    dual_quat : array_like, shape (..., 8)
+        Left factors A.
+
+    Returns
+    -------
+    ndarray, shape (..., 8, 8)
+
+    References
+    ----------
+    W, which puts the scalars last.
+
+    Examples
+    --------
+    >>> left_matrix([0, 1, 0, 0, 0, 0, 0, 0]) @ [0, 0, 1, 0, 0, 0, 0, 1] + 0.0
+    array([ 0.,  0.,  0.,  1.,  0.,  0., -1.,  0.])
+    """
     Q = np.asarray(dual_quat, dtype=np.float64)
     return np.swapaxes(dual_quaternion.multiply(Q[..., None, :], np.eye(8)), -1, -2)
 
 
 def right_matrix(dual_quat: ArrayLike) -> Float:
-    """Matrices (..., 8, 8) with ``right_matrix(B) @ A = A B`` (W)."""
+    """Matrices of the product as seen from its right factor: ``right_matrix(B) @ A = A B``.
+
+    Parameters
+    ----------
+    dual_quat : array_like, shape (..., 8)
+        Right factors B.
+
+    Returns
+    -------
+    ndarray, shape (..., 8, 8)
+
+    References
+    ----------
+    W, which puts the scalars last.
+
+    Examples
+    --------
+    >>> right_matrix([0, 1, 0, 0, 0, 0, 0, 0]) @ [0, 0, 1, 0, 0, 0, 0, 1] + 0.0
+    array([ 0.,  0.,  0., -1.,  0.,  0.,  1.,  0.])
+    """
     Q = np.asarray(dual_quat, dtype=np.float64)
     return np.swapaxes(dual_quaternion.multiply(np.eye(8), Q[..., None, :]), -1, -2)

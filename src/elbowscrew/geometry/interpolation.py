@@ -7,24 +7,21 @@ belongs to the motion, as in a measured series made continuous, says ``"as given
 
 from __future__ import annotations
 
-from typing import Literal, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from elbowscrew.geometry import dual_quaternion, quaternion
 from elbowscrew.geometry._small_angle import VANISHING_NORM, length
-
-WayRound = Literal["shortest", "longest", "as given"]
+from elbowscrew.geometry._ways import WayRound, check_way
 
 
 def _choose_signs(quats: NDArray[np.float64], reference: NDArray[np.float64], way: WayRound) -> NDArray[np.float64]:
     """Quaternions or dual quaternions (..., k) with the sign that goes that way round from the reference."""
+    check_way(way)
     if way == "as given":
         return quats
-    if way not in ("shortest", "longest"):
-        msg = f"way must be 'shortest', 'longest' or 'as given', found {way!r}"
-        raise ValueError(msg)
     near = np.sum(quats[..., :4] * reference[..., :4], axis=-1, keepdims=True) >= 0.0
     return np.where(near == (way == "shortest"), quats, -quats)
 
@@ -44,6 +41,11 @@ def sclerp(start: ArrayLike, end: ArrayLike, fraction: ArrayLike, *, way: WayRou
     Returns
     -------
     ndarray, shape (..., 8)
+
+    Raises
+    ------
+    ValueError
+        If `way` is none of the three.
 
     References
     ----------
@@ -66,11 +68,37 @@ def sclerp(start: ArrayLike, end: ArrayLike, fraction: ArrayLike, *, way: WayRou
 def sdlb(start: ArrayLike, end: ArrayLike, fraction: ArrayLike, *, way: WayRound = "shortest") -> NDArray[np.float64]:
     """Blend linearly between two poses, ``(1-t) Q1 + t Q2``, and normalize by the dual norm.
 
-    Parameters and result as in `sclerp`; NaN where the blend vanishes.
+    Parameters
+    ----------
+    start, end : array_like, shape (..., 8)
+        Unit dual quaternions.
+    fraction : array_like, shape (...)
+        t; 0 gives the start, 1 the end. Shapes broadcast.
+    way : {"shortest", "longest", "as given"}
+        Which way round: with the end's sign nearer the start, farther from it, or as it stands.
+
+    Returns
+    -------
+    ndarray, shape (..., 8)
+        NaN where the blend vanishes.
+
+    Raises
+    ------
+    ValueError
+        If `way` is none of the three.
 
     References
     ----------
     P 32, algorithm 1.
+
+    Examples
+    --------
+    A number of P table 1.
+
+    >>> from elbowscrew.geometry import dual_quat_from_screw
+    >>> start, end = dual_quat_from_screw([0, np.pi / 4], [0, 10], [0, 0, 1], [0, 0, 0])
+    >>> dual_quaternion.pose_from_dual_quat(sdlb(start, end, 0.2))[1].round(6) + 0.0
+    array([0.    , 0.    , 1.9251])
     """
     t = np.asarray(fraction, dtype=np.float64)
     poses = np.stack(np.broadcast_arrays(start, end), axis=-2)
@@ -90,6 +118,11 @@ def lagrange_weights(fraction: ArrayLike, knots: ArrayLike) -> NDArray[np.float6
     Returns
     -------
     ndarray, shape (..., n)
+
+    Raises
+    ------
+    ValueError
+        If two knots are the same.
 
     References
     ----------
@@ -130,9 +163,24 @@ def dlb(poses: ArrayLike, weights: ArrayLike, *, way: WayRound = "shortest") -> 
     ndarray, shape (..., 8)
         NaN where the weighted sum vanishes, so that its direction would be noise.
 
+    Raises
+    ------
+    ValueError
+        If `way` is none of the three.
+
     References
     ----------
     P 33, algorithm 2.
+
+    Examples
+    --------
+    A number of P table 1.
+
+    >>> from elbowscrew.geometry import dual_quat_from_screw
+    >>> poses = dual_quat_from_screw([0, np.pi / 8, np.pi / 4], [0, 5, 10], [0, 0, 1], [0, 0, 0])
+    >>> blend = dlb(poses, lagrange_weights(0.2, [0, 0.5, 1]))
+    >>> dual_quaternion.pose_from_dual_quat(blend)[1].round(6) + 0.0
+    array([0.     , 0.     , 2.03664])
     """
     Q = _signs_from_first(poses, way)
     w = np.asarray(weights, dtype=np.float64)
@@ -153,6 +201,7 @@ class IterativeBlend(NamedTuple):
     Attributes
     ----------
     dual_quat : ndarray, shape (..., 8)
+        The blended poses, unit dual quaternions.
     iterations : int
         Steps taken, for all poses together.
     residual : ndarray, shape (...)
@@ -179,8 +228,10 @@ def dib(
 
     Parameters
     ----------
-    poses, weights : array_like
-        As in `dlb`.
+    poses : array_like, shape (..., n, 8)
+        Unit dual quaternions.
+    weights : array_like, shape (..., n)
+        One for each pose, adding up to 1; as in `dlb`.
     tolerance : float
         Largest step at which to stop.
     max_iterations : int
@@ -193,9 +244,24 @@ def dib(
     IterativeBlend
         NaN where the first blend vanishes.
 
+    Raises
+    ------
+    ValueError
+        If `way` is none of the three.
+
     References
     ----------
     P algorithm 3.
+
+    Examples
+    --------
+    A number of P table 1.
+
+    >>> from elbowscrew.geometry import dual_quat_from_screw
+    >>> poses = dual_quat_from_screw([0, np.pi / 8, np.pi / 4], [0, 5, 10], [0, 0, 1], [0, 0, 0])
+    >>> blend = dib(poses, lagrange_weights(0.2, [0, 0.5, 1]))
+    >>> dual_quaternion.pose_from_dual_quat(blend.dual_quat)[1].round(6) + 0.0
+    array([0., 0., 2.])
     """
     Q = _signs_from_first(poses, way)
     w = np.asarray(weights, dtype=np.float64)
@@ -213,19 +279,35 @@ def dib(
 
 
 def nlerp(start: ArrayLike, end: ArrayLike, fraction: ArrayLike, *, way: WayRound = "shortest") -> NDArray[np.float64]:
-    """Blend linearly between two rotations and normalize, shape (..., 4): the path of slerp at another speed.
+    """Blend linearly between two rotations and normalize: the path of slerp at another speed.
 
     Parameters
     ----------
     start, end : array_like, shape (..., 4)
         Unit quaternions.
     fraction : array_like, shape (...)
+        t; 0 gives the start, 1 the end. Shapes broadcast.
     way : {"shortest", "longest", "as given"}
         Which way round: with the end's sign nearer the start, farther from it, or as it stands.
+
+    Returns
+    -------
+    ndarray, shape (..., 4)
+        NaN where the blend vanishes.
+
+    Raises
+    ------
+    ValueError
+        If `way` is none of the three.
 
     References
     ----------
     K 44. For poses it is `sdlb`.
+
+    Examples
+    --------
+    >>> nlerp([1, 0, 0, 0], [0, 0, 0, 1], 0.5).round(6)
+    array([0.707107, 0.      , 0.      , 0.707107])
     """
     first, last = np.asarray(start, dtype=np.float64), np.asarray(end, dtype=np.float64)
     last = _choose_signs(last, first, way)
@@ -236,16 +318,26 @@ def nlerp(start: ArrayLike, end: ArrayLike, fraction: ArrayLike, *, way: WayRoun
 
 
 def chain(poses: ArrayLike) -> NDArray[np.float64]:
-    """Poses of the links of a chain in its root: products ``Q_1``, ``Q_1 Q_2``, ..., shape (..., n, 8).
+    """Poses of the links of a chain in its root: products ``Q_1``, ``Q_1 Q_2``, ...
 
     Parameters
     ----------
     poses : array_like, shape (..., n, 8)
         Each link in the one before it.
 
+    Returns
+    -------
+    ndarray, shape (..., n, 8)
+
     References
     ----------
     K, section on hierarchies.
+
+    Examples
+    --------
+    >>> shift = [1, 0, 0, 0, 0, 0, 0, 1]
+    >>> dual_quaternion.pose_from_dual_quat(chain([shift, shift, shift]))[1][:, 2]
+    array([2., 4., 6.])
     """
     Q = np.array(poses, dtype=np.float64)
     for k in range(1, Q.shape[-2]):

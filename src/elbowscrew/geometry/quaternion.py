@@ -27,6 +27,10 @@ def multiply(left: ArrayLike, right: ArrayLike) -> NDArray[np.float64]:
     -------
     ndarray, shape (..., 4)
 
+    References
+    ----------
+    P 1, K 9.
+
     Examples
     --------
     >>> multiply([0, 1, 0, 0], [0, 0, 1, 0])
@@ -45,18 +49,76 @@ def multiply(left: ArrayLike, right: ArrayLike) -> NDArray[np.float64]:
 
 
 def conjugate(quat: ArrayLike) -> NDArray[np.float64]:
-    """Conjugate, shape (..., 4): the vector part changes its sign. For a unit quaternion it is the inverse."""
+    """Conjugate: the vector part changes its sign. For a unit quaternion it is the inverse.
+
+    Parameters
+    ----------
+    quat : array_like, shape (..., 4)
+        Quaternions, scalar first.
+
+    Returns
+    -------
+    ndarray, shape (..., 4)
+
+    References
+    ----------
+    K 6.
+
+    Examples
+    --------
+    >>> conjugate([1, 2, 3, 4])
+    array([ 1., -2., -3., -4.])
+    """
     conjugated: NDArray[np.float64] = np.multiply(np.asarray(quat, dtype=np.float64), _CONJUGATE)
     return conjugated
 
 
 def norm(quat: ArrayLike) -> NDArray[np.float64]:
-    """Euclidean norm of quaternions (..., 4), shape (...)."""
+    """Euclidean norm.
+
+    Parameters
+    ----------
+    quat : array_like, shape (..., 4)
+        Quaternions, scalar first.
+
+    Returns
+    -------
+    ndarray, shape (...)
+
+    References
+    ----------
+    K 45.
+
+    Examples
+    --------
+    >>> norm([[3, 0, 0, 4], [0, 0, 0, 0]])
+    array([5., 0.])
+    """
     return length(np.asarray(quat, dtype=np.float64))
 
 
 def normalize(quat: ArrayLike) -> NDArray[np.float64]:
-    """Unit quaternion of the same direction, shape (..., 4); NaN for the zero quaternion."""
+    """Unit quaternion of the same direction.
+
+    Parameters
+    ----------
+    quat : array_like, shape (..., 4)
+        Quaternions, scalar first.
+
+    Returns
+    -------
+    ndarray, shape (..., 4)
+        NaN for the zero quaternion.
+
+    References
+    ----------
+    K 45.
+
+    Examples
+    --------
+    >>> normalize([3, 0, 0, 4])
+    array([0.6, 0. , 0. , 0.8])
+    """
     q = np.asarray(quat, dtype=np.float64)
     return divide(q, norm(q)[..., None])
 
@@ -69,10 +131,15 @@ def rotate(quat: ArrayLike, vector: ArrayLike) -> NDArray[np.float64]:
     quat : array_like, shape (..., 4)
         Unit quaternions.
     vector : array_like, shape (..., 3)
+        Vectors in any unit; leading shapes broadcast.
 
     Returns
     -------
     ndarray, shape (..., 3)
+
+    References
+    ----------
+    K 5.
 
     Examples
     --------
@@ -87,11 +154,27 @@ def rotate(quat: ArrayLike, vector: ArrayLike) -> NDArray[np.float64]:
 
 
 def rotation_matrix_from_quat(quat: ArrayLike) -> NDArray[np.float64]:
-    """Rotation matrices, shape (..., 3, 3), of unit quaternions (..., 4).
+    """Rotation matrices of unit quaternions.
+
+    Parameters
+    ----------
+    quat : array_like, shape (..., 4)
+        Unit quaternions, scalar first.
+
+    Returns
+    -------
+    ndarray, shape (..., 3, 3)
 
     References
     ----------
     P 17, rotation block. (Kenwright's equation 7 has misprinted signs.)
+
+    Examples
+    --------
+    >>> rotation_matrix_from_quat([0.5, 0.5, 0.5, 0.5])
+    array([[0., 0., 1.],
+           [1., 0., 0.],
+           [0., 1., 0.]])
     """
     q = np.asarray(quat, dtype=np.float64)
     w, x, y, z = (q[..., k] for k in range(4))
@@ -109,10 +192,29 @@ def rotation_matrix_from_quat(quat: ArrayLike) -> NDArray[np.float64]:
 
 
 def quat_from_rotation_matrix(matrix: ArrayLike) -> NDArray[np.float64]:
-    """Unit quaternions, shape (..., 4), of rotation matrices (..., 3, 3); the scalar part is not negative.
+    """Unit quaternions of rotation matrices.
 
     The largest of the four components is taken from the diagonal and the others follow from it, so no digit is lost
     at any angle, pi included.
+
+    Parameters
+    ----------
+    matrix : array_like, shape (..., 3, 3)
+        Rotation matrices.
+
+    Returns
+    -------
+    ndarray, shape (..., 4)
+        The scalar part is not negative.
+
+    References
+    ----------
+    Shepperd 1978.
+
+    Examples
+    --------
+    >>> quat_from_rotation_matrix([[0, 0, 1], [1, 0, 0], [0, 1, 0]])
+    array([0.5, 0.5, 0.5, 0.5])
     """
     m = np.asarray(matrix, dtype=np.float64)
     xx, yy, zz = m[..., 0, 0], m[..., 1, 1], m[..., 2, 2]
@@ -134,7 +236,20 @@ def quat_from_rotation_matrix(matrix: ArrayLike) -> NDArray[np.float64]:
 
 
 def quat_from_rotation_vector(vector: ArrayLike) -> NDArray[np.float64]:
-    """Unit quaternions, shape (..., 4), of rotation vectors (..., 3) in radians: angle times unit axis.
+    """Unit quaternions of rotation vectors: angle times unit axis.
+
+    Parameters
+    ----------
+    vector : array_like, shape (..., 3)
+        Rotation vectors, radians.
+
+    Returns
+    -------
+    ndarray, shape (..., 4)
+
+    References
+    ----------
+    P 2, K 3.
 
     Examples
     --------
@@ -159,6 +274,20 @@ def quat_from_euler_angles(angles: ArrayLike, order: str) -> NDArray[np.float64]
     Returns
     -------
     ndarray, shape (..., 4)
+
+    Raises
+    ------
+    ValueError
+        If the order is none of the six.
+
+    References
+    ----------
+    K 3 and 9: the product of the three rotations.
+
+    Examples
+    --------
+    >>> quat_from_euler_angles([np.pi / 2, np.pi / 2, 0], "XYZ").round(6)
+    array([0.5, 0.5, 0.5, 0.5])
     """
     if order not in EULER_ORDERS:
         msg = f"Euler order {order!r} is not one of {', '.join(EULER_ORDERS)}"

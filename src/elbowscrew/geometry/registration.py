@@ -17,6 +17,7 @@ Float = NDArray[np.float64]
 
 # Markers this much closer to a line (or to a plane) than long give no pose: their spread across it is noise.
 _FLATNESS: Final = 0.02
+_FEWEST_DUAL_QR: Final = 4
 
 
 class FittedPose(NamedTuple):
@@ -36,7 +37,33 @@ class FittedPose(NamedTuple):
 
 
 def pose_from_points(body_points: ArrayLike, points: ArrayLike) -> Float:
-    """Least-squares poses, shape (..., 8), of the same markers in the body and as seen; see `fit_poses`."""
+    """Least-squares poses of the same markers in the body and as seen; see `fit_poses`.
+
+    Parameters
+    ----------
+    body_points : array_like, shape (M, 3)
+        The markers in the body's own frame.
+    points : array_like, shape (..., M, 3)
+        The same markers as seen; NaN for those not seen.
+
+    Returns
+    -------
+    ndarray, shape (..., 8)
+        NaN where the markers seen do not fix a pose.
+
+    References
+    ----------
+    Arun, Huang and Blostein 1987; Söderkvist and Wedin 1993.
+
+    Examples
+    --------
+    The numerical example of P section 4.
+
+    >>> before, after = [[1, 0, 0], [1, 2, 0], [1, 2, 1], [0, 2, 1]], [[2, 3, 1], [0, 3, 1], [0, 3, 2], [0, 2, 2]]
+    >>> (2 * pose_from_points(before, after)).round(4) + 0.0
+    array([ 1.4142,  0.    ,  0.    ,  1.4142, -0.7071,  2.8284,  0.    ,
+            0.7071])
+    """
     return fit_poses(body_points, points).dual_quat
 
 
@@ -53,10 +80,19 @@ def fit_poses(body_points: ArrayLike, points: ArrayLike) -> FittedPose:
     Returns
     -------
     FittedPose
+        NaN where the markers seen do not fix a pose.
 
     References
     ----------
     Arun, Huang and Blostein 1987; Söderkvist and Wedin 1993.
+
+    Examples
+    --------
+    A cross of markers, each seen farther out by 0.1.
+
+    >>> body = np.array([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0]])
+    >>> round(float(fit_poses(body, 1.1 * body + [0, 0, 5]).deviation), 6)
+    0.1
     """
     seen = np.asarray(points, dtype=np.float64)
     body, target, weight, centers = _centered(body_points, seen)
@@ -64,7 +100,7 @@ def fit_poses(body_points: ArrayLike, points: ArrayLike) -> FittedPose:
     guard = np.ones(U.shape[:-1])
     guard[..., 2] = np.sign(np.linalg.det(U @ Vt))
     rotation = (U * guard[..., None, :]) @ Vt
-    spread = np.linalg.svd(body, compute_uv=False)
+    spread = _spread(body)
     fixed = (weight.sum(axis=-1) >= 3) & (spread[..., 1] > _FLATNESS * spread[..., 0])
     position = centers[1] - (rotation @ centers[0][..., None])[..., 0]
     pose = dual_quat_from_pose(quat_from_rotation_matrix(rotation), position)
@@ -80,16 +116,37 @@ def fit_poses_dual_qr(body_points: ArrayLike, points: ArrayLike) -> FittedPose:
 
     It favors the body's first axis, and needs at least four markers that are not in one plane.
 
-    Parameters and result as in `fit_poses`, but for the deviation: Frobenius norm of ``R - I``.
+    Parameters
+    ----------
+    body_points : array_like, shape (M, 3)
+        The markers in the body's own frame.
+    points : array_like, shape (..., M, 3)
+        The same markers as seen; NaN for those not seen.
+
+    Returns
+    -------
+    FittedPose
+        As of `fit_poses`, but for the deviation: Frobenius norm of ``R - I``, a pure number.
 
     References
     ----------
     P 22-29.
+
+    Examples
+    --------
+    The numerical example of P section 4.
+
+    >>> before, after = [[1, 0, 0], [1, 2, 0], [1, 2, 1], [0, 2, 1]], [[2, 3, 1], [0, 3, 1], [0, 3, 2], [0, 2, 2]]
+    >>> (2 * fit_poses_dual_qr(before, after).dual_quat).round(4) + 0.0
+    array([ 1.4142,  0.    ,  0.    ,  1.4142, -0.7071,  2.8284,  0.    ,
+            0.7071])
     """
     seen = np.asarray(points, dtype=np.float64)
+    if seen.shape[-2] < _FEWEST_DUAL_QR:
+        return FittedPose(np.full((*seen.shape[:-2], 8), np.nan), np.full(seen.shape[:-2], np.nan))
     body, target, weight, (body_center, center) = _centered(body_points, seen)
-    spread = np.linalg.svd(body, compute_uv=False)
-    fixed = (weight.sum(axis=-1) >= 4) & (spread[..., 2] > _FLATNESS * spread[..., 0])
+    spread = _spread(body)
+    fixed = (weight.sum(axis=-1) >= _FEWEST_DUAL_QR) & (spread[..., 2] > _FLATNESS * spread[..., 0])
     # Where the markers do not fix a pose, any regular set stands in, and the result is taken out again.
     stand_in = np.zeros_like(body)
     stand_in[..., :3, :] = np.eye(3)
@@ -119,6 +176,14 @@ def _centered(body_points: ArrayLike, seen: Float) -> tuple[Float, Float, Float,
         weight,
         centers,
     )
+
+
+def _spread(centered: Float) -> Float:
+    """Singular values of points (..., M, 3), shape (..., 3); 0 for those that too few points do not have."""
+    sizes = np.linalg.svd(centered, compute_uv=False)
+    spread = np.zeros((*centered.shape[:-2], 3))
+    spread[..., : sizes.shape[-1]] = sizes
+    return spread
 
 
 def _line_vectors(centered: Float, center: Float) -> DualMatrix:

@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from elbowscrew.geometry import dual_quaternion
-from elbowscrew.geometry.interpolation import WayRound, sclerp
+from elbowscrew.geometry._ways import WayRound, check_way
+from elbowscrew.geometry.interpolation import sclerp
 
 
 def catmull_rom(
@@ -30,15 +31,30 @@ def catmull_rom(
     ndarray, shape (..., 8)
         The velocity is continuous at the knots. Beyond the ends the first and the last step are repeated.
 
+    Raises
+    ------
+    ValueError
+        If there are fewer than two poses, or the knots are not as many and increasing.
+
     References
     ----------
     K, section on splines; Barry and Goldman 1988.
+
+    Examples
+    --------
+    Heights 0, 1, 3 and 4 at the knots 0, 1, 2 and 3: half way between the middle ones.
+
+    >>> poses = np.outer([0, 0.5, 1.5, 2], [0, 0, 0, 0, 0, 0, 0, 1]) + [1, 0, 0, 0, 0, 0, 0, 0]
+    >>> dual_quaternion.pose_from_dual_quat(catmull_rom(poses, [0, 1, 2, 3], [1, 1.5]))[1].round(6) + 0.0
+    array([[0., 0., 1.],
+           [0., 0., 2.]])
     """
     Q = np.asarray(poses, dtype=np.float64)
     t = np.asarray(knots, dtype=np.float64)
     if Q.ndim != 2 or len(Q) < 2 or t.shape != (len(Q),) or (np.diff(t) <= 0.0).any():
         msg = f"expected two poses or more with increasing knots, found {Q.shape} and {t.tolist()}"
         raise ValueError(msg)
+    check_way(way)
     if way != "as given":
         Q = dual_quaternion.continuous_signs(Q)
     if way == "longest":

@@ -75,6 +75,7 @@ def read_recording(
     Returns
     -------
     Recording
+        In meters and seconds.
 
     Raises
     ------
@@ -85,6 +86,14 @@ def read_recording(
         knows no such thing.
     UsageError
         If `units` is no possible one.
+
+    Examples
+    --------
+    >>> import elbowscrew, tempfile
+    >>> trial = elbowscrew.simulate_trial(frames=60, inversion=30)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     read_recording(elbowscrew.save_simulation(trial, f"{folder}/trial.csv")[0]).rate_hz
+    100.0
     """
     if units is not None and units not in METERS:
         msg = f"units: expected one of {', '.join(METERS)}, found {units!r}"

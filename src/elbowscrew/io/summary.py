@@ -28,6 +28,23 @@ def summary_from_analysis(analysis: Analysis) -> dict[str, Any]:
     """Results, quality, settings and provenance, ready for JSON; units in the names, None where nothing is known.
 
     Angles are degrees and lengths millimeters here, whatever the units of the tables.
+
+    Parameters
+    ----------
+    analysis : Analysis
+        From `elbowscrew.analyze`.
+
+    Returns
+    -------
+    dict
+        What stands in ``summary.json``.
+
+    Examples
+    --------
+    >>> import elbowscrew
+    >>> analysis = elbowscrew.analyze(elbowscrew.simulate_trial(marker_noise_mm=0).recording)
+    >>> summary_from_analysis(analysis)["interpolation"]["keyframes"]
+    [0, 211, 449]
     """
     return {
         "elbowscrew": __version__,

@@ -220,6 +220,7 @@ class Recording(Brief):
     Attributes
     ----------
     bodies : tuple of RigidBody
+        In the order of the file.
     frame : ndarray of int64, shape (N,)
         Frame numbers of the file.
     time_s : ndarray, shape (N,)
@@ -228,6 +229,10 @@ class Recording(Brief):
         Frames per second.
     markers : tuple of Marker
         Those that were asked for.
+    source : Source or None
+        The file it was read from.
+    warnings : tuple of QualityWarning
+        What was doubtful in the file.
     """
 
     bodies: tuple[RigidBody, ...]

@@ -53,6 +53,7 @@ def analyze(recording: Recording, settings: Settings | None = None) -> Analysis:
     Returns
     -------
     Analysis
+        In SI units and radians; NaN where something is not defined or not known.
 
     Raises
     ------

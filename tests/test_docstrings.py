@@ -1,0 +1,88 @@
+"""Every public function and class says what goes in, what comes out, where it is from, and shows it."""
+
+from __future__ import annotations
+
+import dataclasses
+import importlib
+import inspect
+import pkgutil
+import re
+from types import FunctionType
+from typing import Any
+
+import pytest
+from numpydoc.validate import validate  # type: ignore[import-untyped]
+from pydantic import BaseModel
+
+import elbowscrew
+from elbowscrew import geometry
+
+# No docstring, no summary, a summary without a period; parameters missing, unknown, in another order, without a space
+# before the colon; no section of returns, of examples, of yields.
+FAULTS = {"GL08", "SS01", "SS03", "PR01", "PR02", "PR03", "PR10", "RT01", "EX01", "YD01"}
+
+MODULES = [
+    importlib.import_module(f"{geometry.__name__}.{module.name}")
+    for module in pkgutil.iter_modules(geometry.__path__)
+    if not module.name.startswith("_")
+]
+GEOMETRY = [
+    value
+    for module in MODULES
+    for name, value in vars(module).items()
+    if not name.startswith("_") and (inspect.isfunction(value) or inspect.isclass(value))
+    if value.__module__ == module.__name__
+]
+SURFACE = [getattr(elbowscrew, name) for name in elbowscrew.__all__]
+
+
+def full_name(thing: Any) -> str:
+    return f"{thing.__module__}.{thing.__qualname__}"
+
+
+def functions(things: list[Any]) -> list[FunctionType]:
+    return sorted(filter(inspect.isfunction, things), key=full_name)
+
+
+def classes(things: list[Any]) -> list[type]:
+    return sorted(filter(inspect.isclass, things), key=full_name)
+
+
+def section(thing: Any, title: str) -> str:
+    """Text under a title, up to the next one or the end; empty if there is none."""
+    found = re.search(rf"^{title}\n-+\n(.*?)(?=^\w+\n-+\n|\Z)", inspect.getdoc(thing) or "", re.M | re.S)
+    return found[1].strip() if found else ""
+
+
+def fields(kind: type) -> set[str]:
+    if issubclass(kind, BaseModel):
+        return set(kind.model_fields)
+    if dataclasses.is_dataclass(kind):
+        return {field.name for field in dataclasses.fields(kind)}
+    if issubclass(kind, Exception):
+        return {"exit_code"}
+    return set(kind._fields)  # type: ignore[attr-defined]
+
+
+@pytest.mark.parametrize("function", functions(GEOMETRY + SURFACE), ids=full_name)
+def test_functions_are_documented(function: FunctionType) -> None:
+    faults = [fault for fault in validate(full_name(function))["errors"] if fault[0] in FAULTS]
+    assert not faults
+
+
+@pytest.mark.parametrize("function", functions(GEOMETRY), ids=full_name)
+def test_geometry_tells_shapes_and_sources(function: FunctionType) -> None:
+    assert section(function, "References")
+    assert "shape" in section(function, "Parameters")
+
+
+@pytest.mark.parametrize("kind", classes(GEOMETRY + SURFACE), ids=full_name)
+def test_classes_name_their_attributes(kind: type) -> None:
+    names = re.findall(r"^(\w.*?) : ", section(kind, "Attributes"), re.M)
+    assert fields(kind) == {name for line in names for name in line.split(", ")}
+
+
+def test_there_is_something_to_look_at() -> None:
+    assert len(functions(GEOMETRY)) > 80
+    assert {full_name(kind) for kind in classes(GEOMETRY)} >= {"elbowscrew.geometry.screw.Screw"}
+    assert len(functions(SURFACE)) >= 6
