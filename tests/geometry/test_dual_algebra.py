@@ -95,7 +95,7 @@ def test_what_is_not_defined_is_nan() -> None:
     assert np.isnan(dual_number.sqrt(one(0.0, 1.0)).dual)
     assert np.isnan(dual_number.log(one(0.0)).real)
     assert np.isnan(dual_number.log(one(-1.0, 1.0)).dual)
-    assert tuple(dual_number.power(one(0.0, 3.0), 0.0)) == (1.0, 0.0)
+    assert dual_number.power(one(0.0, 3.0), 0.0).dual == 0.0
     assert np.isinf(dual_number.exp(one(1000.0, 1.0)).real)
     assert np.isnan(dual_number.atan2(one(0.0, 1.0), one(0.0, 1.0)).dual)
 
