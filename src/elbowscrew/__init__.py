@@ -16,9 +16,10 @@ if TYPE_CHECKING:
     from typing import Any
 
     from elbowscrew.errors import ElbowscrewError
+    from elbowscrew.io.landmarks import read_landmarks
     from elbowscrew.io.reading import read_recording
     from elbowscrew.io.summary import summary_from_analysis
-    from elbowscrew.model import Analysis, Recording, RigidBody
+    from elbowscrew.model import Analysis, Landmark, Landmarks, Recording, RigidBody
     from elbowscrew.motion.analysis import analyze
     from elbowscrew.results import save_analysis, save_simulation
     from elbowscrew.settings import Settings
@@ -27,12 +28,15 @@ if TYPE_CHECKING:
 __all__ = [
     "Analysis",
     "ElbowscrewError",
+    "Landmark",
+    "Landmarks",
     "Recording",
     "RigidBody",
     "Settings",
     "Simulation",
     "__version__",
     "analyze",
+    "read_landmarks",
     "read_recording",
     "save_analysis",
     "save_simulation",
@@ -44,11 +48,14 @@ __all__ = [
 _HOME = {
     "Analysis": "model",
     "ElbowscrewError": "errors",
+    "Landmark": "model",
+    "Landmarks": "model",
     "Recording": "model",
     "RigidBody": "model",
     "Settings": "settings",
     "Simulation": "simulate",
     "analyze": "motion.analysis",
+    "read_landmarks": "io.landmarks",
     "read_recording": "io.reading",
     "save_analysis": "results",
     "save_simulation": "results",

@@ -108,6 +108,16 @@ STEP_COLUMNS: Final = (
     *_ERRORS,
 )
 
+ANATOMY_COLUMNS: Final = (
+    _column("frame", "frame", Quantity.INTEGER),
+    _column("time_s", "time_s", Quantity.NUMBER),
+    _column("flexion", "flexion", Quantity.ANGLE),
+    _column("carrying", "carrying", Quantity.ANGLE),
+    _column("pronation", "pronation", Quantity.ANGLE),
+    _column("axis_angle", "axis_angle", Quantity.ANGLE),
+    _column("axis_distance", "axis_distance", Quantity.LENGTH),
+)
+
 INTERPOLATION_COLUMNS: Final = (
     _column("frame", "frame", Quantity.INTEGER),
     _column("time_s", "time_s", Quantity.NUMBER),

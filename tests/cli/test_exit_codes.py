@@ -297,3 +297,32 @@ def test_an_interrupted_run_leaves_nothing(tmp_path: Path, sent: signal.Signals,
     process.communicate(timeout=60)
     assert process.returncode == code
     assert sorted(path.name for path in tmp_path.iterdir()) == ["long.csv", "long.truth.json"]
+
+
+LANDMARKS = """
+side = "right"
+[landmarks]
+EL = { body = "lab", mm = [352, 1105, -190] }
+EM = { body = "lab", mm = [268, 1110, -140] }
+GH = { body = "lab", mm = [300, 1380, -190] }
+US = { body = "forearm", mm = [-20, -150, -10] }
+RS = { body = "forearm", mm = [25, -148, 8] }
+"""
+
+
+def test_landmarks_add_anatomical_angles(take: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    toml = take.with_name("arm.toml")
+    toml.write_text(LANDMARKS)
+    assert run(capsys, "analyze", take, "--landmarks", toml, "--figure-format", "none")[0] == 0
+    folder = take.parent / "take_elbowscrew"
+    lines = (folder / "anatomy.csv").read_text().splitlines()
+    assert lines[0] == "frame,time_s,flexion_deg,carrying_deg,pronation_deg,axis_angle_deg,axis_distance_mm"
+    assert json.loads((folder / "joint.json").read_text())["anatomy"]["side"] == "right"
+    toml.write_text(LANDMARKS.replace("EL =", "EK ="))
+    code, _, err = run(capsys, "analyze", take, "--landmarks", toml, "--force")
+    assert code == 2
+    assert_one_line(err)
+    toml.write_text(LANDMARKS.replace('{ body = "lab", mm = [352, 1105, -190] }', '"nobody"'))
+    code, _, err = run(capsys, "analyze", take, "--landmarks", toml, "--force")
+    assert code == 4
+    assert_one_line(err)

@@ -49,6 +49,10 @@ def analyze(
         Literal["svd", "dual-qr"] | None,
         typer.Option(rich_help_panel=_BODIES, help="Poses from markers.", show_default="svd"),
     ] = None,
+    landmarks: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE.toml", rich_help_panel=_BODIES, help="Landmarks, for the anatomical angles."),
+    ] = None,
     units: Annotated[
         options.Units | None, typer.Option(rich_help_panel=_BODIES, help="Unit of length, if the file states none.")
     ] = None,
@@ -191,6 +195,7 @@ def analyze(
     """
     from elbowscrew.cli import render
     from elbowscrew.errors import ElbowscrewError
+    from elbowscrew.io.landmarks import read_landmarks
     from elbowscrew.io.reading import read_recording
     from elbowscrew.io.staging import check_result_folder
     from elbowscrew.io.summary import summary_from_analysis
@@ -236,9 +241,11 @@ def analyze(
     )
     target = output if output is not None else Path(f"{trial.stem}_elbowscrew")
     check_result_folder(target, force=force)  # before the work, not after it
-    recording = read_recording(trial, units=settings.units, rotation=settings.rotation, markers=settings.markers)
+    places = None if landmarks is None else read_landmarks(landmarks)
+    markers = (*settings.markers, *(() if places is None else places.markers))
+    recording = read_recording(trial, units=settings.units, rotation=settings.rotation, markers=markers)
     try:
-        analysis = analyze_recording(recording, settings)
+        analysis = analyze_recording(recording, settings, landmarks=places)
     except ElbowscrewError as error:
         msg = f"{trial}: {error}"
         raise type(error)(msg) from error

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowscrew.model import Analysis, FittedJoint, LineEstimate, PoseNoise
+from elbowscrew.model import Analysis, AnatomicalMotion, FittedJoint, LineEstimate, PoseNoise
 
 Float = NDArray[np.float64]
 
@@ -26,6 +26,7 @@ def joint_summary(analysis: Analysis) -> dict[str, Any]:
         "sara": _line(axis.sara),
         "dispersion": dispersion_summary(analysis),
         "noise": {name: _noise(noise) for name, noise in axis.noise.items()},
+        "anatomy": _anatomy(analysis.anatomy),
     }
 
 
@@ -75,6 +76,20 @@ def _line(line: LineEstimate) -> dict[str, list[float]]:
         "point_in_arm_mm": (1000.0 * line.point_arm).tolist(),
         "direction_in_forearm": line.direction_forearm.tolist(),
         "point_in_forearm_mm": (1000.0 * line.point_forearm).tolist(),
+    }
+
+
+def _anatomy(motion: AnatomicalMotion | None) -> dict[str, Any] | None:
+    if motion is None:
+        return None
+    known = np.isfinite(motion.joint_axis_angle)
+    return {
+        "side": motion.side,
+        "axis_angle_deg": float(np.degrees(motion.joint_axis_angle)) if known else None,
+        "axis_distance_mm": 1000.0 * motion.joint_axis_distance if known else None,
+        "epicondyle_direction_in_arm": motion.epicondyle_line[:3].tolist(),
+        "epicondyle_midpoint_in_arm_mm": (1000.0 * motion.epicondyle_midpoint).tolist(),
+        "landmarks_mm": {name: (1000.0 * place).tolist() for name, place in motion.places.items()},
     }
 
 

@@ -19,6 +19,8 @@ def write_tables(folder: Path, analysis: Analysis) -> None:
     units = analysis.settings.angle_unit, analysis.settings.length_unit
     write_csv(folder / "screw.csv", tables.columns(analysis.screw, tables.SCREW_COLUMNS, *units))
     write_csv(folder / "interpolation.csv", tables.columns(analysis.interpolated, tables.INTERPOLATION_COLUMNS, *units))
+    if analysis.anatomy is not None:
+        write_csv(folder / "anatomy.csv", tables.columns(analysis.anatomy, tables.ANATOMY_COLUMNS, *units))
     if analysis.steps is not None:
         write_csv(folder / "steps.csv", tables.columns(analysis.steps, tables.STEP_COLUMNS, *units))
 

@@ -1,5 +1,6 @@
 """What flows through the program: recordings in, results out; frozen, in SI units and radians."""
 
+from elbowscrew.model.anatomy import AnatomicalMotion, Landmark, Landmarks
 from elbowscrew.model.axes import HelicalSteps, InstantaneousMotion
 from elbowscrew.model.joint_axis import FittedJoint, JointAxis, LineEstimate, PoseNoise
 from elbowscrew.model.quality import BodyQuality, ClockQuality, Spread
@@ -27,6 +28,7 @@ from elbowscrew.model.results import (
 
 __all__ = [
     "Analysis",
+    "AnatomicalMotion",
     "BodyPoints",
     "BodyQuality",
     "ClockQuality",
@@ -37,6 +39,8 @@ __all__ = [
     "JointAxis",
     "JointMotion",
     "Keyframes",
+    "Landmark",
+    "Landmarks",
     "LineEstimate",
     "Marker",
     "MeanAxis",

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowscrew import tables
+from elbowscrew.model.anatomy import AnatomicalMotion
 from elbowscrew.model.axes import HelicalSteps
 from elbowscrew.model.brief import Brief
 from elbowscrew.model.joint_axis import JointAxis
@@ -235,6 +236,8 @@ class Analysis(Brief):
     joint_axis : JointAxis
     steps : HelicalSteps or None
         None if none were asked for.
+    anatomy : AnatomicalMotion or None
+        None without landmarks.
     keyframes : Keyframes
     interpolated : InterpolatedMotion
     points : BodyPoints
@@ -254,6 +257,7 @@ class Analysis(Brief):
     mean_axis: MeanAxis
     joint_axis: JointAxis
     steps: HelicalSteps | None
+    anatomy: AnatomicalMotion | None
     keyframes: Keyframes
     interpolated: InterpolatedMotion
     points: BodyPoints

@@ -14,10 +14,12 @@ from elbowscrew.model import (
     InterpolatedMotion,
     JointMotion,
     Keyframes,
+    Landmarks,
     QualityWarning,
     Recording,
     RigidBody,
 )
+from elbowscrew.motion.anatomy import anatomical_motion, arm_lines
 from elbowscrew.motion.axes import find_axes
 from elbowscrew.motion.difference import (
     DEFAULT_RADIUS,
@@ -40,7 +42,7 @@ Float = NDArray[np.float64]
 _LARGE_NOISE_RATIO: Final = 2.0
 
 
-def analyze(recording: Recording, settings: Settings | None = None) -> Analysis:
+def analyze(recording: Recording, settings: Settings | None = None, *, landmarks: Landmarks | None = None) -> Analysis:
     """Analyze one recording: screw motion, model from keyframes, and their difference.
 
     Parameters
@@ -49,6 +51,9 @@ def analyze(recording: Recording, settings: Settings | None = None) -> Analysis:
         From `elbowscrew.read_recording`, or built from bodies.
     settings : Settings, optional
         The paper's choices by default.
+
+    landmarks : Landmarks, optional
+        For the anatomical angles; read the recording with their markers.
 
     Returns
     -------
@@ -93,6 +98,18 @@ def analyze(recording: Recording, settings: Settings | None = None) -> Analysis:
     points = _body_points(measured.forearm, wanted)
     axes = find_axes(measured, wanted)
     warnings = measured.warnings + _keyframe_warnings(keyframes, inversion_row, joint, modeled) + axes.warnings
+    anatomy = None
+    if landmarks is not None:
+        anatomy, doubts = anatomical_motion(
+            landmarks,
+            recording,
+            measured.arm,
+            measured.forearm,
+            joint,
+            axis_lines=arm_lines(measured.line, joint, wanted.express_in),
+            joint_line=None if axes.joint.best is None else axes.joint.best.line,
+        )
+        warnings += doubts
     return Analysis(
         recording=recording,
         settings=wanted,
@@ -103,6 +120,7 @@ def analyze(recording: Recording, settings: Settings | None = None) -> Analysis:
         mean_axis=axes.mean,
         joint_axis=axes.joint,
         steps=axes.steps,
+        anatomy=anatomy,
         keyframes=keyframes,
         interpolated=_compared(modeled, measured, keyframes, points, wanted),
         points=points,

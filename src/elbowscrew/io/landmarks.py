@@ -1,0 +1,131 @@
+"""Landmarks from a TOML file: markers' names, or coordinates in millimeters."""
+
+from __future__ import annotations
+
+import difflib
+import os
+import tomllib
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from reprlib import repr as brief
+from typing import Any, Final, get_args
+
+import numpy as np
+
+from elbowscrew.errors import UsageError
+from elbowscrew.model.anatomy import LANDMARKS, Landmark, LandmarkFrame, Landmarks, Side
+
+_FARTHEST_MM: Final = 10_000.0
+_SIDES: Final = get_args(Side)
+_FRAMES: Final = get_args(LandmarkFrame)
+_EXPECTED: Final = 'a marker\'s name, a list of names, or { body = "arm", mm = [x, y, z] }'
+
+
+def read_landmarks(path: str | os.PathLike[str]) -> Landmarks:
+    """Read the landmarks of an arm; ``docs/anatomy.md`` says how the file looks.
+
+    Parameters
+    ----------
+    path : path-like
+        A TOML file.
+
+    Returns
+    -------
+    Landmarks
+
+    Raises
+    ------
+    UsageError
+        If the file cannot be read, or does not say all that is needed; all its faults are named together.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> text = 'side = "left"' + chr(10) + "[landmarks]" + chr(10)
+    >>> text += chr(10).join(f'{name} = "marker {name}"' for name in ("EL", "EM", "US", "RS", "GH"))
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = Path(folder, "arm.toml")
+    ...     _ = path.write_text(text)
+    ...     read_landmarks(path).markers
+    ('marker EL', 'marker EM', 'marker US', 'marker RS', 'marker GH')
+    """
+    file = Path(path)
+    table = _read_toml(file)
+    faults = _unknown(table, ("side", "landmarks"), "key")
+    if "side" not in table:
+        faults.append('side is missing: write side = "right" or side = "left" at the top')
+    elif table["side"] not in _SIDES:
+        faults.append(f"side: expected {_either(_SIDES)}, found {brief(table['side'])}")
+    given = table.get("landmarks", {})
+    if not isinstance(given, dict):
+        faults.append(f"landmarks: expected a table, [landmarks] on a line of its own, found {brief(given)}")
+        given = {}
+    faults += _unknown(given, LANDMARKS, "landmark")
+    missing = [f"{name} ({what})" for name, what in LANDMARKS.items() if name not in given]
+    if missing:
+        faults.append(f"missing in [landmarks]: {', '.join(missing)}; give each {_EXPECTED}")
+    found = {name: _landmark(name, given[name], faults) for name in LANDMARKS if name in given}
+    if faults:
+        msg = f"{file}: {'; '.join(faults)}"
+        raise UsageError(msg)
+    return Landmarks(side=table["side"], source=str(file), **{name: mark for name, mark in found.items() if mark})
+
+
+def _read_toml(file: Path) -> dict[str, Any]:
+    try:
+        return tomllib.loads(file.read_bytes().decode("utf-8-sig"))
+    except OSError as error:
+        msg = f"{file}: cannot be read as a file of landmarks: {error.strerror}"
+        raise UsageError(msg) from error
+    except (ValueError, RecursionError) as error:
+        msg = f"{file}: not TOML: {error}. Write one `key = value` a line, text in quotes"
+        raise UsageError(msg) from error
+
+
+def _landmark(name: str, value: object, faults: list[str]) -> Landmark | None:
+    """Build one landmark; what is wrong with it is added to the faults."""
+    before = len(faults)
+    place = f"landmarks.{name}"
+    if isinstance(value, dict):
+        faults += [f"{place}: {fault}" for fault in _coordinate_faults(value)]
+        if len(faults) > before:
+            return None
+        return Landmark(point=np.array(value["mm"], dtype=np.float64) / 1000.0, frame=value["body"])
+    given = value if isinstance(value, list) else [value]
+    markers = tuple(marker for marker in given if isinstance(marker, str) and marker.strip())
+    if not markers or len(markers) < len(given):
+        faults.append(f"{place}: expected {_EXPECTED}, found {brief(value)}")
+        return None
+    return Landmark(markers=markers)
+
+
+def _coordinate_faults(table: Mapping[str, Any]) -> list[str]:
+    faults = _unknown(table, ("body", "mm"), "key")
+    body, mm = table.get("body"), table.get("mm")
+    if not isinstance(body, str) or body not in _FRAMES:
+        faults.append(f"body: expected {_either(_FRAMES)}, found {_found(table, 'body')}")
+    if not isinstance(mm, list) or len(mm) != 3 or any(type(x) not in (int, float) for x in mm):
+        faults.append(f"mm: expected three numbers, [x, y, z], found {_found(table, 'mm')}")
+    elif not all(abs(x) <= _FARTHEST_MM for x in mm):
+        faults.append(f"mm: expected numbers within {_FARTHEST_MM / 1000:g} m of the origin, found {brief(mm)}")
+    return faults
+
+
+def _found(table: Mapping[str, Any], key: str) -> str:
+    return brief(table[key]) if key in table else "none"
+
+
+def _unknown(table: Mapping[str, Any], known: Iterable[str], what: str) -> list[str]:
+    names = list(known)
+    folded = {name.casefold(): name for name in names}
+    faults = []
+    for key in table:
+        if key not in names:
+            close = difflib.get_close_matches(key.casefold(), folded, n=1)
+            hint = f"did you mean {folded[close[0]]!r}?" if close else f"possible: {', '.join(names)}"
+            faults.append(f"unknown {what} {brief(key)}; {hint}")
+    return faults
+
+
+def _either(words: tuple[str, ...]) -> str:
+    return f"{', '.join(map(repr, words[:-1]))} or {words[-1]!r}"

@@ -1,0 +1,142 @@
+"""Anatomical landmarks of an arm, and its motion in the bones' own frames; frozen, in SI units and radians."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowscrew import tables
+from elbowscrew.model.brief import Brief
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+Float = NDArray[np.float64]
+
+Side = Literal["right", "left"]
+LandmarkFrame = Literal["arm", "forearm", "lab"]
+
+LANDMARKS: Final[Mapping[str, str]] = {
+    "EL": "lateral epicondyle",
+    "EM": "medial epicondyle",
+    "US": "ulnar styloid",
+    "RS": "radial styloid",
+    "GH": "glenohumeral center",
+}
+"""The names of the landmarks (Wu and others 2005), and what they are."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Landmark(Brief):
+    """Where one landmark is: markers of the recording, or coordinates; one of the two.
+
+    Attributes
+    ----------
+    markers : tuple of str
+        Names; the landmark is in the middle of them.
+    point : ndarray, shape (3,), optional
+        Meters.
+    frame : {"arm", "forearm", "lab"}, optional
+        What the coordinates are of: one of the two bodies, or the laboratory at the reference.
+    """
+
+    markers: tuple[str, ...] = ()
+    point: Float | None = None
+    frame: LandmarkFrame | None = None
+
+    def __post_init__(self) -> None:
+        """Check what the types cannot."""
+        if bool(self.markers) == (self.point is not None) or (self.point is None) != (self.frame is None):
+            msg = "a landmark is given by markers, or by a point with its frame"
+            raise ValueError(msg)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Landmarks(Brief):
+    """The landmarks that the frames of humerus and forearm are built from.
+
+    Attributes
+    ----------
+    side : {"right", "left"}
+    EL, EM : Landmark
+        Lateral and medial epicondyle.
+    US, RS : Landmark
+        Ulnar and radial styloid.
+    GH : Landmark
+        Center of the glenohumeral joint.
+    source : str
+        Where they come from, for messages.
+    """
+
+    side: Side
+    EL: Landmark
+    EM: Landmark
+    US: Landmark
+    RS: Landmark
+    GH: Landmark
+    source: str = "landmarks"
+
+    @property
+    def by_name(self) -> dict[str, Landmark]:
+        """The five landmarks by their names."""
+        return {name: getattr(self, name) for name in LANDMARKS}
+
+    @property
+    def markers(self) -> tuple[str, ...]:
+        """All markers wanted of the recording."""
+        return tuple(dict.fromkeys(marker for landmark in self.by_name.values() for marker in landmark.markers))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class AnatomicalMotion(Brief):
+    """The elbow's angles by the ISB's sequence, and its screw axes beside the epicondyle line.
+
+    Attributes
+    ----------
+    side : {"right", "left"}
+    frame, time_s : ndarray, shape (N,)
+    flexion, carrying, pronation : ndarray, shape (N,)
+        Angles about the humerus' Z, the floating X and the forearm's Y, radians; of the same sense on both sides;
+        flexion and pronation continuous in time, and NaN where the carrying angle is within 5 deg of a right angle.
+    axis_angle, axis_distance : ndarray, shape (N,)
+        Angle (rad, 0 to pi/2) between each frame's screw axis and the epicondyle line, and distance (m) of the axis
+        from the point midway between the epicondyles; NaN where there is no axis.
+    joint_axis_angle, joint_axis_distance : float
+        The same of the joint's axis as a whole; NaN where it has no single one.
+    epicondyle_line : ndarray, shape (6,)
+        Plücker vector in the arm's frame, from the medial to the lateral epicondyle.
+    epicondyle_midpoint : ndarray, shape (3,)
+        In the arm's frame, meters.
+    dual_quat_arm_humerus, dual_quat_forearm_isb : ndarray, shape (8,)
+        The ISB's frames of humerus and forearm, as poses in the frames of the two bodies.
+    places : mapping of str to ndarray, shape (3,)
+        EL, EM and GH in the arm's frame, US and RS in the forearm's, meters.
+
+    References
+    ----------
+    Wu and others 2005, J Biomech 38:981-992.
+    """
+
+    side: Side
+    frame: NDArray[np.int64]
+    time_s: Float
+    flexion: Float
+    carrying: Float
+    pronation: Float
+    axis_angle: Float
+    axis_distance: Float
+    joint_axis_angle: float
+    joint_axis_distance: float
+    epicondyle_line: Float
+    epicondyle_midpoint: Float
+    dual_quat_arm_humerus: Float
+    dual_quat_forearm_isb: Float
+    places: Mapping[str, Float]
+
+    def to_frame(self, angle_unit: tables.AngleUnit = "deg", length_unit: tables.LengthUnit = "mm") -> pd.DataFrame:
+        """Return the columns of ``anatomy.csv``."""
+        return tables.data_frame(self, tables.ANATOMY_COLUMNS, angle_unit, length_unit)
