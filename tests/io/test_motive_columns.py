@@ -474,3 +474,21 @@ def test_markers_kilometers_away_do_not_reach_the_residual(tmp_path: Path) -> No
     assert np.isfinite(found).all()
     assert np.flatnonzero(found != whole).tolist() == [20 - 7]
     assert found.max() < 2e-3
+
+
+def test_markers_of_one_name_are_asked_for_with_their_id(tmp_path: Path) -> None:
+    path, _ = save_simulation(simulate_trial(frames=5, inversion=2), tmp_path / "take.csv")
+    lines = path.read_text().split("\n")
+    kinds, names, ids = (line.split(",") for line in lines[2:5])
+    loose = [k for k, kind in enumerate(kinds) if kind == "Marker"][:6]
+    for k in loose:
+        names[k] = '"twin"'
+    first, second = (ids[k].strip('"') for k in (loose[0], loose[3]))
+    assert first != second
+    lines[3] = ",".join(names)
+    path.write_text("\n".join(lines))
+    both = read_recording(path, markers=("twin",)).markers
+    assert [marker.name for marker in both] == [f"twin ({first})", f"twin ({second})"]
+    one = read_recording(path, markers=(f"twin ({second})",)).markers
+    assert [marker.name for marker in one] == [f"twin ({second})"]
+    assert (one[0].position == both[1].position).all()

@@ -203,13 +203,15 @@ def marker_columns(header: Header, options: ReadOptions) -> dict[str, tuple[int,
     """X, Y and Z columns of the markers asked for, by name; markers of one name have their id behind it."""
     grouped: dict[tuple[str, str], dict[str, int]] = {}
     for column in header.columns:
-        if column.kind.casefold() == "marker" and column.field == "position" and options.wants(column.name):
+        if column.kind.casefold() == "marker" and column.field == "position":
             grouped.setdefault((column.name, column.identifier), {})[column.axis] = column.index
     names = Counter(name for name, _ in grouped)
-    by_name = {
-        name if names[name] == 1 else f"{name} ({identifier})": axes for (name, identifier), axes in grouped.items()
-    }
-    return {name: tuple(axes[axis] for axis in "XYZ") for name, axes in by_name.items() if {"X", "Y", "Z"} <= set(axes)}
+    found = {}
+    for (name, identifier), axes in grouped.items():
+        shown = name if names[name] == 1 else f"{name} ({identifier})"
+        if {"X", "Y", "Z"} <= set(axes) and (options.wants(name) or options.wants(shown)):
+            found[shown] = tuple(axes[axis] for axis in "XYZ")
+    return found
 
 
 def _marker_columns(
