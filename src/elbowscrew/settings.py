@@ -16,7 +16,7 @@ from elbowscrew.errors import UsageError
 from elbowscrew.tables import AngleUnit, LengthUnit
 
 _LISTS: Final = ("keyframes", "figure-format", "arm-markers", "forearm-markers")
-_UNIT_SUFFIXES: Final = ("_deg_s", "_m_s", "_deg", "_mm", "_s", "_percent")
+_UNIT_SUFFIXES: Final = ("_deg_s", "_rad_s", "_m_s", "_deg", "_mm", "_hz", "_s", "_percent")
 
 STILL_ARM: Final = "none"
 """The value of ``arm`` that says: the file has no arm, it stands still."""
@@ -56,6 +56,12 @@ class Settings(BaseModel):
         Fastest motion of a body, beyond which it leaps.
     min_tracked_percent : float
         Least share of frames tracked.
+    lowpass_hz : float, "auto" or None
+        Cut-off of the filter of the bodies' poses; "auto" finds one for each body; None for no filter.
+    resample_hz : float or None
+        Rate to resample the recording to, before all else.
+    min_rate_rad_s : float
+        Least angular velocity that gives an instantaneous axis.
     min_angle_deg : float
         Least angle that gives an axis.
     axis_sd_deg : float or None
@@ -113,6 +119,13 @@ class Settings(BaseModel):
     max_turn_deg_s: float = Field(3000.0, gt=0, description="Fastest turn of a body, in degrees a second")
     max_speed_m_s: float = Field(15.0, gt=0, description="Fastest motion of a body, in meters a second")
     min_tracked_percent: float = Field(50.0, ge=0, le=100, description="Least share of frames tracked")
+    lowpass_hz: float | Literal["auto"] | None = Field(
+        None, description="Cut-off of the filter of the poses, in hertz; 'auto' by residual analysis; 'none'"
+    )
+    resample_hz: float | None = Field(None, gt=0, description="Rate to resample the recording to, in hertz")
+    min_rate_rad_s: float = Field(
+        0.25, gt=0, description="Least angular velocity that gives an instantaneous axis, in radians a second"
+    )
     min_angle_deg: float = Field(10.0, gt=0, lt=180, description="Least angle that gives an axis, in degrees")
     axis_sd_deg: float | None = Field(
         None, gt=0, lt=90, description="Give an axis where its direction is known this well, in degrees"
@@ -155,6 +168,23 @@ class Settings(BaseModel):
     def figure_formats(self) -> tuple[str, ...]:
         """Formats to write, without doubles; empty for no figures."""
         return tuple(dict.fromkeys(kind for kind in self.figure_format if kind != "none"))
+
+    @field_validator("lowpass_hz", mode="before")
+    @classmethod
+    def _cutoff(cls, value: object) -> object:
+        """Take ``none`` for no filter, and numbers as text, as the command line gives them."""
+        if value == "none":
+            return None
+        if isinstance(value, str) and value != "auto":
+            try:
+                value = float(value)
+            except ValueError as error:
+                msg = f"expected a cut-off in hertz, auto or none, found {value!r}"
+                raise ValueError(msg) from error
+        if isinstance(value, int | float) and not 0.0 < value < np.inf:
+            msg = f"expected a cut-off above 0 Hz, found {value:g}"
+            raise ValueError(msg)
+        return value
 
     @field_validator("axis_sd_deg", mode="before")
     @classmethod

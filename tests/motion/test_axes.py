@@ -61,7 +61,7 @@ def test_the_instantaneous_axis_of_a_screw_motion_is_its_line_at_any_speed() -> 
     D = np.where((np.arange(241) == 100)[:, None], np.nan, D) * np.where(np.arange(241) % 7 < 3, -1.0, 1.0)[:, None]
     frame = np.arange(241)
     known = np.isfinite(D[:, 0])
-    found = instantaneous_motion(D, known, frame, time, time, 120.0, 0.25, -LINE[:3])
+    found = instantaneous_motion(D, known, frame, time, time, 120.0, 0.25, -LINE[:3], margin=1, lowpass_hz=60.0)
     rate = -(np.pi * np.cos(np.pi * time) + 0.6 * time)
     given = np.isfinite(found.axis_direction[:, 0])
     assert not given[[0, 99, 100, 101, 240]].any()
@@ -85,6 +85,8 @@ def test_a_body_at_rest_has_no_instantaneous_axis() -> None:
         100.0,
         0.25,
         LINE[:3],
+        margin=1,
+        lowpass_hz=50.0,
     )
     assert np.isnan(found.axis_direction).all()
     assert np.isnan(found.slide_velocity).all()

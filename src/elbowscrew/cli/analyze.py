@@ -99,6 +99,28 @@ def analyze(
         float | None,
         typer.Option(metavar="DEG", rich_help_panel=_MOTION, help="Least angle for an axis.", show_default="10"),
     ] = None,
+    lowpass: Annotated[
+        str | None,
+        typer.Option(
+            metavar="HZ",
+            rich_help_panel=_MOTION,
+            help="Filter of the poses: HZ, auto or none.",
+            show_default="none",
+        ),
+    ] = None,
+    resample: Annotated[
+        float | None,
+        typer.Option(metavar="HZ", rich_help_panel=_MOTION, help="Rate to resample to.", show_default="the file's"),
+    ] = None,
+    min_rate: Annotated[
+        float | None,
+        typer.Option(
+            metavar="RAD/S",
+            rich_help_panel=_MOTION,
+            help="Least angular velocity for an instantaneous axis.",
+            show_default="0.25",
+        ),
+    ] = None,
     axis_sd: Annotated[
         str | None,
         typer.Option(
@@ -222,6 +244,9 @@ def analyze(
             "express_in": express_in,
             "max_gap": max_gap,
             "min_angle": min_angle,
+            "lowpass": lowpass,
+            "resample": resample,
+            "min_rate": min_rate,
             "axis_sd": axis_sd,
             "step": step,
             "marker_noise": marker_noise,

@@ -152,6 +152,8 @@ def _trial(analysis: Analysis) -> dict[str, Any]:
         "filled_frames": int(screw.filled.sum()),
         "missing_share": float(1.0 - screw.valid.mean()),
         "reference_frame": int(screw.frame[analysis.joint.reference_row]),
+        "lowpass_hz": analysis.joint.lowpass_hz,
+        "instantaneous_lowpass_hz": analysis.instantaneous.lowpass_hz,
     }
 
 

@@ -17,12 +17,15 @@ _BLOCK_ROWS = 4096
 def write_tables(folder: Path, analysis: Analysis) -> None:
     """Write ``screw.csv``, ``interpolation.csv`` and what else was asked for, in the units of the settings."""
     units = analysis.settings.angle_unit, analysis.settings.length_unit
-    write_csv(folder / "screw.csv", tables.columns(analysis.screw, tables.SCREW_COLUMNS, *units))
-    write_csv(folder / "interpolation.csv", tables.columns(analysis.interpolated, tables.INTERPOLATION_COLUMNS, *units))
-    if analysis.anatomy is not None:
-        write_csv(folder / "anatomy.csv", tables.columns(analysis.anatomy, tables.ANATOMY_COLUMNS, *units))
-    if analysis.steps is not None:
-        write_csv(folder / "steps.csv", tables.columns(analysis.steps, tables.STEP_COLUMNS, *units))
+    for name, result, table in (
+        ("screw", analysis.screw, tables.SCREW_COLUMNS),
+        ("interpolation", analysis.interpolated, tables.INTERPOLATION_COLUMNS),
+        ("instantaneous", analysis.instantaneous, tables.INSTANTANEOUS_COLUMNS),
+        ("steps", analysis.steps, tables.STEP_COLUMNS),
+        ("anatomy", analysis.anatomy, tables.ANATOMY_COLUMNS),
+    ):
+        if result is not None:
+            write_csv(folder / f"{name}.csv", tables.columns(result, table, *units))
 
 
 def write_csv(path: Path, columns: dict[str, NDArray[Any]]) -> None:

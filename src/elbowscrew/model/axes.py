@@ -30,10 +30,13 @@ class InstantaneousMotion(Brief):
         Along the axis, m/s; as the axis, NaN where the forearm turns too slowly.
     axis_direction, axis_point : ndarray, shape (N, 3)
         Unit direction, and the point (m) nearest the origin.
+    lowpass_hz : float
+        Cut-off of the filter that the poses went through.
     """
 
     frame: NDArray[np.int64]
     time_s: Float
+    lowpass_hz: float
     angular_velocity: Float
     slide_velocity: Float
     axis_direction: Float

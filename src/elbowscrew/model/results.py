@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from elbowscrew import tables
 from elbowscrew.model.anatomy import AnatomicalMotion
-from elbowscrew.model.axes import HelicalSteps
+from elbowscrew.model.axes import HelicalSteps, InstantaneousMotion
 from elbowscrew.model.brief import Brief
 from elbowscrew.model.joint_axis import JointAxis
 from elbowscrew.model.quality import BodyQuality
@@ -38,6 +38,8 @@ class JointMotion(Brief):
     reference : ndarray, shape (8,)
         ``J_0``, the pose every displacement is counted from.
     reference_row : int
+    lowpass_hz : float or None
+        Cut-off of the filter that both bodies went through; None if they went through none.
     dual_quat_lab_proximal : ndarray, shape (8,)
         ``A_0``, the arm at the reference; the identity if the file has no arm.
     """
@@ -47,6 +49,7 @@ class JointMotion(Brief):
     filled: Bool
     reference: Float
     reference_row: int
+    lowpass_hz: float | None
     dual_quat_lab_proximal: Float
 
 
@@ -234,6 +237,7 @@ class Analysis(Brief):
     screw : ScrewMotion
     mean_axis : MeanAxis
     joint_axis : JointAxis
+    instantaneous : InstantaneousMotion
     steps : HelicalSteps or None
         None if none were asked for.
     anatomy : AnatomicalMotion or None
@@ -256,6 +260,7 @@ class Analysis(Brief):
     screw: ScrewMotion
     mean_axis: MeanAxis
     joint_axis: JointAxis
+    instantaneous: InstantaneousMotion
     steps: HelicalSteps | None
     anatomy: AnatomicalMotion | None
     keyframes: Keyframes

@@ -82,7 +82,8 @@ def analyze(recording: Recording, settings: Settings | None = None, *, landmarks
     """
     wanted = settings or Settings()
     measured = measure(recording, wanted)
-    joint, D, elapsed, screw = measured.joint, measured.displacement, measured.elapsed, measured.screw
+    recording, joint, screw = measured.recording, measured.joint, measured.screw
+    D, elapsed = measured.displacement, measured.elapsed
     rows, inversion_row = choose_rows(screw.angle, recording.frame, wanted.keyframes, wanted.inversion)
     keyframes = keyframes_at(
         rows,
@@ -119,6 +120,7 @@ def analyze(recording: Recording, settings: Settings | None = None, *, landmarks
         screw=screw,
         mean_axis=axes.mean,
         joint_axis=axes.joint,
+        instantaneous=axes.instantaneous,
         steps=axes.steps,
         anatomy=anatomy,
         keyframes=keyframes,

@@ -7,17 +7,23 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat
-from elbowscrew.model import HelicalSteps, JointAxis, MeanAxis, QualityWarning
+from elbowscrew.errors import SettingError
+from elbowscrew.geometry.dual_quaternion import conjugate, multiply, pose_from_dual_quat
+from elbowscrew.model import HelicalSteps, InstantaneousMotion, JointAxis, MeanAxis, QualityWarning
 from elbowscrew.motion.helical_steps import helical_steps
+from elbowscrew.motion.instantaneous import instantaneous_motion
 from elbowscrew.motion.joint_axis import estimate_joint_axis, forearm_line
 from elbowscrew.motion.mean_axis import mean_axis_of
 from elbowscrew.motion.measurement import Measurement
+from elbowscrew.motion.relative import IDENTITY
 from elbowscrew.settings import Settings
 
 Float = NDArray[np.float64]
 
 _LARGE_NOISE_RATIO: Final = 2.0
+# What the field filters at, for recordings too short for residual analysis; lower only where the rate asks for it.
+_TWIST_HZ: Final = 6.0
+_LARGEST_SHARE: Final = 0.4
 
 
 class Axes(NamedTuple):
@@ -25,6 +31,7 @@ class Axes(NamedTuple):
 
     mean: MeanAxis
     joint: JointAxis
+    instantaneous: InstantaneousMotion
     steps: HelicalSteps | None
     warnings: tuple[QualityWarning, ...]
 
@@ -37,17 +44,49 @@ def find_axes(measured: Measurement, settings: Settings) -> Axes:
         measured.screw.angle,
         forearm_line(np.concatenate([mean.direction, np.cross(mean.point, mean.direction)]), measured.change),
         {"arm": measured.noise.arm, "forearm": measured.noise.forearm},
+        measured.noise_gain,
         arm_moves=measured.noise.arm_moves,
         express_in=settings.express_in,
         robust=settings.robust,
     )
-    return Axes(mean, joint, _steps(measured, mean, settings), _axis_warnings(joint, measured))
+    return Axes(
+        mean=mean,
+        joint=joint,
+        instantaneous=_instantaneous(measured, mean, settings),
+        steps=_steps(measured, mean, settings),
+        warnings=_axis_warnings(joint, measured),
+    )
 
 
 def _mean_axis(measured: Measurement) -> MeanAxis:
     """Take the mean over measured frames: a pose filled in says nothing that its neighbors do not."""
     lines = np.where(measured.joint.measured[:, None], measured.line, np.nan)
     return mean_axis_of(measured.screw.angle, lines, pose_from_dual_quat(measured.change)[1])
+
+
+def _instantaneous(measured: Measurement, mean: MeanAxis, settings: Settings) -> InstantaneousMotion:
+    """Take the twist of filtered poses: of those at hand if they are, else of poses filtered for this alone."""
+    D, smoothing = measured.displacement, measured.smoothing
+    if smoothing.cutoff_hz is None:
+        try:
+            smoothing = smoothing.automatic(measured.arm, measured.forearm, settings)
+        except SettingError:  # too few frames to tell motion from noise
+            smoothing = smoothing._replace(cutoff_hz=min(_TWIST_HZ, _LARGEST_SHARE * smoothing.rate_hz))
+        arm, forearm = smoothing.apply(measured.arm, measured.forearm)
+        arm_pose = IDENTITY if arm is None else arm.dual_quat_lab_body
+        D = multiply(conjugate(measured.joint.reference), multiply(conjugate(arm_pose), forearm.dual_quat_lab_body))
+    return instantaneous_motion(
+        multiply(multiply(measured.change, D), conjugate(measured.change)),
+        measured.joint.measured,
+        measured.screw.frame,
+        measured.screw.time_s,
+        measured.elapsed,
+        smoothing.rate_hz,
+        settings.min_rate_rad_s,
+        mean.direction,
+        margin=smoothing.margin,
+        lowpass_hz=smoothing.cutoff_hz or np.inf,
+    )
 
 
 def _steps(measured: Measurement, mean: MeanAxis, settings: Settings) -> HelicalSteps | None:
@@ -63,6 +102,7 @@ def _steps(measured: Measurement, mean: MeanAxis, settings: Settings) -> Helical
         step=float(np.radians(settings.step_deg)),
         sense=mean.direction,
         noise=measured.noise.known,
+        noise_gain=measured.noise_gain,
     )
 
 

@@ -25,6 +25,7 @@ def helical_steps(
     step: float,
     sense: Float,
     noise: tuple[PoseNoise | None, PoseNoise] | None,
+    noise_gain: Float,
 ) -> HelicalSteps:
     """Finite helical axes from pose to pose, each at least `step` of rotation from the one before.
 
@@ -46,6 +47,8 @@ def helical_steps(
         Direction, as expressed, about which a positive angle turns.
     noise : tuple of PoseNoise, optional
         Of the arm (None if it stands still) and of the forearm; None where it is not known.
+    noise_gain : ndarray, shape (N,)
+        Share of its variance that a filter has left in each frame.
 
     References
     ----------
@@ -62,7 +65,8 @@ def helical_steps(
     if noise is not None and first.size:
         poses = joint.dual_quat_proximal_distal
         before, after = (
-            _written(displacement[ends_of], joint_covariance(poses[ends_of], *noise)) for ends_of in (first, last)
+            _written(displacement[k], noise_gain[k, None, None] * joint_covariance(poses[k], *noise))
+            for k in (first, last)
         )
         errors = errors_from_covariance(forward, before, after, change)
     return HelicalSteps(

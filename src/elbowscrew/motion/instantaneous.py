@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Final
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -11,10 +9,9 @@ from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry import point_nearest_origin
 from elbowscrew.geometry.twist import instantaneous_screw
 from elbowscrew.model import InstantaneousMotion
+from elbowscrew.motion.smoothing import inside
 
 Float = NDArray[np.float64]
-
-_STEP_TOLERANCE: Final = 0.5
 
 
 def instantaneous_motion(
@@ -26,11 +23,13 @@ def instantaneous_motion(
     rate_hz: float,
     min_rate: float,
     sense: Float,
+    margin: int,
+    lowpass_hz: float,
 ) -> InstantaneousMotion:
     """Instantaneous helical axis of every frame, from the poses on either side of it.
 
     The twist is that of the screw that leads from the pose before to the pose after, over the time between them: exact
-    for a steady screw motion. It is not given beside a gap.
+    for a steady screw motion. It is not given near a gap, where a filter leaves most of the noise.
 
     Parameters
     ----------
@@ -45,6 +44,10 @@ def instantaneous_motion(
         Angular velocity (rad/s) below which there is no axis.
     sense : ndarray, shape (3,)
         Direction about which a positive angular velocity turns.
+    margin : int
+        Frames to either side that must be measured, too; 1 at least.
+    lowpass_hz : float
+        Cut-off of the filter that the poses went through.
 
     References
     ----------
@@ -52,11 +55,9 @@ def instantaneous_motion(
     """
     count = len(displacement)
     twist = np.full((count, 6), np.nan)
-    usable = np.isfinite(displacement).all(axis=1) & measured
-    inner = np.flatnonzero(usable[:-2] & usable[1:-1] & usable[2:]) + 1
+    usable = np.isfinite(displacement[:, 0]) & measured
+    inner = np.flatnonzero(inside(usable, elapsed, rate_hz, margin))
     span = elapsed[inner + 1] - elapsed[inner - 1]
-    even = np.abs(span * rate_hz - 2.0) <= _STEP_TOLERANCE
-    inner, span = inner[even], span[even]
     step = dq.multiply(displacement[inner + 1], dq.conjugate(displacement[inner - 1]))
     twist[inner] = 2.0 * dq.log(dq.canonical(step)) / span[:, None]
     screw = instantaneous_screw(twist)
@@ -68,6 +69,7 @@ def instantaneous_motion(
     return InstantaneousMotion(
         frame=frame,
         time_s=time_s,
+        lowpass_hz=lowpass_hz,
         angular_velocity=screw.rate * turned,
         slide_velocity=slide_rate,
         axis_direction=line[:, :3],

@@ -30,6 +30,7 @@ def estimate_joint_axis(
     angle: Float,
     mean_line: Float,
     noise: Mapping[str, PoseNoise | None],
+    noise_gain: Float,
     *,
     arm_moves: bool,
     express_in: ExpressIn,
@@ -46,6 +47,8 @@ def estimate_joint_axis(
         Weighted mean of the finite axes in the forearm's frame at the reference.
     noise : mapping
         Of "arm" and "forearm"; None where it is not known.
+    noise_gain : ndarray, shape (N,)
+        Share of the noise's variance that a filter has left in each frame.
     arm_moves : bool
         False if the arm stands still and has no noise.
     express_in : {"forearm", "arm", "lab"}
@@ -59,7 +62,7 @@ def estimate_joint_axis(
     assumed = PoseNoise(covariance=_COMMON_NOISE, source="assumed", marker_noise=None)
     distal = noise["forearm"] if known and noise["forearm"] is not None else assumed
     proximal = (noise["arm"] if known else assumed) if arm_moves else None
-    covariance = joint_covariance(poses, proximal, distal)
+    covariance = noise_gain[rows, None, None] * joint_covariance(poses, proximal, distal)
     start = transform_lines(joint.reference, mean_line)
     near = pose_from_dual_quat(joint.reference)[1]
     fits = {screw: fit_joint(poses, covariance, start, near, screw=screw, robust=robust) for screw in (False, True)}

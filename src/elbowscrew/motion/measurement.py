@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -16,6 +17,8 @@ from elbowscrew.motion.helical import HelicalSeries, helical_series
 from elbowscrew.motion.keyframes import row_of_frame
 from elbowscrew.motion.pose_noise import pose_noise
 from elbowscrew.motion.relative import displacement, expressed, frame_change, joint_from_bodies
+from elbowscrew.motion.resampling import resample_recording
+from elbowscrew.motion.smoothing import Smoothing
 from elbowscrew.motion.uncertainty import ScrewErrors, known_errors, least_angle, no_errors, screw_errors
 from elbowscrew.settings import Settings
 
@@ -48,6 +51,8 @@ class Measurement(NamedTuple):
 
     Attributes
     ----------
+    recording : Recording
+        As it is analyzed: resampled if that was asked for.
     arm : RigidBody or None
     forearm : RigidBody
     elapsed : ndarray, shape (N,)
@@ -58,6 +63,10 @@ class Measurement(NamedTuple):
     change : ndarray, shape (8,)
         Pose of that frame in the one the screws are expressed in.
     noise : JointNoise
+    smoothing : Smoothing
+        The filter that the bodies have gone through.
+    noise_gain : ndarray, shape (N,)
+        Share of the noise's variance that it has left.
     line : ndarray, shape (N, 6)
         Axes as Plücker vectors, as expressed.
     screw : ScrewMotion
@@ -65,6 +74,7 @@ class Measurement(NamedTuple):
     warnings : tuple of QualityWarning
     """
 
+    recording: Recording
     arm: RigidBody | None
     forearm: RigidBody
     elapsed: Float
@@ -72,6 +82,8 @@ class Measurement(NamedTuple):
     displacement: Float
     change: Float
     noise: JointNoise
+    smoothing: Smoothing
+    noise_gain: Float
     line: Float
     screw: ScrewMotion
     quality: tuple[BodyQuality, ...]
@@ -88,6 +100,15 @@ def measure(recording: Recording, settings: Settings) -> Measurement:
     """
     arm, forearm, broken_rows, quality, warnings = tracked_bodies(recording, settings)
     elapsed = elapsed_time(recording)
+    smoothing = Smoothing.of(arm, forearm, elapsed, recording.rate_hz, broken_rows, settings)
+    noise = JointNoise.of(arm, forearm, recording.rate_hz, settings)
+    arm, forearm = smoothing.apply(arm, forearm)
+    if settings.resample_hz is not None:
+        recording, arm, forearm, more = _resampled(recording, arm, forearm, broken_rows, settings.resample_hz)
+        folding = smoothing.cutoff_hz is None or smoothing.cutoff_hz > 0.5 * settings.resample_hz
+        warnings += tuple(warning for warning in more if folding or warning.code != "aliasing")
+        elapsed, broken_rows = elapsed_time(recording), np.empty(0, dtype=np.intp)
+        smoothing = smoothing._replace(elapsed=elapsed, rate_hz=recording.rate_hz, broken_rows=broken_rows)
     joint = joint_from_bodies(
         arm,
         forearm,
@@ -100,11 +121,12 @@ def measure(recording: Recording, settings: Settings) -> Measurement:
         reference_window=settings.reference_window,
         max_gap_s=settings.max_gap_s,
         broken_rows=broken_rows,
+        lowpass_hz=smoothing.cutoff_hz,
     )
     D = displacement(joint)
     D_expressed = expressed(D, joint, settings.express_in)
-    noise = JointNoise.of(arm, forearm, recording.rate_hz, settings)
-    series, errors = _measured_series(D, D_expressed, joint, noise, settings)
+    gain = smoothing.noise_gain(joint.measured)
+    series, errors = _measured_series(D, D_expressed, joint, noise, gain, settings)
     screw = ScrewMotion(
         frame=recording.frame,
         time_s=recording.time_s,
@@ -126,6 +148,7 @@ def measure(recording: Recording, settings: Settings) -> Measurement:
         point_radius=errors.point_radius,
     )
     return Measurement(
+        recording=recording,
         arm=arm,
         forearm=forearm,
         elapsed=elapsed,
@@ -133,6 +156,8 @@ def measure(recording: Recording, settings: Settings) -> Measurement:
         displacement=D,
         change=frame_change(joint, settings.express_in),
         noise=noise,
+        smoothing=smoothing,
+        noise_gain=gain,
         line=series.line,
         screw=screw,
         quality=quality,
@@ -140,15 +165,30 @@ def measure(recording: Recording, settings: Settings) -> Measurement:
     )
 
 
+def _resampled(
+    recording: Recording,
+    arm: RigidBody | None,
+    forearm: RigidBody,
+    broken_rows: NDArray[np.intp],
+    rate_hz: float,
+) -> tuple[Recording, RigidBody | None, RigidBody, tuple[QualityWarning, ...]]:
+    """Put the two bodies, as they are now, and the markers on another clock."""
+    chosen = (forearm,) if arm is None else (arm, forearm)
+    resampled = resample_recording(replace(recording, bodies=chosen, warnings=()), rate_hz, broken_rows)
+    proximal = None if arm is None else resampled.bodies[0]
+    warnings = resampled.warnings
+    return replace(resampled, warnings=recording.warnings), proximal, resampled.bodies[-1], warnings
+
+
 def _measured_series(
-    D: Float, D_expressed: Float, joint: JointMotion, noise: JointNoise, settings: Settings
+    D: Float, D_expressed: Float, joint: JointMotion, noise: JointNoise, gain: Float, settings: Settings
 ) -> tuple[HelicalSeries, ScrewErrors]:
     """Screws of all frames, with their errors, each axis known as well as the settings want it."""
     limit, least = np.inf, np.radians(settings.min_angle_deg)
     errors = no_errors(len(D))
     if noise.known is not None:
         change = frame_change(joint, settings.express_in)
-        errors = screw_errors(D, joint, *noise.known, change, settings.reference_window)
+        errors = screw_errors(D, joint, *noise.known, change, settings.reference_window, gain)
         if settings.axis_sd_deg is not None:
             limit = np.radians(settings.axis_sd_deg)
             least = least_angle(limit, joint, *noise.known)

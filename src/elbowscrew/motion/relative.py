@@ -29,6 +29,7 @@ def joint_from_bodies(
     reference_window: int,
     max_gap_s: float,
     broken_rows: NDArray[np.intp] | None = None,
+    lowpass_hz: float | None = None,
 ) -> JointMotion:
     """Relative motion ``J_i = A_i^-1 F_i`` of two bodies, short gaps filled, with its reference pose.
 
@@ -50,6 +51,8 @@ def joint_from_bodies(
     max_gap_s : float
     broken_rows : ndarray of int, optional
         Increasing rows that one of the bodies reaches by a leap; no gap is filled across them.
+    lowpass_hz : float, optional
+        Cut-off of the filter that the bodies went through.
 
     Raises
     ------
@@ -85,6 +88,7 @@ def joint_from_bodies(
         filled=filled,
         reference=_mean_pose(series[window]),
         reference_row=row,
+        lowpass_hz=lowpass_hz,
         dual_quat_lab_proximal=IDENTITY if proximal is None else _mean_pose(arm_pose[window]),
     )
 

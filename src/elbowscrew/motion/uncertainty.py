@@ -69,6 +69,7 @@ def screw_errors(
     distal: PoseNoise,
     change: Float,
     reference_frames: int,
+    noise_gain: Float,
 ) -> ScrewErrors:
     """Propagate the noise of both bodies, and that of the reference, to the screw of every measured frame.
 
@@ -86,6 +87,9 @@ def screw_errors(
         Pose of that frame in the one the screws are expressed in.
     reference_frames : int
         How many poses the reference is the mean of.
+    noise_gain : ndarray, shape (N,)
+        Share of the noise's variance that a filter has left in each frame. The reference counts with all of it: a
+        filter leaves the first pose of a run as it is.
 
     References
     ----------
@@ -97,6 +101,7 @@ def screw_errors(
     for start in range(0, rows.size, _BLOCK):
         block = rows[start : start + _BLOCK]
         frame = joint_covariance(joint.dual_quat_proximal_distal[block], proximal, distal)
+        frame = noise_gain[block, None, None] * frame
         found = errors_from_covariance(displacement[block], frame, reference, change)
         for error, values in zip(errors, found, strict=True):
             error[block] = values

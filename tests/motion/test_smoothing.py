@@ -1,0 +1,77 @@
+"""Filter and resampling as the analysis uses them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from elbowscrew import Settings, analyze, simulate_trial
+from elbowscrew.errors import SettingError, UsageError
+from elbowscrew.settings import settings_from
+
+TRIAL = simulate_trial(seed=9, arm="moving", gaps=3, gap_frames=4, sign_flips=True)
+TRUTH = np.radians(TRIAL.truth["theta_deg"])
+
+
+def analyzed(**settings: Any) -> Any:
+    return analyze(TRIAL.recording, Settings(marker_noise_mm=0.2, **settings))
+
+
+@pytest.mark.parametrize("lowpass", [6.0, "auto"])
+def test_a_filter_brings_the_angle_nearer_the_truth_and_says_how_near(lowpass: Any) -> None:
+    raw, smooth = analyzed().screw, analyzed(lowpass_hz=lowpass).screw
+    # The reference keeps its noise, which all frames share: what the filter changes is the rest.
+    errors = [one.angle - TRUTH for one in (raw, smooth)]
+    spread = [np.nanstd(error[raw.axis_known]) for error in errors]
+    assert spread[1] < 0.6 * spread[0]
+    assert np.nanmedian(smooth.angle_sd) < np.nanmedian(raw.angle_sd)
+    assert (smooth.valid == raw.valid).all()
+    assert (smooth.filled == raw.filled).all()
+
+
+def test_intervals_hold_after_a_filter() -> None:
+    inside = []
+    for seed in range(30):
+        trial = simulate_trial(seed=seed, arm="moving")
+        screw = analyze(trial.recording, Settings(marker_noise_mm=0.2, lowpass_hz=8.0)).screw
+        error = screw.angle - np.radians(trial.truth["theta_deg"])
+        inside.append(np.abs(error[100:350:50]) <= 1.96 * screw.angle_sd[100:350:50])
+    # All frames of a trial share its reference, so that a trial counts hardly more than once.
+    assert np.mean(inside) == pytest.approx(0.95, abs=4.0 * np.sqrt(0.95 * 0.05 / 30))
+
+
+def test_frames_beside_a_gap_keep_their_noise() -> None:
+    trial = simulate_trial(seed=3, gaps=1, gap_frames=40)
+    screw = analyze(trial.recording, Settings(marker_noise_mm=0.2, lowpass_hz=4.0)).screw
+    lost = np.flatnonzero(~screw.valid)
+    assert lost.size == 40
+    for beside, away in ((lost[0] - 1, lost[0] - 30), (lost[-1] + 1, lost[-1] + 30)):
+        # Noise of the reference and of the frame against that of the reference and 8 % of the frame's.
+        assert screw.angle_sd[beside] == pytest.approx(np.sqrt(2.0 / 1.08) * screw.angle_sd[away], rel=0.03)
+
+
+def test_a_resampled_trial_counts_its_frames_anew() -> None:
+    full, half = analyzed(lowpass_hz=6.0), analyzed(lowpass_hz=6.0, resample_hz=50)
+    assert half.screw.frame.tolist() == list(range(225))
+    assert half.recording.rate_hz == 50
+    both = half.screw.valid & full.screw.valid[::2]
+    assert half.screw.angle[both] == pytest.approx(full.screw.angle[::2][both], abs=1e-12)
+    codes = {warning.code: warning.severity for warning in half.warnings}
+    assert codes["resampled"] == "note"
+    assert "aliasing" not in codes
+    assert "aliasing" in [warning.code for warning in analyzed(resample_hz=50).warnings]
+
+
+def test_cut_offs_as_they_are_given() -> None:
+    assert settings_from(options={"lowpass": "none"}).lowpass_hz is None
+    assert settings_from(options={"lowpass": "auto"}).lowpass_hz == "auto"
+    assert settings_from(options={"lowpass": "6"}).lowpass_hz == 6.0
+    for wrong in ("fast", "-3", "0", "nan"):
+        with pytest.raises(UsageError, match="lowpass"):
+            settings_from(options={"lowpass": wrong})
+    with pytest.raises(SettingError, match="--lowpass"):
+        analyzed(lowpass_hz=80.0)
+    with pytest.raises(SettingError, match="--resample"):
+        analyzed(resample_hz=0.01)
