@@ -16,6 +16,7 @@ from elbowscrew import Settings, analyze, read_recording, simulate_trial
 from elbowscrew.cli import main
 from elbowscrew.errors import RecordingError, SettingError
 from elbowscrew.geometry import dual_quaternion as dq
+from elbowscrew.io.clock import rate_of
 
 Float = NDArray[np.float64]
 TRIAL = known_trial(110.0, frames=80, inversion=40, seed=21)
@@ -371,3 +372,10 @@ def test_info_tells_of_markers(tmp_path: Path, capsys: pytest.CaptureFixture[str
     assert len(told["markers"]) == 8
     assert main(["info", str(path)]) == 0
     assert "8 markers" in capsys.readouterr().out
+
+
+def test_times_too_close_for_any_rate_give_none() -> None:
+    frame = np.array([0, 9])
+    assert np.isnan(rate_of(frame, np.array([0.0, 1e-320])))
+    assert np.isnan(rate_of(frame, np.array([1.0, 0.0])))
+    assert rate_of(frame, np.array([0.0, 0.09])) == pytest.approx(100.0)

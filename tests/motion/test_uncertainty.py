@@ -141,3 +141,8 @@ def test_without_noise_there_are_no_errors_and_no_precision_to_ask_for() -> None
     assert "noise-unknown" in [warning.code for warning in analysis.warnings]
     with pytest.raises(SettingError, match="--marker-noise"):
         analyze(recording, Settings(noise="none", axis_sd_deg=1))
+
+
+def test_an_error_column_that_holds_no_errors_is_no_source() -> None:
+    assert pose_noise(body(reported_error=np.full(650, 1e300)), 100.0, Settings(noise="error-column")) is None
+    assert pose_noise(body(reported_error=np.full(650, -1.0)), 100.0, Settings(noise="error-column")) is None

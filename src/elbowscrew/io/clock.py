@@ -47,9 +47,10 @@ def is_rate(value: float) -> bool:
 
 
 def rate_of(frame: NDArray[np.int64], time_s: Float) -> float:
-    """Frames a second from the first row to the last; NaN if they do not increase."""
-    span = time_s[-1] - time_s[0]
-    return float((frame[-1] - frame[0]) / span) if span > 0.0 else float("nan")
+    """Frames a second from the first row to the last; NaN if the times do not increase so."""
+    frames, span = float(frame[-1] - frame[0]), float(time_s[-1] - time_s[0])
+    # A span that no rate fits would divide to more than there are numbers.
+    return frames / span if span * _HIGHEST_HZ >= 1.0 else float("nan")
 
 
 def counted_rate(path: Path, frame: NDArray[np.int64], time_s: Float) -> float:

@@ -21,6 +21,7 @@ _STILL_S: Final = 0.5
 _FEWEST_STILL_FRAMES: Final = 20
 _LARGEST_DRIFT: Final = 3.0
 _STILL_NOISE_M: Final = 0.001
+_LARGEST_ERROR_M: Final = 1.0
 
 
 def pose_noise(body: RigidBody, rate_hz: float, settings: Settings) -> PoseNoise | None:
@@ -97,6 +98,8 @@ def _from_residuals(body: RigidBody, rate_hz: float, settings: Settings) -> Pose
 
 def _from_error_column(body: RigidBody, rate_hz: float, settings: Settings) -> PoseNoise | None:
     reported = None if body.reported_error is None else body.reported_error[body.tracked]
+    if reported is not None:  # what is negative, or a meter and more, is no error of a marker
+        reported = reported[(reported >= 0.0) & (reported < _LARGEST_ERROR_M)]
     square = None if reported is None else (reported / _MEAN_TO_RMS) ** 2
     return _from_square(body, square, "error column", settings)
 
