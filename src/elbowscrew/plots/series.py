@@ -24,7 +24,8 @@ def plot_theta(ax: Axes, analysis: Analysis) -> Axes:
     reach = angle_in(_NORMAL_95 * analysis.screw.angle_sd, unit)
     time_s = analysis.screw.time_s
     if np.isfinite(reach).any():
-        ax.fill_between(time_s, angle - reach, angle + reach, label="95 % interval", **style.BAND)
+        label = f"95 % interval (±{np.nanmedian(reach):.2g} {unit})"
+        ax.fill_between(time_s, angle - reach, angle + reach, label=label, **style.BAND)
     ax.plot(time_s, angle, label="measured", **style.MEASURED)
     ax.plot(time_s, angle_in(analysis.interpolated.angle, unit), label=_model_label(analysis), **style.MODELED)
     rows = analysis.keyframes.row
