@@ -347,7 +347,8 @@ def exp(half_twist: ArrayLike) -> NDArray[np.float64]:
     Returns
     -------
     ndarray, shape (..., 8)
-        Unit dual quaternions, exact to round-off down to the smallest angles.
+        Unit dual quaternions, exact to 1e-14 down to the smallest angles; towards a full turn the dual part loses
+        1/sin(theta/2), as the sine there loses the angle's digits.
 
     References
     ----------
@@ -376,7 +377,7 @@ def log(dual_quat: ArrayLike) -> NDArray[np.float64]:
 
     The angle is ``theta/2 = atan2(|v|, w)`` in [0, pi]: the sign of ``Q`` is taken as it stands, so that `-Q` is the
     motion the other way round. For the shorter one use ``canonical(Q)``. At ``w = -1`` the axis of the full turn is
-    not defined and the result is NaN; towards it the result is as ill-conditioned as the axis.
+    not defined and the result is NaN; towards it the dual part loses 1/sin(theta/2), as the axis does.
 
     Parameters
     ----------
@@ -421,7 +422,7 @@ def power(dual_quat: ArrayLike, exponent: ArrayLike) -> NDArray[np.float64]:
     Returns
     -------
     ndarray, shape (..., 8)
-        NaN at ``w = -1``, see `log`.
+        NaN at ``w = -1``; the dual part loses 1/sin(theta/2) towards a full turn, as that of `log`.
 
     References
     ----------

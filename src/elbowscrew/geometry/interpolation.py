@@ -41,6 +41,8 @@ def sclerp(start: ArrayLike, end: ArrayLike, fraction: ArrayLike, *, way: WayRou
     Returns
     -------
     ndarray, shape (..., 8)
+        Towards a full turn from start to end, where the way is ill-conditioned, the rotation loses 1/sin(theta/2) and
+        the dual part its square.
 
     Raises
     ------
