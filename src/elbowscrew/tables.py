@@ -108,6 +108,26 @@ STEP_COLUMNS: Final = (
     *_ERRORS,
 )
 
+REPETITION_COLUMNS: Final = (
+    *(_column(name, name, Quantity.INTEGER) for name in ("number", "start_frame", "inversion_frame", "end_frame")),
+    *(_column(name, name, Quantity.NUMBER) for name in ("start_time_s", "end_time_s", "duration_s")),
+    _column("theta_start", "start_angle", Quantity.ANGLE),
+    _column("theta_max", "top_angle", Quantity.ANGLE),
+    _column("theta_range", "angle_range", Quantity.ANGLE),
+    _column("slide_range", "slide_range", Quantity.LENGTH),
+    _column("flexion_speed", "flexion_speed", Quantity.ANGULAR_VELOCITY),
+    _column("extension_speed", "extension_speed", Quantity.ANGULAR_VELOCITY),
+    *_AXIS,
+    _column("axis_deviation", "axis_deviation", Quantity.ANGLE),
+)
+
+CURVE_COLUMNS: Final = (
+    _column("percent", "percent", Quantity.NUMBER),
+    _column("theta_mean", "mean", Quantity.ANGLE),
+    _column("theta_sd", "sd", Quantity.ANGLE),
+    _column("count", "count", Quantity.INTEGER),
+)
+
 ANATOMY_COLUMNS: Final = (
     _column("frame", "frame", Quantity.INTEGER),
     _column("time_s", "time_s", Quantity.NUMBER),

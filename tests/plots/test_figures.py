@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 from matplotlib.axes import Axes
+from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from elbowscrew import Analysis, Settings, analyze, plots, simulate_trial
+from elbowscrew.plots import style
 
 
 @pytest.fixture(scope="module")
@@ -33,13 +36,49 @@ def test_theta_shows_measured_modeled_and_keyframes_in_the_units_asked_for(analy
     assert ax.get_xlabel() == "Time (s)"
 
 
-def test_lost_frames_are_shaded(analysis: Analysis) -> None:
+def shaded(patches: list[Any], time_s: NDArray[np.float64]) -> NDArray[np.bool_]:
+    found = np.zeros(time_s.size, dtype=bool)
+    for patch in patches:
+        found |= (time_s > patch.get_x() - 1e-9) & (time_s < patch.get_x() + patch.get_width() + 1e-9)
+    return found
+
+
+def test_lost_frames_and_movements_are_shaded(analysis: Analysis) -> None:
+    ax = plots.plot_euler_parameter(Figure().add_subplot(), analysis, 0)
+    assert (shaded(list(ax.patches), analysis.screw.time_s) == ~analysis.screw.valid).all()
+    theta = plots.plot_theta(Figure().add_subplot(), analysis)
+    moving = [patch for patch in theta.patches if patch.get_facecolor() == to_rgba(style.MOVING["color"])]
+    assert len(moving) == analysis.phases.onset_rows.size > 0
+    assert (shaded(moving, analysis.screw.time_s) == analysis.phases.moving).all()
+
+
+def test_the_band_of_the_angle_is_its_95_percent_interval() -> None:
+    analysis = analyze(simulate_trial(frames=120, inversion=60).recording, Settings(marker_noise_mm=0.2))
     ax = plots.plot_theta(Figure().add_subplot(), analysis)
-    spans = [(patch.get_x(), patch.get_x() + patch.get_width()) for patch in ax.patches]  # type: ignore[attr-defined]
-    shaded = np.zeros(120, dtype=bool)
-    for first, last in spans:
-        shaded |= (analysis.screw.time_s > first) & (analysis.screw.time_s < last)
-    assert (shaded == ~analysis.screw.valid).all()
+    (band,) = ax.collections
+    path = np.asarray(band.get_paths()[0].vertices)
+    row = 60
+    there = path[np.abs(path[:, 0] - analysis.screw.time_s[row]) < 1e-9, 1]
+    reach = np.degrees(1.959964 * analysis.screw.angle_sd[row])
+    assert np.ptp(there) == pytest.approx(2.0 * reach)
+
+
+@pytest.mark.parametrize("single", [True, False])
+def test_the_joints_axis_is_drawn_with_its_cone_or_without(analysis: Analysis, single: bool) -> None:
+    axis = replace(analysis.joint_axis, single=single)
+    if not single:
+        axis = replace(axis, hinge=None, screw_hinge=None)
+    shown = replace(analysis, joint_axis=axis)
+    end_on = plots.plot_axis_end_on(Figure().add_subplot(), shown)
+    side = plots.plot_axis_from_the_side(Figure().add_subplot(), shown, 0)
+    assert len(end_on.patches) == (2 if single else 1)
+    labels = side.get_legend_handles_labels()[1]
+    assert ("95 % confidence of the joint axis" in labels) == single
+    assert side.get_xlabel().startswith("Along the joint axis (")
+    best = analysis.joint_axis.best
+    if single and best is not None:
+        circle: Any = end_on.patches[1]
+        assert circle.radius == pytest.approx(best.point_radius)
 
 
 def test_errors_and_euler_parameters(analysis: Analysis) -> None:

@@ -26,6 +26,7 @@ def joint_summary(analysis: Analysis) -> dict[str, Any]:
         "sara": _line(axis.sara),
         "dispersion": dispersion_summary(analysis),
         "noise": {name: _noise(noise) for name, noise in axis.noise.items()},
+        "repeatability": _repeatability(analysis),
         "anatomy": _anatomy(analysis.anatomy),
     }
 
@@ -77,6 +78,19 @@ def _line(line: LineEstimate) -> dict[str, list[float]]:
         "direction_in_forearm": line.direction_forearm.tolist(),
         "point_in_forearm_mm": (1000.0 * line.point_forearm).tolist(),
     }
+
+
+def _repeatability(analysis: Analysis) -> dict[str, Any]:
+    found = analysis.repeatability
+    figures = {
+        "icc": found.icc,
+        "cmc": found.cmc,
+        "axis_sd_deg": float(np.degrees(found.axis_sd)),
+        "point_sd_mm": 1000.0 * found.point_sd,
+        "theta_max_sd_deg": float(np.degrees(found.top_sd)),
+    }
+    known = {name: value if np.isfinite(value) else None for name, value in figures.items()}
+    return {"repetitions": int(analysis.repetitions.number.size), **known}
 
 
 def _anatomy(motion: AnatomicalMotion | None) -> dict[str, Any] | None:

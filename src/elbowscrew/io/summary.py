@@ -169,6 +169,11 @@ def _motion(analysis: Analysis) -> dict[str, Any]:
         "slide_median_mm": _statistic(np.nanmedian, slide),
         "slide_min_mm": _statistic(np.nanmin, slide),
         "slide_max_mm": _statistic(np.nanmax, slide),
+        "repetitions": int(analysis.repetitions.number.size),
+        "movements": [
+            {"onset_frame": int(screw.frame[onset]), "offset_frame": int(screw.frame[offset])}
+            for onset, offset in zip(analysis.phases.onset_rows, analysis.phases.offset_rows, strict=True)
+        ],
         "expressed_in": analysis.settings.express_in,
         "axis_frames": int((screw.axis_known & screw.valid).sum()),
         "mean_axis": {"direction": axis.direction.tolist(), "point_mm": (1000.0 * axis.point).tolist()},

@@ -17,10 +17,13 @@ _BLOCK_ROWS = 4096
 def write_tables(folder: Path, analysis: Analysis) -> None:
     """Write ``screw.csv``, ``interpolation.csv`` and what else was asked for, in the units of the settings."""
     units = analysis.settings.angle_unit, analysis.settings.length_unit
+    several = analysis.repetitions.number.size > 1
     for name, result, table in (
         ("screw", analysis.screw, tables.SCREW_COLUMNS),
         ("interpolation", analysis.interpolated, tables.INTERPOLATION_COLUMNS),
         ("instantaneous", analysis.instantaneous, tables.INSTANTANEOUS_COLUMNS),
+        ("repetitions", analysis.repetitions, tables.REPETITION_COLUMNS),
+        ("repetition_curve", analysis.repeatability if several else None, tables.CURVE_COLUMNS),
         ("steps", analysis.steps, tables.STEP_COLUMNS),
         ("anatomy", analysis.anatomy, tables.ANATOMY_COLUMNS),
     ):

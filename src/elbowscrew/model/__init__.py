@@ -16,6 +16,7 @@ from elbowscrew.model.recording import (
     marker_matches,
     out_of_reach,
 )
+from elbowscrew.model.repetitions import MovementPhases, Repeatability, Repetitions
 from elbowscrew.model.results import (
     Analysis,
     BodyPoints,
@@ -44,9 +45,12 @@ __all__ = [
     "LineEstimate",
     "Marker",
     "MeanAxis",
+    "MovementPhases",
     "PoseNoise",
     "QualityWarning",
     "Recording",
+    "Repeatability",
+    "Repetitions",
     "RigidBody",
     "ScrewMotion",
     "Source",

@@ -15,6 +15,7 @@ from elbowscrew.model.brief import Brief
 from elbowscrew.model.joint_axis import JointAxis
 from elbowscrew.model.quality import BodyQuality
 from elbowscrew.model.recording import QualityWarning, Recording, RigidBody
+from elbowscrew.model.repetitions import MovementPhases, Repeatability, Repetitions
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -240,6 +241,9 @@ class Analysis(Brief):
     instantaneous : InstantaneousMotion
     steps : HelicalSteps or None
         None if none were asked for.
+    phases : MovementPhases
+    repetitions : Repetitions
+    repeatability : Repeatability
     anatomy : AnatomicalMotion or None
         None without landmarks.
     keyframes : Keyframes
@@ -262,6 +266,9 @@ class Analysis(Brief):
     joint_axis: JointAxis
     instantaneous: InstantaneousMotion
     steps: HelicalSteps | None
+    phases: MovementPhases
+    repetitions: Repetitions
+    repeatability: Repeatability
     anatomy: AnatomicalMotion | None
     keyframes: Keyframes
     interpolated: InterpolatedMotion

@@ -34,7 +34,9 @@ from elbowscrew.motion.keyframes import choose_rows, keyframes_at
 from elbowscrew.motion.laws import LAWS
 from elbowscrew.motion.measurement import Measurement, measure
 from elbowscrew.motion.modeling import METHODS, ModeledPoses, model_motion
+from elbowscrew.motion.phases import find_cycles, movement_phases
 from elbowscrew.motion.relative import expressed
+from elbowscrew.motion.repetitions import repeatability_of, repetitions_of
 from elbowscrew.settings import Settings
 
 Float = NDArray[np.float64]
@@ -99,6 +101,16 @@ def analyze(recording: Recording, settings: Settings | None = None, *, landmarks
     points = _body_points(measured.forearm, wanted)
     axes = find_axes(measured, wanted)
     warnings = measured.warnings + _keyframe_warnings(keyframes, inversion_row, joint, modeled) + axes.warnings
+    velocity, near = axes.instantaneous.angular_velocity, pose_from_dual_quat(measured.change)[1]
+    phases = movement_phases(velocity, elapsed)
+    cycles = find_cycles(screw.angle, phases)
+    repetitions = repetitions_of(cycles, screw, measured.line, velocity, elapsed, near)
+    if len(cycles) > 1 and wanted.keyframes is None:
+        message = (
+            f"the motion repeats {len(cycles)} times, and one model through start, inversion and end describes none of "
+            "them; give --keyframes of one repetition (repetitions.csv has their frames)"
+        )
+        warnings += (QualityWarning(code="several-repetitions", message=message),)
     anatomy = None
     if landmarks is not None:
         anatomy, doubts = anatomical_motion(
@@ -122,6 +134,9 @@ def analyze(recording: Recording, settings: Settings | None = None, *, landmarks
         joint_axis=axes.joint,
         instantaneous=axes.instantaneous,
         steps=axes.steps,
+        phases=phases,
+        repetitions=repetitions,
+        repeatability=repeatability_of(cycles, repetitions, screw.angle, elapsed, near),
         anatomy=anatomy,
         keyframes=keyframes,
         interpolated=_compared(modeled, measured, keyframes, points, wanted),

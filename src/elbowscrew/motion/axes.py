@@ -21,7 +21,8 @@ from elbowscrew.settings import Settings
 Float = NDArray[np.float64]
 
 _LARGE_NOISE_RATIO: Final = 2.0
-# What the field filters at, for recordings too short for residual analysis; lower only where the rate asks for it.
+# What the field filters at: the highest cut-off, as residual analysis takes noise that is not white for motion, and
+# the one of recordings too short for it; lower where the rate asks for it.
 _TWIST_HZ: Final = 6.0
 _LARGEST_SHARE: Final = 0.4
 
@@ -70,6 +71,7 @@ def _instantaneous(measured: Measurement, mean: MeanAxis, settings: Settings) ->
     if smoothing.cutoff_hz is None:
         try:
             smoothing = smoothing.automatic(measured.arm, measured.forearm, settings)
+            smoothing = smoothing._replace(cutoff_hz=min(smoothing.cutoff_hz or _TWIST_HZ, _TWIST_HZ))
         except SettingError:  # too few frames to tell motion from noise
             smoothing = smoothing._replace(cutoff_hz=min(_TWIST_HZ, _LARGEST_SHARE * smoothing.rate_hz))
         arm, forearm = smoothing.apply(measured.arm, measured.forearm)

@@ -2,6 +2,7 @@
 
 from elbowscrew.plots.axis import plot_axes_in_space, plot_axis_directions, plot_axis_places
 from elbowscrew.plots.figures import FIGURES
+from elbowscrew.plots.joint import plot_axis_end_on, plot_axis_from_the_side, plot_joint_axis_in_space
 from elbowscrew.plots.series import plot_angle_error, plot_euler_parameter, plot_rms_displacement, plot_theta
 
 __all__ = [
@@ -9,8 +10,11 @@ __all__ = [
     "plot_angle_error",
     "plot_axes_in_space",
     "plot_axis_directions",
+    "plot_axis_end_on",
+    "plot_axis_from_the_side",
     "plot_axis_places",
     "plot_euler_parameter",
+    "plot_joint_axis_in_space",
     "plot_rms_displacement",
     "plot_theta",
 ]

@@ -18,7 +18,7 @@ def theta_figure(analysis: Analysis) -> Figure:
     """Make the figure of measured and modeled angle over time with keyframes."""
     figure = style.new_figure(_WIDTH_MM, 80.0)
     ax = series.plot_theta(figure.add_subplot(), analysis)
-    figure.legend(*ax.get_legend_handles_labels(), loc="outside upper center", ncols=5)
+    figure.legend(*ax.get_legend_handles_labels(), loc="outside upper center", ncols=4)
     return figure
 
 

@@ -30,6 +30,7 @@ def plot_theta(ax: Axes, analysis: Analysis) -> Axes:
     ax.plot(time_s, angle_in(analysis.interpolated.angle, unit), label=_model_label(analysis), **style.MODELED)
     rows = analysis.keyframes.row
     ax.plot(time_s[rows], angle[rows], label="keyframes", **style.KEYFRAME)
+    mark_movements(ax, analysis)
     mark_tracking(ax, analysis)
     ax.set_ylabel(f"Angle θ ({unit})")
     return _over_time(ax, time_s)
@@ -77,6 +78,15 @@ def mark_tracking(ax: Axes, analysis: Analysis) -> Axes:
         for k, (first, last) in enumerate(_runs(mask)):
             span: dict[str, Any] = {**look, "label": label if k == 0 else None}
             ax.axvspan(screw.time_s[first] - half, screw.time_s[last] + half, **span)
+    return ax
+
+
+def mark_movements(ax: Axes, analysis: Analysis) -> Axes:
+    """Shade the movements between rests."""
+    time_s, phases = analysis.screw.time_s, analysis.phases
+    for k, (onset, offset) in enumerate(zip(phases.onset_rows, phases.offset_rows, strict=True)):
+        label = "moving" if k == 0 else None
+        ax.axvspan(time_s[onset], time_s[offset], label=label, **style.MOVING)
     return ax
 
 

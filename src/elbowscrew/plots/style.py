@@ -17,6 +17,7 @@ KEYFRAME: Final[dict[str, Any]] = {
     "color": "#0072B2", "marker": "o", "markersize": 5.5, "linestyle": "none", "markerfacecolor": "white",
     "markeredgewidth": 1.3, "zorder": 5, "clip_on": False,
 }  # fmt: skip
+MOVING: Final[dict[str, Any]] = {"color": "#E6EFF8", "linewidth": 0.0, "zorder": -1}
 LOST: Final[dict[str, Any]] = {"color": "#DDDDDD", "linewidth": 0.0, "zorder": 0}
 FILLED: Final[dict[str, Any]] = {
     "facecolor": "none", "edgecolor": "#888888", "hatch": "//////", "linewidth": 0.0, "zorder": 0,

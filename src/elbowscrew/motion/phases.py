@@ -1,0 +1,137 @@
+"""When the joint moves and when it rests, and its flexion-extension cycles."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowscrew.model import MovementPhases
+
+Float = NDArray[np.float64]
+Bool = NDArray[np.bool_]
+
+# Movement is what exceeds this share of the highest speed (the 99th percentile: a spike is no speed).
+_SPEED_SHARE: Final = 0.05
+_HIGHEST_PERCENT: Final = 99.0
+_SHORTEST_REST_S: Final = 0.25
+_SHORTEST_MOVE_S: Final = 0.1
+# A cycle rises and falls by this share of the whole range, and by so many degrees at least.
+_PROMINENCE_SHARE: Final = 0.3
+_LEAST_PROMINENCE: Final = float(np.radians(5.0))
+# A rest belongs to the foot of a cycle within this share of its rise.
+_FOOT_SHARE: Final = 0.1
+
+
+def movement_phases(angular_velocity: Float, elapsed: Float) -> MovementPhases:
+    """Find the movements between rests: where the speed is over 5 % of its highest.
+
+    Parameters
+    ----------
+    angular_velocity : ndarray, shape (N,)
+        Of filtered poses, rad/s; NaN where it is not known, which counts as the next frame where it is.
+    elapsed : ndarray, shape (N,)
+        Seconds.
+
+    Returns
+    -------
+    MovementPhases
+        Rests shorter than 0.25 s, as at an inversion, and then movements shorter than 0.1 s are no such.
+    """
+    count = angular_velocity.size
+    known = np.flatnonzero(np.isfinite(angular_velocity))
+    if not known.size:
+        none = np.empty(0, dtype=np.int64)
+        return MovementPhases(onset_rows=none, offset_rows=none, moving=np.zeros(count, dtype=np.bool_), threshold=0.0)
+    speed = np.abs(angular_velocity)
+    threshold = _SPEED_SHARE * float(np.percentile(speed[known], _HIGHEST_PERCENT))
+    moving = speed[known[np.searchsorted(known, np.arange(count)).clip(0, known.size - 1)]] > threshold
+    moving = ~_without_short(~moving, elapsed, _SHORTEST_REST_S)
+    moving = _without_short(moving, elapsed, _SHORTEST_MOVE_S)
+    first, last = _runs(moving)
+    return MovementPhases(onset_rows=first, offset_rows=last, moving=moving, threshold=threshold)
+
+
+def find_cycles(angle: Float, phases: MovementPhases) -> NDArray[np.int64]:
+    """Find the flexion-extension cycles: peaks that rise and fall by 30 % of the whole range, and 5 deg at least.
+
+    Parameters
+    ----------
+    angle : ndarray, shape (N,)
+        Continuous, radians; NaN in gaps.
+    phases : MovementPhases
+        Where a rest lies at the foot of a cycle, the cycle begins when it ends, and ends when it begins.
+
+    Returns
+    -------
+    ndarray of int64, shape (R, 3)
+        Rows of start, inversion (the largest angle) and end. A movement that does not return is no cycle.
+    """
+    known = np.flatnonzero(np.isfinite(angle))
+    if known.size < 3:
+        return np.empty((0, 3), dtype=np.int64)
+    series = angle[known]
+    prominence = max(_PROMINENCE_SHARE * float(np.ptp(series)), _LEAST_PROMINENCE)
+    turns = turning_points(series, prominence)
+    tops = turns[1:-1][series[turns[1:-1]] > series[turns[:-2]]] if turns.size > 2 else np.empty(0, dtype=np.int64)
+    resting = ~phases.moving[known]
+    cycles = []
+    for top in tops.tolist():
+        place = int(np.searchsorted(turns, top))
+        start = _foot(series, resting, int(turns[place - 1]), top)
+        end = _foot(series, resting, int(turns[place + 1]), top)
+        cycles.append((known[start], known[top], known[end]))
+    return np.array(cycles, dtype=np.int64).reshape(-1, 3)
+
+
+def turning_points(series: Float, swing: float) -> NDArray[np.int64]:
+    """Extrema between which a series (N,) swings by at least so much, lows and highs in turn, its ends among them.
+
+    Every high found is a peak of at least that prominence, and every low one of the series upside down.
+    """
+    bends = np.flatnonzero(np.diff(np.sign(np.diff(series)))) + 1
+    candidates = np.concatenate([[0], bends, [series.size - 1]])
+    values = series[candidates]
+    low = high = 0
+    sense = 0
+    found: list[int] = []
+    for k, value in enumerate(values.tolist()):  # over the extrema, not over the frames
+        low, high = (k if value < values[low] else low), (k if value > values[high] else high)
+        if sense >= 0 and value <= values[high] - swing:
+            found.append(high)
+            low = high = k
+            sense = -1
+        elif sense <= 0 and value >= values[low] + swing:
+            found.append(low)
+            low = high = k
+            sense = 1
+    last = high if sense > 0 else low
+    if found and last not in found:
+        found.append(last)
+    return np.asarray(candidates[found], dtype=np.int64)
+
+
+def _foot(series: Float, resting: Bool, low: int, top: int) -> int:
+    """Row between a low and a top at which the joint last rests near the low; the low itself if it does not."""
+    rows = np.arange(low, top) if low < top else np.arange(low, top, -1)
+    near = series[rows] <= series[low] + _FOOT_SHARE * (series[top] - series[low])
+    rests = np.flatnonzero(resting[rows] & near)
+    return int(rows[rests[-1]]) if rests.size else low
+
+
+def _runs(mask: Bool) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """First and last row of every run of True."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], mask, [False]]).astype(np.int8)))
+    return edges[::2].astype(np.int64), edges[1::2].astype(np.int64) - 1
+
+
+def _without_short(mask: Bool, elapsed: Float, shortest: float) -> Bool:
+    """Take out runs of True that last less than `shortest` seconds, but for those at the ends of the recording."""
+    first, last = _runs(mask)
+    inner = (first > 0) & (last < mask.size - 1)
+    short = inner & (elapsed[last] - elapsed[first] < shortest)
+    kept = mask.copy()
+    for begin, end in zip(first[short], last[short], strict=True):
+        kept[begin : end + 1] = False
+    return kept
