@@ -75,3 +75,12 @@ def test_cut_offs_as_they_are_given() -> None:
         analyzed(lowpass_hz=80.0)
     with pytest.raises(SettingError, match="--resample"):
         analyzed(resample_hz=0.01)
+
+
+@pytest.mark.parametrize("rate_hz", [0.5, 8.0, 1e6])
+def test_no_rate_is_too_low_or_too_high_for_the_instantaneous_axis(rate_hz: float) -> None:
+    found = analyze(
+        simulate_trial(frames=60, inversion=30, rate_hz=rate_hz).recording,
+        Settings(max_turn_deg_s=1e12, max_speed_m_s=1e9),
+    ).instantaneous
+    assert 0.0 < found.lowpass_hz < 0.5 * rate_hz

@@ -24,7 +24,7 @@ _LARGE_NOISE_RATIO: Final = 2.0
 # What the field filters at: the highest cut-off, as residual analysis takes noise that is not white for motion, and
 # the one of recordings too short for it; lower where the rate asks for it.
 _TWIST_HZ: Final = 6.0
-_LARGEST_SHARE: Final = 0.4
+_POSSIBLE_SHARES: Final = (1e-3, 0.4)
 
 
 class Axes(NamedTuple):
@@ -70,10 +70,11 @@ def _instantaneous(measured: Measurement, mean: MeanAxis, settings: Settings) ->
     D, smoothing = measured.displacement, measured.smoothing
     if smoothing.cutoff_hz is None:
         try:
-            smoothing = smoothing.automatic(measured.arm, measured.forearm, settings)
-            smoothing = smoothing._replace(cutoff_hz=min(smoothing.cutoff_hz or _TWIST_HZ, _TWIST_HZ))
+            found = smoothing.automatic(measured.arm, measured.forearm, settings).cutoff_hz or _TWIST_HZ
         except SettingError:  # too few frames to tell motion from noise
-            smoothing = smoothing._replace(cutoff_hz=min(_TWIST_HZ, _LARGEST_SHARE * smoothing.rate_hz))
+            found = _TWIST_HZ
+        low, high = (share * smoothing.rate_hz for share in _POSSIBLE_SHARES)
+        smoothing = smoothing._replace(cutoff_hz=float(np.clip(min(found, _TWIST_HZ), low, high)))
         arm, forearm = smoothing.apply(measured.arm, measured.forearm)
         arm_pose = IDENTITY if arm is None else arm.dual_quat_lab_body
         D = multiply(conjugate(measured.joint.reference), multiply(conjugate(arm_pose), forearm.dual_quat_lab_body))
