@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from trials import ARM, FOREARM, SIGMA
 
 from elbowscrew import Analysis, RigidBody, Settings, analyze, simulate_trial
-from elbowscrew.errors import SettingError, UsageError
+from elbowscrew.errors import AnalysisError, SettingError, UsageError
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry import pose_from_points
 from elbowscrew.motion.pose_noise import covariance_from_markers, pose_noise
@@ -128,6 +128,8 @@ def test_the_least_angle_can_be_a_precision() -> None:
     assert np.nanmax(screw.axis_sd) <= np.radians(0.5)
     coarse = analyzed(axis_sd_deg=5.0).screw
     assert coarse.axis_known.sum() > screw.axis_known.sum()
+    with pytest.raises(AnalysisError, match=r"no axis is known to the 0\.001 deg .* the best one is known to 0\.1"):
+        analyzed(axis_sd_deg=0.001)
     assert settings_from(options={"axis_sd": "2deg"}).axis_sd_deg == 2.0
     assert settings_from(options={"axis_sd": "0.1rad"}).axis_sd_deg == pytest.approx(np.degrees(0.1))
     with pytest.raises(UsageError, match="2deg"):

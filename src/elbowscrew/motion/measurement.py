@@ -200,11 +200,18 @@ def _measured_series(
     series.line[unsure], series.slide[unsure] = np.nan, np.nan
     peak = int(np.nanargmax(np.abs(series.angle)))
     if not np.isfinite(series.line[joint.measured]).any():
-        needed = "the --axis-sd asked for" if settings.axis_sd_deg else f"{settings.min_angle_deg:g} deg"
-        msg = (
-            f"the largest rotation since the reference is {np.degrees(abs(series.angle[peak])):.3g} deg, less than the "
-            f"{needed} an axis needs: no rotation to analyze (--min-angle sets the limit)"
-        )
+        found = f"the largest rotation since the reference is {np.degrees(abs(series.angle[peak])):.3g} deg"
+        if settings.axis_sd_deg is None:
+            msg = (
+                f"{found}, less than the {settings.min_angle_deg:g} deg an axis needs: no rotation to analyze "
+                "(--min-angle sets the limit)"
+            )
+        else:
+            best = np.degrees(np.nanmin(errors.axis, initial=np.inf))
+            msg = (
+                f"{found}, and no axis is known to the {settings.axis_sd_deg:g} deg of --axis-sd: the best one is known "
+                f"to {best:.3g} deg; ask for less, or give --min-angle"
+            )
         raise AnalysisError(msg)
     series = series.reversed() if series.angle[peak] < 0.0 else series
     return series, known_errors(errors, series.angle, np.isfinite(series.slide))
