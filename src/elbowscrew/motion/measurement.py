@@ -209,7 +209,7 @@ def _measured_series(
         else:
             best = np.degrees(np.nanmin(errors.axis, initial=np.inf))
             msg = (
-                f"{found}, and no axis is known to the {settings.axis_sd_deg:g} deg of --axis-sd: the best one is known "
+                f"{found}, and no axis is known to the {settings.axis_sd_deg:g} deg of --axis-sd: the best is known "
                 f"to {best:.3g} deg; ask for less, or give --min-angle"
             )
         raise AnalysisError(msg)
