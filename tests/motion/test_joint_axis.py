@@ -130,3 +130,17 @@ def test_residuals_that_go_together_widen_the_interval() -> None:
     assert fits[1].correlation > 20
     spread = [np.sqrt(np.trace(fit.covariance(noise_known=True)[:2, :2])) for fit in fits]
     assert spread[1] > 10 * spread[0]
+
+
+def test_a_few_frames_tell_of_no_noise() -> None:
+    angle = np.radians([0.0, 60.0])
+    body = RigidBody(name="b", dual_quat_lab_body=joint_poses(angle, 0 * angle), loss=np.zeros(2, dtype=np.uint8))
+    recording = Recording.from_bodies([body], rate_hz=100)
+    wide = {"max_turn_deg_s": 1e9, "max_speed_m_s": 1e6}
+    best = analyze(recording, Settings(**wide)).joint_axis.best
+    assert best is not None
+    assert np.isnan([best.axis_sd, best.axis_cone, best.point_sd, best.point_radius]).all()
+    stated = analyze(recording, Settings(marker_noise_mm=0.2, **wide))
+    assert stated.joint_axis.best is not None
+    # Two poses determine their own screw; that a hinge has no slide tells a little more.
+    assert 0.7 < stated.joint_axis.best.axis_sd / stated.screw.axis_sd[1] < 1.0

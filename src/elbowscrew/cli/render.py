@@ -197,10 +197,13 @@ def _joint_axis(motion: Mapping[str, Any]) -> str:
     axis = motion["joint_axis"]
     if axis is None:
         return "none: the motion has no single axis"
+    model = axis["model"].replace("_", "-")
+    direction, point = _vector(axis["direction"], 4), _vector(axis["point_mm"], 1)
+    if axis["axis_cone95_deg"] is None:
+        return f"direction ({direction}), point ({point}) mm ({model}; interval not known)"
     return (
-        f"direction ({_vector(axis['direction'], 4)}) within {axis['axis_cone95_deg']:.2g} deg, "
-        f"point ({_vector(axis['point_mm'], 1)}) within {axis['point_radius95_mm']:.2g} mm "
-        f"({axis['model'].replace('_', '-')}, 95 %)"
+        f"direction ({direction}) within {axis['axis_cone95_deg']:.2g} deg, point ({point}) within "
+        f"{axis['point_radius95_mm']:.2g} mm ({model}, 95 %)"
     )
 
 

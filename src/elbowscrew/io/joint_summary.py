@@ -52,8 +52,7 @@ def dispersion_summary(analysis: Analysis) -> dict[str, float | None]:
 def _fitted(fit: FittedJoint | None) -> dict[str, Any] | None:
     if fit is None:
         return None
-    return {
-        **_line(fit.line),
+    figures = {
         "axis_sd_deg": float(np.degrees(fit.axis_sd)),
         "axis_cone95_deg": float(np.degrees(fit.axis_cone)),
         "point_sd_mm": 1000.0 * fit.point_sd,
@@ -62,11 +61,12 @@ def _fitted(fit: FittedJoint | None) -> dict[str, Any] | None:
         "pitch_sd_mm_per_rad": 1000.0 * fit.pitch_sd,
         "residual_rotation_deg": float(np.degrees(fit.residual_rotation)),
         "residual_translation_mm": 1000.0 * fit.residual_translation,
-        "noise_ratio": fit.noise_ratio if np.isfinite(fit.noise_ratio) else None,
+        "noise_ratio": fit.noise_ratio,
         "frames": int(fit.used.size),
         "frames_that_count_as_one": fit.correlation,
         "outlier_share": float(np.mean(fit.weight < 0.5)),
     }
+    return {**_line(fit.line), **{name: value if np.isfinite(value) else None for name, value in figures.items()}}
 
 
 def _line(line: LineEstimate) -> dict[str, list[float]]:

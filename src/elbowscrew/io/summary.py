@@ -194,10 +194,14 @@ def _joint_axis(axis: JointAxis) -> dict[str, Any] | None:
         "model": axis.preferred,
         "direction": axis.best.line.direction.tolist(),
         "point_mm": (1000.0 * axis.best.line.point).tolist(),
-        "axis_cone95_deg": float(np.degrees(axis.best.axis_cone)),
-        "point_radius95_mm": 1000.0 * axis.best.point_radius,
+        "axis_cone95_deg": _known(np.degrees(axis.best.axis_cone)),
+        "point_radius95_mm": _known(1000.0 * axis.best.point_radius),
         "pitch_mm_per_rad": 1000.0 * axis.best.pitch,
     }
+
+
+def _known(value: float) -> float | None:
+    return float(value) if np.isfinite(value) else None
 
 
 def _interpolation(analysis: Analysis) -> dict[str, Any]:

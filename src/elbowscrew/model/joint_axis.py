@@ -68,7 +68,8 @@ class FittedJoint(Brief):
     axis_sd, point_sd : float
         Of the line as expressed: direction (rad) and place at the point nearest the forearm (m), both components.
     axis_cone, point_radius : float
-        Half-angle (rad) and radius (m) that hold 95 %.
+        Half-angle (rad) and radius (m) that hold 95 %; as the standard deviations, NaN where they are not known: the
+        frames are too few to tell, or do not determine the line.
     pitch, pitch_sd : float
         Slide for each radian (m/rad); 0 for a hinge.
     residual_rotation, residual_translation : float

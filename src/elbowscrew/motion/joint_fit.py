@@ -29,6 +29,9 @@ _ROBUST_ROUNDS: Final = 30
 _FREEDOM: Final = 5
 _MEDIAN_SQUARE: Final = 4.351
 _TUKEY: Final = 6.10
+# Fewer degrees of freedom do not tell of a noise that nobody states; less information is round-off.
+_LEAST_FREEDOM: Final = 20.0
+_LEAST_INFORMATION: Final = 1e-13
 _SHARED_HINGE: Final = (0, 1, 3, 4)  # tilts about x and y, shifts along x and y
 
 
@@ -49,6 +52,8 @@ class LineFit(NamedTuple):
         Inverse of the covariance of the shared parameters under the stated noise.
     noise_ratio, correlation : float
         Whitened RMS of the residuals, and the number of frames that count as one.
+    freedom : float
+        Degrees of freedom that the residuals have.
     """
 
     arm: Float
@@ -60,14 +65,23 @@ class LineFit(NamedTuple):
     information: Float
     noise_ratio: float
     correlation: float
+    freedom: float
 
     def covariance(self, *, noise_known: bool) -> Float:
         """Covariance of the shared parameters, shape (P, P).
 
         That of the stated noise; larger where the residuals are larger or go together from frame to frame. Where the
-        noise is not known, the residuals alone tell of it.
+        noise is not known, the residuals alone tell of it. NaN where the frames do not determine the line, or are too
+        few to tell of the noise.
         """
-        inverse: Float = np.asarray(np.linalg.inv(self.information), dtype=np.float64)
+        scale = np.sqrt(np.maximum(np.diag(self.information), 0.0))
+        told = noise_known or self.freedom >= _LEAST_FREEDOM
+        if not told or not (scale > 0.0).all():
+            return np.full(self.information.shape, np.nan)
+        values, vectors = np.linalg.eigh(self.information / np.outer(scale, scale))
+        if values[0] < _LEAST_INFORMATION:
+            return np.full(self.information.shape, np.nan)
+        inverse: Float = (vectors / values) @ vectors.T / np.outer(scale, scale)
         least = 1.0 if noise_known else 0.0
         return inverse * max(self.noise_ratio, least) ** 2 * self.correlation
 
@@ -232,7 +246,7 @@ def _result(at: _Step, joint: Float, W: Float, weight: Float, screw: bool) -> Li
     W_line = _weights_in_line(at, W)
     square = np.einsum("fi,fij,fj->f", residual, W_line, residual)
     count = weight.sum()
-    freedom = max(_FREEDOM * count - len(information), 1.0)
+    freedom = float(_FREEDOM * count - len(information))
     in_forearm = residual @ adjoint(at.forearm).T
     whitened = np.einsum("fji,fj->fi", np.linalg.cholesky(W), in_forearm) * np.sqrt(weight)[:, None]
     return LineFit(
@@ -243,8 +257,9 @@ def _result(at: _Step, joint: Float, W: Float, weight: Float, screw: bool) -> Li
         residual=residual,
         weight=weight,
         information=information,
-        noise_ratio=float(np.sqrt((weight * square).sum() / freedom)),
+        noise_ratio=float(np.sqrt((weight * square).sum() / max(freedom, 1.0))),
         correlation=_integrated_autocorrelation(whitened),
+        freedom=freedom,
     )
 
 

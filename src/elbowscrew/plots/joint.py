@@ -127,9 +127,11 @@ def confidence_text(analysis: Analysis) -> str:
     best = analysis.joint_axis.best
     if best is None:
         return "the motion has no single axis: weighted mean of the frames' axes"
+    model = str(analysis.joint_axis.preferred).replace("_", "-")
+    if not np.isfinite(best.axis_cone):
+        return f"{model}; its confidence is not known"
     angle = angle_in(np.array(best.axis_cone), analysis.settings.angle_unit)
     radius = length_in(np.array(best.point_radius), analysis.settings.length_unit)
-    model = str(analysis.joint_axis.preferred).replace("_", "-")
     return (
         f"{model}; 95 % confidence: {angle:.2g} {analysis.settings.angle_unit}, "
         f"{radius:.2g} {analysis.settings.length_unit}"
