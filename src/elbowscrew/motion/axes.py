@@ -15,6 +15,7 @@ from elbowscrew.motion.instantaneous import instantaneous_motion
 from elbowscrew.motion.joint_axis import estimate_joint_axis, forearm_line
 from elbowscrew.motion.mean_axis import mean_axis_of
 from elbowscrew.motion.measurement import Measurement
+from elbowscrew.motion.pose_noise import STILL_STRETCH
 from elbowscrew.motion.relative import IDENTITY
 from elbowscrew.settings import Settings
 
@@ -126,4 +127,11 @@ def _axis_warnings(joint_axis: JointAxis, measured: Measurement) -> tuple[Qualit
             "is no perfect hinge, or the markers move on the skin; the joint axis' interval is that of the residuals"
         )
         warnings.append(QualityWarning(code="beyond-noise", message=message, severity="note"))
+    still = [noise for noise in measured.noise[:2] if noise is not None and noise.source == STILL_STRETCH]
+    if still:
+        message = (
+            "error bars stand on the jitter of a still stretch, which moving bodies mostly exceed many times; "
+            "--marker-noise MM states more"
+        )
+        warnings.append(QualityWarning(code="noise-from-jitter", message=message))
     return tuple(warnings)

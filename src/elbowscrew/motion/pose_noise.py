@@ -16,6 +16,9 @@ Float = NDArray[np.float64]
 
 # A mean distance in space is this much less than the RMS one, for a normal error.
 _MEAN_TO_RMS: Final = float(np.sqrt(8.0 / (3.0 * np.pi)))
+STILL_STRETCH: Final = "still stretch"
+"""Name of the source that tells of jitter only."""
+
 _ASSUMED_MARKERS: Final = 4
 _STILL_S: Final = 0.5
 _FEWEST_STILL_FRAMES: Final = 20
@@ -34,7 +37,8 @@ def pose_noise(body: RigidBody, rate_hz: float, settings: Settings) -> PoseNoise
     rate_hz : float
     settings : Settings
         ``marker_noise_mm`` is the user's word and the strongest; else ``noise`` says the source. By itself it is the
-        residuals of the markers, then a still stretch of the take, then the error column of the file.
+        residuals of the markers, then the error column of the file, then a still stretch of the take, which tells of
+        jitter only (``docs/joint-axis.md``).
 
     Returns
     -------
@@ -43,7 +47,7 @@ def pose_noise(body: RigidBody, rate_hz: float, settings: Settings) -> PoseNoise
     """
     if settings.marker_noise_mm is not None:
         return _from_marker_noise(body, settings.marker_noise_mm / 1000.0, "option", settings)
-    sources = {"residuals": _from_residuals, "still": _from_still_stretch, "error-column": _from_error_column}
+    sources = {"residuals": _from_residuals, "error-column": _from_error_column, "still": _from_still_stretch}
     chosen = sources if settings.noise == "auto" else [name for name in sources if name == settings.noise]
     for name in chosen:
         found = sources[name](body, rate_hz, settings)
@@ -147,7 +151,7 @@ def _from_still_stretch(body: RigidBody, rate_hz: float, settings: Settings) -> 
     like = still & (size <= 2.0 * size[still].min())
     rest = rest[like].reshape(-1, 6)
     covariance = rest.T @ rest / (len(rest) * (1.0 - 2.0 / frames))
-    return PoseNoise(covariance=covariance, source="still stretch", marker_noise=None)
+    return PoseNoise(covariance=covariance, source=STILL_STRETCH, marker_noise=None)
 
 
 def _fix_a_pose(offsets: Float) -> bool:
