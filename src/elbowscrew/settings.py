@@ -82,7 +82,7 @@ class Settings(BaseModel):
         Interpolation of poses.
     blend : {"piecewise", "global"}
         Phase by phase, or all poses at once.
-    law : {"cycloidal", "linear"}
+    law : str
         Law of motion in each phase.
     knots : {"law", "chord", "uniform", "angle"}
         Parameter of the keyframes.
@@ -144,7 +144,9 @@ class Settings(BaseModel):
     keyframes: tuple[int, ...] | None = Field(None, min_length=2, description="Frames the model passes through")
     method: Literal["dlb", "sclerp", "sdlb", "dib", "catmull-rom"] = Field("dlb", description="Interpolation of poses")
     blend: Literal["piecewise", "global"] = Field("piecewise", description="Phase by phase, or all poses at once")
-    law: Literal["cycloidal", "linear"] = Field("cycloidal", description="Law of motion in each phase")
+    law: Literal[
+        "cycloidal", "linear", "harmonic", "polynomial-345", "polynomial-4567", "modified-trapezoid", "modified-sine"
+    ] = Field("cycloidal", description="Law of motion in each phase")
     knots: Literal["law", "chord", "uniform", "angle"] = Field("law", description="Parameter of the keyframes")
     radius_mm: float | None = Field(
         None, gt=0, le=1e5, description="Radius of gyration of the forearm's points; default: its markers, else 50 mm"

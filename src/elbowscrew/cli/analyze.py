@@ -172,7 +172,16 @@ def analyze(
         typer.Option(rich_help_panel=_MODEL, help="Phase by phase, or all poses at once.", show_default="piecewise"),
     ] = None,
     law: Annotated[
-        Literal["cycloidal", "linear"] | None,
+        Literal[
+            "cycloidal",
+            "linear",
+            "harmonic",
+            "polynomial-345",
+            "polynomial-4567",
+            "modified-trapezoid",
+            "modified-sine",
+        ]
+        | None,
         typer.Option(rich_help_panel=_MODEL, help="Law of motion.", show_default="cycloidal"),
     ] = None,
     knots: Annotated[

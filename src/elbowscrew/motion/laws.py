@@ -1,32 +1,178 @@
-"""Laws of motion: how far the motion is, t in [0, 1], at the time tau in [0, 1] of a phase."""
+"""Laws of motion: how far the motion is, t in [0, 1], at the time tau in [0, 1] of a phase, and its derivatives."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
+from numpy.polynomial import Polynomial
 from numpy.typing import ArrayLike, NDArray
 
-Law = Callable[[ArrayLike], NDArray[np.float64]]
+Float = NDArray[np.float64]
+_Function = Callable[[Float], Float]
 
 
-def cycloidal(tau: ArrayLike) -> NDArray[np.float64]:
-    """``t = tau - sin(2 pi tau) / (2 pi)``, shape of tau: rest to rest without a jump in acceleration (P 36).
+class Law(NamedTuple):
+    """A law from rest to rest (but for the linear one), symmetric about tau = 1/2; called, it gives t.
 
-    Examples
-    --------
-    >>> cycloidal([0.0, 0.25, 0.5, 1.0]).round(6)
-    array([0.      , 0.090845, 0.5     , 1.      ])
+    Attributes
+    ----------
+    position, velocity, acceleration, jerk : callable
+        Functions of tau, shape (...), giving t and its derivatives by tau, shape (...), in closed form. Where a
+        derivative jumps they give the value after the jump, at tau = 1 the one before.
     """
-    x = np.asarray(tau, dtype=np.float64)
-    return x - np.sin(2.0 * np.pi * x) / (2.0 * np.pi)
+
+    position: _Function
+    velocity: _Function
+    acceleration: _Function
+    jerk: _Function
+
+    def __call__(self, tau: ArrayLike) -> Float:
+        """Share of the motion, shape (...), at tau."""
+        return self.position(np.asarray(tau, dtype=np.float64))
 
 
-def linear(tau: ArrayLike) -> NDArray[np.float64]:
-    """``t = tau``: constant speed."""
-    return np.array(tau, dtype=np.float64)
+def _cycloidal() -> Law:
+    w = 2.0 * np.pi
+    return Law(
+        lambda x: x - np.sin(w * x) / w,
+        lambda x: 1.0 - np.cos(w * x),
+        lambda x: w * np.sin(w * x),
+        lambda x: w**2 * np.cos(w * x),
+    )
 
 
-LAWS: Final[dict[str, Law]] = {"cycloidal": cycloidal, "linear": linear}
-"""A new law is one function above and one entry here (and its name in `Settings.law`)."""
+def _harmonic() -> Law:
+    w = np.pi
+    return Law(
+        lambda x: 0.5 * (1.0 - np.cos(w * x)),
+        lambda x: 0.5 * w * np.sin(w * x),
+        lambda x: 0.5 * w**2 * np.cos(w * x),
+        lambda x: -0.5 * w**3 * np.sin(w * x),
+    )
+
+
+def _polynomial(*coefficients: float) -> Law:
+    p = Polynomial(coefficients)
+    return Law(*(_evaluated(p.deriv(k)) for k in range(4)))
+
+
+def _evaluated(p: Polynomial) -> _Function:
+    return lambda x: np.asarray(p(x), dtype=np.float64) + np.zeros(x.shape)
+
+
+def _modified_sine() -> Law:
+    """Quarter waves of the acceleration: a fast one at either end, a slow half wave between (Neklutin; Norton 2009)."""
+    peak = 4.0 * np.pi**2 / (np.pi + 4.0)
+
+    def acceleration(x: Float) -> Float:
+        slow = np.cos(4.0 * np.pi / 3.0 * (x - 0.125))
+        return peak * np.where(x < 0.125, np.sin(4.0 * np.pi * x), slow)
+
+    def velocity(x: Float) -> Float:
+        fast = (1.0 - np.cos(4.0 * np.pi * x)) / (4.0 * np.pi)
+        slow = 1.0 / (4.0 * np.pi) + 0.75 / np.pi * np.sin(4.0 * np.pi / 3.0 * (x - 0.125))
+        return peak * np.where(x < 0.125, fast, slow)
+
+    def position(x: Float) -> Float:
+        fast = x / (4.0 * np.pi) - np.sin(4.0 * np.pi * x) / (16.0 * np.pi**2)
+        start = 0.125 / (4.0 * np.pi) - 1.0 / (16.0 * np.pi**2)
+        slow = (x - 0.125) / (4.0 * np.pi) + 9.0 / (16.0 * np.pi**2) * (1.0 - np.cos(4 * np.pi / 3 * (x - 0.125)))
+        return peak * np.where(x < 0.125, fast, start + slow)
+
+    def jerk(x: Float) -> Float:
+        slow = -4.0 * np.pi / 3.0 * np.sin(4.0 * np.pi / 3.0 * (x - 0.125))
+        return peak * np.where(x < 0.125, 4.0 * np.pi * np.cos(4.0 * np.pi * x), slow)
+
+    return _from_first_half(Law(position, velocity, acceleration, jerk))
+
+
+def _modified_trapezoid() -> Law:
+    """Acceleration that rises as a sine in an eighth, stays for a quarter, and falls as a sine (Norton 2009)."""
+    peak = 8.0 * np.pi / (np.pi + 2.0)
+    w = 4.0 * np.pi
+
+    def pieces(x: Float, rising: Float, constant: Float, falling: Float) -> Float:
+        return peak * np.where(x < 0.125, rising, np.where(x < 0.375, constant, falling))
+
+    def acceleration(x: Float) -> Float:
+        return pieces(x, np.sin(w * x), np.ones(x.shape), np.cos(w * (x - 0.375)))
+
+    def velocity(x: Float) -> Float:
+        at_constant, at_falling = 1.0 / w, 1.0 / w + 0.25
+        return pieces(
+            x,
+            (1.0 - np.cos(w * x)) / w,
+            at_constant + (x - 0.125),
+            at_falling + np.sin(w * (x - 0.375)) / w,
+        )
+
+    def position(x: Float) -> Float:
+        at_constant = 0.125 / w - 1.0 / w**2
+        at_falling = at_constant + 0.25 / w + 0.5 * 0.25**2
+        return pieces(
+            x,
+            x / w - np.sin(w * x) / w**2,
+            at_constant + (x - 0.125) / w + 0.5 * (x - 0.125) ** 2,
+            at_falling + (1.0 / w + 0.25) * (x - 0.375) + (1.0 - np.cos(w * (x - 0.375))) / w**2,
+        )
+
+    def jerk(x: Float) -> Float:
+        return pieces(x, w * np.cos(w * x), np.zeros(x.shape), -w * np.sin(w * (x - 0.375)))
+
+    return _from_first_half(Law(position, velocity, acceleration, jerk))
+
+
+def _from_first_half(law: Law) -> Law:
+    """Continue a law by its symmetry, ``t(1 - tau) = 1 - t(tau)``; its derivatives are odd and even in turn."""
+
+    def continued(function: _Function, sign: float, offset: float) -> _Function:
+        return lambda x: np.where(x < 0.5, function(x), offset + sign * function(1.0 - x))
+
+    return Law(
+        continued(law.position, -1.0, 1.0),
+        continued(law.velocity, 1.0, 0.0),
+        continued(law.acceleration, -1.0, 0.0),
+        continued(law.jerk, 1.0, 0.0),
+    )
+
+
+def asymmetric(law: Law, peak: float) -> Law:
+    """Move the time of a symmetric law's highest velocity from tau = 1/2 to `peak`, in (0, 1).
+
+    Either half is stretched in time and in share alike, so that the velocity stays as high and the acceleration
+    continuous: ``t = 2 p law(tau / (2 p))`` up to p, and by symmetry from there.
+    """
+    if not 0.0 < peak < 1.0:
+        msg = f"the time of the highest velocity must lie between 0 and 1, found {peak:g}"
+        raise ValueError(msg)
+
+    def stretched(order: int, first_sign: float, offset: float) -> _Function:
+        function = law[order]
+
+        def value(x: Float) -> Float:
+            early = (2.0 * peak) ** (1 - order) * function(np.minimum(x / (2.0 * peak), 0.5))
+            rest = 1.0 - peak
+            late = (2.0 * rest) ** (1 - order) * function(np.minimum((1.0 - x) / (2.0 * rest), 0.5))
+            return np.where(x < peak, early, offset + first_sign * late)
+
+        return value
+
+    return Law(stretched(0, -1.0, 1.0), stretched(1, 1.0, 0.0), stretched(2, -1.0, 0.0), stretched(3, 1.0, 0.0))
+
+
+cycloidal: Final = _cycloidal()
+"""``t = tau - sin(2 pi tau)/(2 pi)``: rest to rest without a jump in acceleration (P 36)."""
+
+LAWS: Final[dict[str, Law]] = {
+    "cycloidal": cycloidal,
+    "linear": _polynomial(0.0, 1.0),
+    "harmonic": _harmonic(),
+    "polynomial-345": _polynomial(0.0, 0.0, 0.0, 10.0, -15.0, 6.0),
+    "polynomial-4567": _polynomial(0.0, 0.0, 0.0, 0.0, 35.0, -84.0, 70.0, -20.0),
+    "modified-trapezoid": _modified_trapezoid(),
+    "modified-sine": _modified_sine(),
+}
+"""The polynomial 3-4-5 is the minimum-jerk law. A new law is one function above and one entry here (and its name in
+`Settings.law` and the option)."""
