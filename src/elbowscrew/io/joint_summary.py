@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowscrew.io.statistics import known, rms, statistic
 from elbowscrew.model import Analysis, AnatomicalMotion, FittedJoint, LineEstimate, PoseNoise
 
 Float = NDArray[np.float64]
@@ -19,7 +20,7 @@ def joint_summary(analysis: Analysis) -> dict[str, Any]:
         "expressed_in": analysis.settings.express_in,
         "single_axis": axis.single,
         "preferred": axis.preferred,
-        "unexplained_share": axis.unexplained if np.isfinite(axis.unexplained) else None,
+        "unexplained_share": known(axis.unexplained),
         "hinge": _fitted(axis.hinge),
         "screw_hinge": _fitted(axis.screw_hinge),
         "weighted_mean": _line(axis.weighted_mean),
@@ -36,15 +37,15 @@ def dispersion_summary(analysis: Analysis) -> dict[str, float | None]:
     mean = analysis.mean_axis
     deviation, distance = np.degrees(mean.deviation), 1000.0 * mean.distance
     return {
-        "direction_median_deg": _of(np.nanmedian, deviation),
-        "direction_rms_deg": _of(_rms, deviation),
-        "direction_95_deg": _of(_high, deviation),
-        "direction_max_deg": _of(np.nanmax, deviation),
+        "direction_median_deg": statistic(np.nanmedian, deviation),
+        "direction_rms_deg": statistic(rms, deviation),
+        "direction_95_deg": statistic(_high, deviation),
+        "direction_max_deg": statistic(np.nanmax, deviation),
         "direction_excursion_deg": float(np.degrees(mean.excursion)),
-        "place_median_mm": _of(np.nanmedian, distance),
-        "place_rms_mm": _of(_rms, distance),
-        "place_95_mm": _of(_high, distance),
-        "place_max_mm": _of(np.nanmax, distance),
+        "place_median_mm": statistic(np.nanmedian, distance),
+        "place_rms_mm": statistic(rms, distance),
+        "place_95_mm": statistic(_high, distance),
+        "place_max_mm": statistic(np.nanmax, distance),
         "place_excursion_mm": 1000.0 * mean.place_excursion,
     }
 
@@ -62,11 +63,10 @@ def _fitted(fit: FittedJoint | None) -> dict[str, Any] | None:
         "residual_rotation_deg": float(np.degrees(fit.residual_rotation)),
         "residual_translation_mm": 1000.0 * fit.residual_translation,
         "noise_ratio": fit.noise_ratio,
-        "frames": int(fit.used.size),
         "frames_that_count_as_one": fit.correlation,
         "outlier_share": float(np.mean(fit.weight < 0.5)),
     }
-    return {**_line(fit.line), **{name: value if np.isfinite(value) else None for name, value in figures.items()}}
+    return {**_line(fit.line), "frames": int(fit.used.size), **{name: known(value) for name, value in figures.items()}}
 
 
 def _line(line: LineEstimate) -> dict[str, list[float]]:
@@ -89,18 +89,19 @@ def _repeatability(analysis: Analysis) -> dict[str, Any]:
         "point_sd_mm": 1000.0 * found.point_sd,
         "theta_max_sd_deg": float(np.degrees(found.top_sd)),
     }
-    known = {name: value if np.isfinite(value) else None for name, value in figures.items()}
-    return {"repetitions": int(analysis.repetitions.number.size), **known}
+    return {
+        "repetitions": int(analysis.repetitions.number.size),
+        **{name: known(value) for name, value in figures.items()},
+    }
 
 
 def _anatomy(motion: AnatomicalMotion | None) -> dict[str, Any] | None:
     if motion is None:
         return None
-    known = np.isfinite(motion.joint_axis_angle)
     return {
         "side": motion.side,
-        "axis_angle_deg": float(np.degrees(motion.joint_axis_angle)) if known else None,
-        "axis_distance_mm": 1000.0 * motion.joint_axis_distance if known else None,
+        "axis_angle_deg": known(np.degrees(motion.joint_axis_angle)),
+        "axis_distance_mm": known(1000.0 * motion.joint_axis_distance),
         "epicondyle_direction_in_arm": motion.epicondyle_line[:3].tolist(),
         "epicondyle_midpoint_in_arm_mm": (1000.0 * motion.epicondyle_midpoint).tolist(),
         "landmarks_mm": {name: (1000.0 * place).tolist() for name, place in motion.places.items()},
@@ -119,13 +120,5 @@ def _noise(noise: PoseNoise | None) -> dict[str, Any] | None:
     }
 
 
-def _rms(values: Float) -> Any:
-    return np.sqrt(np.nanmean(values**2))
-
-
 def _high(values: Float) -> Any:
     return np.nanpercentile(values, 95)
-
-
-def _of(function: Any, values: Float) -> float | None:
-    return float(function(values)) if np.isfinite(values).any() else None

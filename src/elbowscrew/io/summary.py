@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from elbowscrew._version import __version__
 from elbowscrew.errors import SettingError
 from elbowscrew.io.options import ASK_FOR_MARKERS
+from elbowscrew.io.statistics import known, rms, statistic
 from elbowscrew.model import Analysis, BodyQuality, JointAxis, QualityWarning, Recording, Spread
 from elbowscrew.motion.quality import body_quality, check_bodies, clock_quality
 from elbowscrew.motion.selection import choose_bodies
@@ -162,13 +163,13 @@ def _motion(analysis: Analysis) -> dict[str, Any]:
     angle = np.degrees(np.where(screw.valid, screw.angle, np.nan))
     slide = 1000.0 * np.where(screw.valid, screw.slide, np.nan)
     return {
-        "theta_max_deg": _statistic(np.nanmax, angle),
-        "theta_min_deg": _statistic(np.nanmin, angle),
+        "theta_max_deg": statistic(np.nanmax, angle),
+        "theta_min_deg": statistic(np.nanmin, angle),
         "theta_max_frame": int(screw.frame[int(np.nanargmax(angle))]),
         "inversion_frames": screw.frame[analysis.keyframes.inversion_rows].tolist(),
-        "slide_median_mm": _statistic(np.nanmedian, slide),
-        "slide_min_mm": _statistic(np.nanmin, slide),
-        "slide_max_mm": _statistic(np.nanmax, slide),
+        "slide_median_mm": statistic(np.nanmedian, slide),
+        "slide_min_mm": statistic(np.nanmin, slide),
+        "slide_max_mm": statistic(np.nanmax, slide),
         "repetitions": int(analysis.repetitions.number.size),
         "movements": [
             {"onset_frame": int(screw.frame[onset]), "offset_frame": int(screw.frame[offset])}
@@ -177,10 +178,10 @@ def _motion(analysis: Analysis) -> dict[str, Any]:
         "expressed_in": analysis.settings.express_in,
         "axis_frames": int((screw.axis_known & screw.valid).sum()),
         "mean_axis": {"direction": axis.direction.tolist(), "point_mm": (1000.0 * axis.point).tolist()},
-        "axis_dispersion_deg": _statistic(np.nanmedian, np.degrees(axis.deviation)),
-        "axis_dispersion_rms_deg": _statistic(_rms, np.degrees(axis.deviation)),
-        "axis_dispersion_max_deg": _statistic(np.nanmax, np.degrees(axis.deviation)),
-        "axis_distance_rms_mm": _statistic(_rms, 1000.0 * axis.distance),
+        "axis_dispersion_deg": statistic(np.nanmedian, np.degrees(axis.deviation)),
+        "axis_dispersion_rms_deg": statistic(rms, np.degrees(axis.deviation)),
+        "axis_dispersion_max_deg": statistic(np.nanmax, np.degrees(axis.deviation)),
+        "axis_distance_rms_mm": statistic(rms, 1000.0 * axis.distance),
         "single_axis": analysis.joint_axis.single,
         "joint_axis": _joint_axis(analysis.joint_axis),
     }
@@ -194,14 +195,10 @@ def _joint_axis(axis: JointAxis) -> dict[str, Any] | None:
         "model": axis.preferred,
         "direction": axis.best.line.direction.tolist(),
         "point_mm": (1000.0 * axis.best.line.point).tolist(),
-        "axis_cone95_deg": _known(np.degrees(axis.best.axis_cone)),
-        "point_radius95_mm": _known(1000.0 * axis.best.point_radius),
+        "axis_cone95_deg": known(np.degrees(axis.best.axis_cone)),
+        "point_radius95_mm": known(1000.0 * axis.best.point_radius),
         "pitch_mm_per_rad": 1000.0 * axis.best.pitch,
     }
-
-
-def _known(value: float) -> float | None:
-    return float(value) if np.isfinite(value) else None
 
 
 def _interpolation(analysis: Analysis) -> dict[str, Any]:
@@ -215,29 +212,21 @@ def _interpolation(analysis: Analysis) -> dict[str, Any]:
         "knots": settings.knots,
         "keyframes": analysis.keyframes.frame.tolist(),
         "phases": int(analysis.keyframes.phase_bounds.size - 1),
-        "rmse_theta_deg": _statistic(_rms, theta_error),
-        "max_theta_error_deg": _statistic(np.nanmax, np.abs(theta_error)),
+        "rmse_theta_deg": statistic(rms, theta_error),
+        "max_theta_error_deg": statistic(np.nanmax, np.abs(theta_error)),
         "max_theta_error_frame": _frame_of_max(modeled.frame, np.abs(theta_error)),
-        "rms_angle_error_deg": _statistic(_rms, np.degrees(modeled.angle_error)),
-        "max_angle_error_deg": _statistic(np.nanmax, np.degrees(modeled.angle_error)),
-        "rms_translation_error_mm": _statistic(_rms, 1000.0 * modeled.translation_error),
-        "max_translation_error_mm": _statistic(np.nanmax, 1000.0 * modeled.translation_error),
-        "rms_displacement_mm": _statistic(_rms, 1000.0 * modeled.rms_displacement),
-        "max_rms_displacement_mm": _statistic(np.nanmax, 1000.0 * modeled.rms_displacement),
+        "rms_angle_error_deg": statistic(rms, np.degrees(modeled.angle_error)),
+        "max_angle_error_deg": statistic(np.nanmax, np.degrees(modeled.angle_error)),
+        "rms_translation_error_mm": statistic(rms, 1000.0 * modeled.translation_error),
+        "max_translation_error_mm": statistic(np.nanmax, 1000.0 * modeled.translation_error),
+        "rms_displacement_mm": statistic(rms, 1000.0 * modeled.rms_displacement),
+        "max_rms_displacement_mm": statistic(np.nanmax, 1000.0 * modeled.rms_displacement),
         "points": {
             "from": analysis.points.origin,
             "centroid_mm": (1000.0 * analysis.points.centroid).tolist(),
             "radius_of_gyration_mm": 1000.0 * analysis.points.radius_of_gyration,
         },
     }
-
-
-def _rms(values: Float) -> Any:
-    return np.sqrt(np.nanmean(values**2))
-
-
-def _statistic(function: Any, values: Float) -> float | None:
-    return float(function(values)) if np.isfinite(values).any() else None
 
 
 def _frame_of_max(frame: NDArray[np.int64], values: Float) -> int | None:
