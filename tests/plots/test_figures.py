@@ -74,7 +74,7 @@ def test_the_joints_axis_is_drawn_with_its_cone_or_without(analysis: Analysis, s
     assert len(end_on.patches) == (2 if single else 1)
     labels = side.get_legend_handles_labels()[1]
     assert ("95 % confidence of the joint axis" in labels) == single
-    assert side.get_xlabel().startswith("Along the joint axis (")
+    assert side.get_xlabel().startswith(f"Along the {'joint' if single else 'mean'} axis (")
     best = analysis.joint_axis.best
     if single and best is not None:
         circle: Any = end_on.patches[1]

@@ -28,9 +28,10 @@ class _Bundle(NamedTuple):
     """What is drawn, in the unit of length of the figures, in the frame the screws are expressed in.
 
     The joint's axis passes `center` along `direction`, drawn `half` to either side; the axes of the frames are
-    `segments`. Each of `spread` and `confidence` is a half-angle (rad) and a radius.
+    `segments`. Its name says that it is the mean axis where the motion has no single one. Each of `spread` and `confidence` is a half-angle (rad) and a radius.
     """
 
+    name: str
     direction: Float
     center: Float
     half: float
@@ -48,7 +49,7 @@ def plot_joint_axis_in_space(ax: Axes3D, analysis: Analysis) -> Axes3D:
     for segment, color in zip(bundle.segments, colors, strict=True):
         ax.plot(*segment.T, color=color, linewidth=0.6, alpha=0.8)
     ends = _ends(bundle)
-    ax.plot(*ends.T, color="black", linewidth=1.6, label="joint axis")
+    ax.plot(*ends.T, color="black", linewidth=1.6, label=bundle.name)
     u, v = directions_across(bundle.direction)[0]
     along = np.linspace(-bundle.half, bundle.half, _ALONG)
     turn = np.linspace(0.0, 2.0 * np.pi, _AROUND)
@@ -84,11 +85,11 @@ def plot_axis_from_the_side(ax: Axes, analysis: Analysis, side: int) -> Axes:
     for (angle, radius), look in _regions(bundle):
         reach = _radius(along, angle, radius)
         ax.fill_between(along, -reach, reach, **look)
-    ax.plot([-bundle.half, bundle.half], [0.0, 0.0], color="black", linewidth=1.3, zorder=4, label="joint axis")
+    ax.plot([-bundle.half, bundle.half], [0.0, 0.0], color="black", linewidth=1.3, zorder=4, label=bundle.name)
     ax.set_xlim(-bundle.half, bundle.half)
     reach_of_view = 1.25 * _widest(bundle)
     ax.set_ylim(-reach_of_view, reach_of_view)
-    ax.set_xlabel(f"Along the joint axis ({unit})")
+    ax.set_xlabel(f"Along the {bundle.name} ({unit})")
     ax.set_ylabel(f"Across, toward {names[side]} ({unit})")
     return ax
 
@@ -150,6 +151,7 @@ def _bundle(analysis: Analysis) -> _Bundle:
     mean = analysis.mean_axis
     spread = np.nanpercentile(mean.deviation, _PERCENT), np.nanpercentile(mean.distance, _PERCENT)
     return _Bundle(
+        name="mean axis" if best is None else "joint axis",
         direction=line.direction,
         center=length_in(center, unit),
         half=float(length_in(np.array(1.15 * half), unit)),
