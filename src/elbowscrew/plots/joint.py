@@ -28,7 +28,8 @@ class _Bundle(NamedTuple):
     """What is drawn, in the unit of length of the figures, in the frame the screws are expressed in.
 
     The joint's axis passes `center` along `direction`, drawn `half` to either side; the axes of the frames are
-    `segments`. Its name says that it is the mean axis where the motion has no single one. Each of `spread` and `confidence` is a half-angle (rad) and a radius.
+    `segments`. Its name says that it is the mean axis where the motion has no single one. Each of `spread` and
+    `confidence` is a half-angle (rad) and a radius.
     """
 
     name: str
