@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import csv
+import struct
 from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from elbowscrew import analyze, simulate_trial, tables
@@ -24,6 +25,7 @@ INTERPOLATION_NAMES = (
 ).split()
 
 
+@example(values=[struct.unpack("d", struct.pack("Q", 0x7FF5C8156B897724))[0]])  # a signaling NaN
 @given(values=st.lists(st.floats(allow_nan=True, allow_infinity=False), min_size=1, max_size=20))
 def test_numbers_read_back_as_the_same_float(tmp_path_factory: pytest.TempPathFactory, values: list[float]) -> None:
     path = tmp_path_factory.mktemp("csv") / "t.csv"

@@ -49,4 +49,6 @@ def _texts(values: NDArray[Any]) -> list[str]:
     if values.dtype.kind == "U":
         return list(values.tolist())
     # Adding 0.0 turns -0.0 into 0.0; repr is the shortest text that reads back as the same number.
-    return ["" if value != value else repr(value) for value in (values + 0.0).tolist()]
+    with np.errstate(invalid="ignore"):  # a NaN may be a signaling one
+        plain = values + 0.0
+    return ["" if value != value else repr(value) for value in plain.tolist()]
