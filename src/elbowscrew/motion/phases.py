@@ -12,9 +12,11 @@ from elbowscrew.model import MovementPhases
 Float = NDArray[np.float64]
 Bool = NDArray[np.bool_]
 
-# Movement is what exceeds this share of the highest speed (the 99th percentile: a spike is no speed).
+# Movement is what exceeds this share of the highest speed, the one that is exceeded for as long as the shortest
+# movement: a spike is no speed, and a rest may be as long as it likes.
 _SPEED_SHARE: Final = 0.05
-_HIGHEST_PERCENT: Final = 99.0
+# It turns the joint by this share of what the largest movement does: noise and tremor do not.
+_TRAVEL_SHARE: Final = 0.01
 _SHORTEST_REST_S: Final = 0.25
 _SHORTEST_MOVE_S: Final = 0.1
 # A cycle rises and falls by this share of the whole range, and by so many degrees at least.
@@ -30,27 +32,34 @@ def movement_phases(angular_velocity: Float, elapsed: Float) -> MovementPhases:
     Parameters
     ----------
     angular_velocity : ndarray, shape (N,)
-        Of filtered poses, rad/s; NaN where it is not known, which counts as the next frame where it is.
+        Of filtered poses, rad/s; NaN where it is not known. Less than 0.25 s of that count as the next frame where it
+        is, more count as movement only where there is some on both sides.
     elapsed : ndarray, shape (N,)
         Seconds.
 
     Returns
     -------
     MovementPhases
-        Rests shorter than 0.25 s, as at an inversion, and then movements shorter than 0.1 s are no such.
+        Rests shorter than 0.25 s, as at an inversion, are no such; nor then are movements shorter than 0.1 s, or of
+        less than a hundredth of the largest one's angle.
     """
     count = angular_velocity.size
     known = np.flatnonzero(np.isfinite(angular_velocity))
     if not known.size:
         none = np.empty(0, dtype=np.int64)
         return MovementPhases(onset_rows=none, offset_rows=none, moving=np.zeros(count, dtype=np.bool_), threshold=0.0)
-    speed = np.abs(angular_velocity)
-    threshold = _SPEED_SHARE * float(np.percentile(speed[known], _HIGHEST_PERCENT))
-    moving = speed[known[np.searchsorted(known, np.arange(count)).clip(0, known.size - 1)]] > threshold
+    speed = np.abs(angular_velocity[known])
+    brief = int(np.clip(np.rint(_SHORTEST_MOVE_S / _frame_time(elapsed)), 1, speed.size))
+    threshold = _SPEED_SHARE * float(np.partition(speed, -brief)[-brief])
+    moving = _bridged(speed > threshold, known, elapsed)
     moving = ~_without_short(~moving, elapsed, _SHORTEST_REST_S)
     moving = _without_short(moving, elapsed, _SHORTEST_MOVE_S)
     first, last = _runs(moving)
-    return MovementPhases(onset_rows=first, offset_rows=last, moving=moving, threshold=threshold)
+    travel = _travel(angular_velocity, elapsed, first, last)
+    real = travel >= _TRAVEL_SHARE * travel.max(initial=0.0)
+    for begin, end in zip(first[~real], last[~real], strict=True):
+        moving[begin : end + 1] = False
+    return MovementPhases(onset_rows=first[real], offset_rows=last[real], moving=moving, threshold=threshold)
 
 
 def find_cycles(angle: Float, phases: MovementPhases) -> NDArray[np.int64]:
@@ -118,6 +127,27 @@ def _foot(series: Float, resting: Bool, low: int, top: int) -> int:
     near = series[rows] <= series[low] + _FOOT_SHARE * (series[top] - series[low])
     rests = np.flatnonzero(resting[rows] & near)
     return int(rows[rests[-1]]) if rests.size else low
+
+
+def _frame_time(elapsed: Float) -> float:
+    return float(np.median(np.diff(elapsed))) if elapsed.size > 1 else 1.0
+
+
+def _bridged(moving: Bool, known: NDArray[np.intp], elapsed: Float) -> Bool:
+    """Movement in all rows, of that in the known ones."""
+    rows = np.arange(elapsed.size)
+    before, after = np.searchsorted(known, rows, side="right") - 1, np.searchsorted(known, rows)
+    inner = (before >= 0) & (after < known.size)
+    before, after = before.clip(0), after.clip(max=known.size - 1)
+    begin = np.where(rows < known[0], elapsed[0], elapsed[known[before]])
+    end = np.where(rows > known[-1], elapsed[-1], elapsed[known[after]])
+    return np.where(end - begin < _SHORTEST_REST_S, moving[after], inner & moving[before] & moving[after])
+
+
+def _travel(angular_velocity: Float, elapsed: Float, first: NDArray[np.int64], last: NDArray[np.int64]) -> Float:
+    """Angle between the extremes of each movement, shape (M,), of its velocity alone."""
+    turned = np.cumsum(np.nan_to_num(angular_velocity) * np.gradient(elapsed)) if elapsed.size > 1 else np.zeros(1)
+    return np.array([np.ptp(turned[begin : end + 1]) for begin, end in zip(first, last, strict=True)])
 
 
 def _runs(mask: Bool) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
