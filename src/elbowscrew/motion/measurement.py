@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 
 from elbowscrew.errors import AnalysisError, SettingError
 from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat
-from elbowscrew.model import BodyQuality, JointMotion, PoseNoise, QualityWarning, Recording, RigidBody, ScrewMotion
+from elbowscrew.model import BodyQuality, JointMotion, QualityWarning, Recording, RigidBody, ScrewMotion
 from elbowscrew.motion.bodies import tracked_bodies
 from elbowscrew.motion.clock import elapsed_time
 from elbowscrew.motion.helical import HelicalSeries, helical_series
 from elbowscrew.motion.keyframes import row_of_frame
-from elbowscrew.motion.pose_noise import pose_noise
+from elbowscrew.motion.pose_noise import JointNoise
 from elbowscrew.motion.relative import displacement, expressed, frame_change, joint_from_bodies
 from elbowscrew.motion.resampling import resample_recording
 from elbowscrew.motion.smoothing import Smoothing
@@ -23,27 +23,6 @@ from elbowscrew.motion.uncertainty import ScrewErrors, known_errors, least_angle
 from elbowscrew.settings import Settings
 
 Float = NDArray[np.float64]
-
-
-class JointNoise(NamedTuple):
-    """Noise of the two bodies' poses, None where it is not known."""
-
-    arm: PoseNoise | None
-    forearm: PoseNoise | None
-    arm_moves: bool
-
-    @classmethod
-    def of(cls, arm: RigidBody | None, forearm: RigidBody, rate_hz: float, settings: Settings) -> JointNoise:
-        """Find the noise of both; an arm that stands still has none."""
-        found = None if arm is None else pose_noise(arm, rate_hz, settings)
-        return cls(found, pose_noise(forearm, rate_hz, settings), arm is not None)
-
-    @property
-    def known(self) -> tuple[PoseNoise | None, PoseNoise] | None:
-        """Both, the arm's None if it stands still; None if one is not known."""
-        if self.forearm is None or (self.arm is None and self.arm_moves):
-            return None
-        return self.arm, self.forearm
 
 
 class Measurement(NamedTuple):

@@ -54,7 +54,7 @@ def movement_phases(angular_velocity: Float, elapsed: Float) -> MovementPhases:
     moving = _bridged(speed > threshold, known, elapsed)
     moving = ~_without_short(~moving, elapsed, _SHORTEST_REST_S)
     moving = _without_short(moving, elapsed, _SHORTEST_MOVE_S)
-    first, last = _runs(moving)
+    first, last = runs_of(moving)
     travel = _travel(angular_velocity, elapsed, first, last)
     real = travel >= _TRAVEL_SHARE * travel.max(initial=0.0)
     for begin, end in zip(first[~real], last[~real], strict=True):
@@ -150,15 +150,15 @@ def _travel(angular_velocity: Float, elapsed: Float, first: NDArray[np.int64], l
     return np.array([np.ptp(turned[begin : end + 1]) for begin, end in zip(first, last, strict=True)])
 
 
-def _runs(mask: Bool) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """First and last row of every run of True."""
+def runs_of(mask: Bool) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """First and last row of every run of True, shape (R,) each."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], mask, [False]]).astype(np.int8)))
     return edges[::2].astype(np.int64), edges[1::2].astype(np.int64) - 1
 
 
 def _without_short(mask: Bool, elapsed: Float, shortest: float) -> Bool:
     """Take out runs of True that last less than `shortest` seconds, but for those at the ends of the recording."""
-    first, last = _runs(mask)
+    first, last = runs_of(mask)
     inner = (first > 0) & (last < mask.size - 1)
     short = inner & (elapsed[last] - elapsed[first] < shortest)
     kept = mask.copy()

@@ -56,6 +56,27 @@ def pose_noise(body: RigidBody, rate_hz: float, settings: Settings) -> PoseNoise
     return None
 
 
+class JointNoise(NamedTuple):
+    """Noise of the two bodies' poses, None where it is not known."""
+
+    arm: PoseNoise | None
+    forearm: PoseNoise | None
+    arm_moves: bool
+
+    @classmethod
+    def of(cls, arm: RigidBody | None, forearm: RigidBody, rate_hz: float, settings: Settings) -> JointNoise:
+        """Find the noise of both; an arm that stands still has none."""
+        found = None if arm is None else pose_noise(arm, rate_hz, settings)
+        return cls(found, pose_noise(forearm, rate_hz, settings), arm is not None)
+
+    @property
+    def known(self) -> tuple[PoseNoise | None, PoseNoise] | None:
+        """Both, the arm's None if it stands still; None if one is not known."""
+        if self.forearm is None or (self.arm is None and self.arm_moves):
+            return None
+        return self.arm, self.forearm
+
+
 def covariance_from_markers(offsets: Float, marker_noise: float) -> Float:
     """Covariance of a pose fitted to markers: ``sigma^2 (sum_k J_k^T J_k)^-1`` with ``J_k = [-[x_k]x, 1]``.
 
@@ -120,11 +141,6 @@ def _from_square(body: RigidBody, square: Float | None, source: str, settings: S
     # The median of a chi-square over its mean (Wilson and Hilferty): astray markers move it little.
     median = (1.0 - 2.0 / (9.0 * freedom)) ** 3
     return _from_marker_noise(body, float(np.sqrt(count * np.median(known) / (freedom * median))), source, settings)
-
-
-class _Stretch(NamedTuple):
-    covariance: Float
-    size: float
 
 
 def _from_still_stretch(body: RigidBody, rate_hz: float, settings: Settings) -> PoseNoise | None:

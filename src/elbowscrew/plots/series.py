@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
 from elbowscrew.model import Analysis
+from elbowscrew.motion.phases import runs_of
 from elbowscrew.plots import style
 from elbowscrew.tables import angle_in, length_in
 
@@ -75,7 +76,7 @@ def mark_tracking(ax: Axes, analysis: Analysis) -> Axes:
         (~screw.valid & ~screw.filled, "not tracked", style.LOST),
         (screw.filled, "filled in", style.FILLED),
     ):
-        for k, (first, last) in enumerate(_runs(mask)):
+        for k, (first, last) in enumerate(zip(*runs_of(mask), strict=True)):
             span: dict[str, Any] = {**look, "label": label if k == 0 else None}
             ax.axvspan(screw.time_s[first] - half, screw.time_s[last] + half, **span)
     return ax
@@ -125,9 +126,3 @@ def _model_label(analysis: Analysis) -> str:
     names = {"dlb": "DLB", "sclerp": "ScLERP", "sdlb": "sDLB", "dib": "DIB", "catmull-rom": "Catmull-Rom"}
     method = analysis.settings.method
     return f"{names.get(method, method)} through {analysis.keyframes.row.size} poses"
-
-
-def _runs(mask: NDArray[np.bool_]) -> list[tuple[int, int]]:
-    """Give first and last index of every run of True."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], mask, [False]]).astype(np.int8)))
-    return [(int(first), int(after) - 1) for first, after in edges.reshape(-1, 2)]
