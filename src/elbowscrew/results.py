@@ -5,18 +5,25 @@ from __future__ import annotations
 import io
 import json
 import os
-from collections.abc import Iterable, Sequence
+import tempfile
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
-from typing import Any, Final, Literal
+from typing import TYPE_CHECKING, Any, Final, Literal
 
+from elbowscrew import tables
 from elbowscrew.errors import UsageError
+from elbowscrew.io.comparison_summary import comparison_summary, trials_summary
 from elbowscrew.io.joint_summary import joint_summary
 from elbowscrew.io.optitrack_writer import motive_columns_lines, row_tagged_lines
-from elbowscrew.io.staging import result_folder, write_files
+from elbowscrew.io.staging import COMPARISON, result_folder, write_files
 from elbowscrew.io.summary import summary_from_analysis
-from elbowscrew.io.writing import write_tables
-from elbowscrew.model import Analysis
+from elbowscrew.io.writing import write_csv, write_tables
+from elbowscrew.model import Analysis, Comparison, RebuiltMotion, TrialsComparison
 from elbowscrew.simulate import SimulatedTrial
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 # Without dates and program versions the same analysis gives the same bytes.
 _METADATA: Final[dict[str, dict[str, Any]]] = {
@@ -67,11 +74,7 @@ def save_analysis(
     True
     """
     target = Path(folder)
-    formats = analysis.settings.figure_formats if figure_formats is None else tuple(figure_formats)
-    unknown = sorted(set(formats) - set(_METADATA))
-    if unknown:
-        msg = f"figure formats: expected {', '.join(_METADATA)}, found {', '.join(unknown)}"
-        raise UsageError(msg)
+    formats = _known_formats(analysis.settings.figure_formats if figure_formats is None else tuple(figure_formats))
     with result_folder(target, force=force) as staged:
         write_tables(staged, analysis)
         for name, content in (
@@ -85,14 +88,27 @@ def save_analysis(
     return target
 
 
+def _known_formats(formats: tuple[str, ...]) -> tuple[str, ...]:
+    unknown = sorted(set(formats) - set(_METADATA))
+    if unknown:
+        msg = f"figure formats: expected {', '.join(_METADATA)}, found {', '.join(unknown)}"
+        raise UsageError(msg)
+    return formats
+
+
 def _write_figures(folder: Path, analysis: Analysis, formats: Sequence[str]) -> None:
     from elbowscrew.plots.figures import FIGURES
+
+    _draw(folder, {name: partial(make, analysis) for name, make in FIGURES.items()}, formats)
+
+
+def _draw(folder: Path, figures: Mapping[str, Callable[[], Figure]], formats: Sequence[str]) -> None:
     from elbowscrew.plots.style import publication_style, settle
 
     folder.mkdir()
     with publication_style():
-        for name, make in FIGURES.items():
-            figure = make(analysis)
+        for name, make in figures.items():
+            figure = make()
             settle(figure)
             for kind in formats:
                 figure.savefig(folder / f"{name}.{kind}", format=kind, metadata=_METADATA[kind])
@@ -189,3 +205,106 @@ def save_paper_figures(folder: str | os.PathLike[str]) -> tuple[Path, ...]:
             contents[target / file] = stream.getvalue()
     write_files(contents, replaceable=None)
     return tuple(contents)
+
+
+def save_motion(motion: RebuiltMotion, path: str | os.PathLike[str], *, force: bool = False) -> Path:
+    """Write a rebuilt motion as CSV, in degrees and millimeters.
+
+    Parameters
+    ----------
+    motion : RebuiltMotion
+        From `elbowscrew.interpolate`.
+    path : path-like
+        The file.
+    force : bool
+        Replace an earlier such file.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    OutputError
+        If a file is there, or the disk does not take it.
+
+    Examples
+    --------
+    >>> import elbowscrew, tempfile
+    >>> keyframes = elbowscrew.keyframes_of(elbowscrew.analyze(elbowscrew.simulate_trial().recording))
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     save_motion(elbowscrew.interpolate(keyframes, 20), f"{folder}/motion.csv").name
+    'motion.csv'
+    """
+    target = Path(path)
+    columns = tables.columns(motion, tables.MOTION_COLUMNS, "deg", "mm")
+    with tempfile.TemporaryDirectory() as folder:
+        staged = Path(folder) / "motion.csv"
+        write_csv(staged, columns)
+        content = staged.read_bytes()
+    write_files({target: content}, replaceable="frame,time_s,phase,t,theta" if force else None)
+    return target
+
+
+def save_comparison(
+    comparison: Comparison | TrialsComparison,
+    folder: str | os.PathLike[str],
+    *,
+    force: bool = False,
+    figure_formats: Sequence[str] | None = None,
+) -> Path:
+    """Write ``compare.csv``, ``compare.json`` and the figures of a comparison into a folder, whole or not at all.
+
+    Parameters
+    ----------
+    comparison : Comparison or TrialsComparison
+        From `elbowscrew.compare` or `elbowscrew.compare_trials`.
+    folder : path-like
+        Where to; it is made.
+    force : bool
+        Replace an earlier comparison.
+    figure_formats : sequence of {"png", "svg", "pdf"}, optional
+        Those of the settings by default; may be empty.
+
+    Returns
+    -------
+    Path
+        The folder.
+
+    Raises
+    ------
+    OutputError
+        If a result is there already, or the disk does not take it.
+    UsageError
+        If a figure format is not known.
+
+    Examples
+    --------
+    >>> import elbowscrew, tempfile
+    >>> from elbowscrew.motion.treatments import ComparisonPlan
+    >>> plan = ComparisonPlan(laws=("linear",), counts=(2,), data=("raw",))
+    >>> found = elbowscrew.compare(elbowscrew.simulate_trial(frames=60, inversion=30).recording, plan=plan)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     (save_comparison(found, f"{folder}/result", figure_formats=()) / "compare.csv").exists()
+    True
+    """
+    target = Path(folder)
+    settings = comparison.settings
+    formats = _known_formats(settings.figure_formats if figure_formats is None else tuple(figure_formats))
+    units = settings.angle_unit, settings.length_unit
+    if isinstance(comparison, Comparison):
+        columns = tables.columns(comparison.models, tables.COMPARISON_COLUMNS, *units)
+        summary = comparison_summary(comparison)
+    else:
+        columns = tables.columns(comparison.models, tables.TRIALS_COMPARISON_COLUMNS, *units)
+        summary = trials_summary(comparison)
+    with result_folder(target, force=force, kind=COMPARISON) as staged:
+        write_csv(staged / "compare.csv", columns)
+        text = json.dumps(summary, indent=2, ensure_ascii=False, allow_nan=False)
+        (staged / "compare.json").write_text(text + "\n", encoding="utf-8")
+        if formats:
+            from elbowscrew.plots.comparison import comparison_figure
+
+            _draw(staged / "figures", {"compare": lambda: comparison_figure(comparison)}, formats)
+    return target

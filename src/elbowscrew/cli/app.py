@@ -8,7 +8,9 @@ import typer
 
 from elbowscrew._version import __version__
 from elbowscrew.cli.analyze import analyze
+from elbowscrew.cli.compare import compare
 from elbowscrew.cli.info import info
+from elbowscrew.cli.interpolate import interpolate
 from elbowscrew.cli.paper import paper
 from elbowscrew.cli.simulate import simulate
 
@@ -35,6 +37,8 @@ def _common(
 
 
 app.command()(analyze)
+app.command()(compare)
+app.command()(interpolate)
 app.command()(info)
 app.command()(simulate)
 app.command()(paper)

@@ -123,6 +123,5 @@ def _over_time(ax: Axes, time_s: Float) -> Axes:
 
 
 def _model_label(analysis: Analysis) -> str:
-    names = {"dlb": "DLB", "sclerp": "ScLERP", "sdlb": "sDLB", "dib": "DIB", "catmull-rom": "Catmull-Rom"}
-    method = analysis.settings.method
-    return f"{names.get(method, method)} through {analysis.keyframes.row.size} poses"
+    method = style.METHOD_NAMES[analysis.settings.model_method]
+    return f"{method} through {analysis.keyframes.row.size} poses"
