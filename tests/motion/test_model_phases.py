@@ -32,7 +32,7 @@ def test_a_take_that_is_all_movement_has_the_papers_phases(seed: int, noise: flo
     assert laws == [[bounds[0], bounds[1]], [bounds[1], bounds[2]]]
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=8, deadline=None)
 @given(
     before=st.floats(0.3, 2.0),
     hold=st.floats(0.4, 2.0),

@@ -100,7 +100,7 @@ def read_keyframes(
         frame=table.numbers("frame").astype(np.int64) if "frame" in table.columns else np.arange(count, dtype=np.int64),
         time_s=time_s,
         phase=phase,
-        knot=_knots(table, time_s, bounds, laws, starts, ends, given=law is not None),
+        knot=_knots(table, time_s, bounds, laws, (starts, ends), blend=blend, given=law is not None),
         angle=np.full(count, np.nan),
         dual_quat=pose,
         method=method or table.word("method", tuple(METHODS), "dlb"),
@@ -137,9 +137,9 @@ def _knots(
     time_s: Float,
     bounds: NDArray[np.intp],
     laws: tuple[PhaseLaw, ...],
-    starts: Float,
-    ends: Float,
+    spans: tuple[Float, Float],
     *,
+    blend: str,
     given: bool,
 ) -> Float:
     if "knot" in table.columns and not given:
@@ -148,10 +148,11 @@ def _knots(
         knot = np.empty(time_s.size)
         for p, law in enumerate(laws):
             part = slice(bounds[p], bounds[p + 1] + 1)
-            knot[part] = p + named_law(law.name, law.peak)(phase_time_share(time_s[part], starts[p], ends[p]))
+            knot[part] = p + named_law(law.name, law.peak)(phase_time_share(time_s[part], spans[0][p], spans[1][p]))
     table.check((np.diff(knot) > 0.0, "the knots must increase: between two keyframes the law does not advance"))
-    expected = np.arange(len(laws) + 1, dtype=np.float64)
-    if not np.array_equal(knot[bounds], expected):
+    ends = bounds if blend == "piecewise" else bounds[[0, -1]]
+    expected = np.linspace(0.0, len(laws), ends.size)
+    if not np.array_equal(knot[ends], expected):
         table.refuse(table.lines[0], f"the knots at the phases' ends must be {', '.join(f'{k:g}' for k in expected)}")
     return knot
 

@@ -99,7 +99,7 @@ def compare(recording: Recording, settings: Settings | None = None, plan: Compar
                 name: () if isinstance(found, str) else tuple(one.law for one in found)
                 for name, found in fitted.items()
             }
-        rows += [_row(model, treatment, fitted[model.law], measured, yardstick) for model in _models(plan)]
+        rows += [_row(model, treatment, fitted[model.law], measured, yardstick) for model in models_of(plan)]
     tolerance = _DEFAULT_TOLERANCE if wanted.tolerance_mm is None else 1e-3 * wanted.tolerance_mm
     return Comparison(
         recording=measured.recording,
@@ -118,7 +118,9 @@ def compare(recording: Recording, settings: Settings | None = None, plan: Compar
     )
 
 
-class _Model(NamedTuple):
+class PlannedModel(NamedTuple):
+    """One combination of a plan."""
+
     method: str
     blend: str
     law: str
@@ -126,11 +128,11 @@ class _Model(NamedTuple):
     keyframes: int
 
 
-def _models(plan: ComparisonPlan) -> Iterator[_Model]:
+def models_of(plan: ComparisonPlan) -> Iterator[PlannedModel]:
     """Give every combination once that is a model of its own."""
     seen = set()
     for model in itertools.starmap(
-        _Model, itertools.product(plan.methods, plan.blends, plan.laws, plan.knots, plan.counts)
+        PlannedModel, itertools.product(plan.methods, plan.blends, plan.laws, plan.knots, plan.counts)
     ):
         method, blend = model.method, model.blend
         if model.keyframes == 2 and blend == "piecewise":
@@ -205,7 +207,7 @@ class _Yardstick(NamedTuple):
 
 
 def _row(
-    model: _Model,
+    model: PlannedModel,
     treatment: Treatment,
     laws: tuple[FittedLaw, ...] | str,
     measured: Measurement,
