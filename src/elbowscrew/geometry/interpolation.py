@@ -7,23 +7,36 @@ belongs to the motion, as in a measured series made continuous, says ``"as given
 
 from __future__ import annotations
 
-from typing import NamedTuple
+import itertools
+import math
+import operator
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from elbowscrew.geometry import dual_quaternion, quaternion
-from elbowscrew.geometry._small_angle import VANISHING_NORM, length
+from elbowscrew.geometry import _rows, dual_quaternion
+from elbowscrew.geometry._blocks import in_blocks, is_single
+from elbowscrew.geometry._small_angle import (
+    NEGLIGIBLE_ANGLE,
+    VANISHING_NORM,
+    cosine_and_sine,
+    divide_rows,
+    length,
+    row_length,
+)
 from elbowscrew.geometry._ways import WayRound, check_way
 
+Float = NDArray[np.float64]
 
-def _choose_signs(quats: NDArray[np.float64], reference: NDArray[np.float64], way: WayRound) -> NDArray[np.float64]:
-    """Quaternions or dual quaternions (..., k) with the sign that goes that way round from the reference."""
-    check_way(way)
+
+def _choose_signs(Q: _rows.Rows, reference: _rows.Rows, way: WayRound) -> _rows.Rows:
+    """Quaternions or dual quaternions with the sign that goes that way round from the reference."""
     if way == "as given":
-        return quats
-    near = np.sum(quats[..., :4] * reference[..., :4], axis=-1, keepdims=True) >= 0.0
-    return np.where(near == (way == "shortest"), quats, -quats)
+        return Q
+    sign = _rows.sign_towards(Q, reference)
+    return [sign * row if way == "shortest" else -sign * row for row in Q]
 
 
 def sclerp(start: ArrayLike, end: ArrayLike, fraction: ArrayLike, *, way: WayRound = "shortest") -> NDArray[np.float64]:
@@ -61,10 +74,54 @@ def sclerp(start: ArrayLike, end: ArrayLike, fraction: ArrayLike, *, way: WayRou
     >>> pose_from_dual_quat(sclerp(start, end, 0.2))[1].round(6) + 0.0
     array([0., 0., 2.])
     """
-    first = np.asarray(start, dtype=np.float64)
-    last = _choose_signs(np.asarray(end, dtype=np.float64), first, way)
-    step = dual_quaternion.multiply(dual_quaternion.conjugate(first), last)
-    return dual_quaternion.multiply(first, dual_quaternion.power(step, fraction))
+    check_way(way)
+    first, last = np.asarray(start, dtype=np.float64), np.asarray(end, dtype=np.float64)
+    t = np.asarray(fraction, dtype=np.float64)[..., None]
+    if is_single(first) and is_single(last):
+        half_angle, path = _screw_path(first.ravel(), last.ravel(), way)
+        shape = np.broadcast_shapes(first.shape, last.shape, (*t.shape[:-1], 8))
+        return in_blocks(lambda t: _along(path, half_angle, t[0]), t, width=8).reshape(shape)
+
+    def kernel(first: _rows.Rows, last: _rows.Rows, t: _rows.Rows) -> list[Float]:
+        step = _rows.dual_product(_rows.conjugate(first), _choose_signs(last, first, way))
+        return _rows.dual_product(first, _rows.power(step, t[0]))
+
+    return in_blocks(kernel, first, last, t, width=8)
+
+
+def _screw_path(start: Float, end: Float, way: WayRound) -> tuple[float, Float]:
+    """Half the angle between two poses, and the map from `_along`'s base to the poses on the screw between them."""
+    step = dual_quaternion.multiply(dual_quaternion.conjugate(start), end)
+    if way != "as given" and (step[0] < 0.0) == (way == "shortest"):
+        step = -step
+    logarithm = dual_quaternion.log(step).tolist()
+    a, b = logarithm[:3], logarithm[3:]
+    half = math.hypot(*a)
+    h = [value / half for value in a] if half > 0.0 else a
+    slide = sum(one * other for one, other in zip(h, b, strict=True))
+    with_t = [slide * value for value in h]
+    if half < NEGLIGIBLE_ANGLE:  # there the sine is the angle, and what goes across the axis goes with t, too
+        with_t, with_sine = b, [0.0, 0.0, 0.0]
+    else:
+        with_sine = [(one - other) / half for one, other in zip(b, with_t, strict=True)]
+    base = [
+        [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+        [0.0, *h, 0.0, *with_sine],
+        [0.0, 0.0, 0.0, 0.0, -slide, 0.0, 0.0, 0.0],
+        [0.0, 0.0, 0.0, 0.0, 0.0, *with_t],
+    ]
+    return half, dual_quaternion.multiply(start, base).T
+
+
+def _along(path: Float, half_angle: float, t: Float) -> Float:
+    """Poses at t, linear in cos, sin, t sin and t cos of t theta/2."""
+    cosine, sine = cosine_and_sine(half_angle * t)
+    base = np.empty((4, t.size))
+    base[0], base[1] = cosine, sine
+    np.multiply(t, sine, out=base[2])
+    np.multiply(t, cosine, out=base[3])
+    moved: Float = path @ base
+    return moved
 
 
 def sdlb(start: ArrayLike, end: ArrayLike, fraction: ArrayLike, *, way: WayRound = "shortest") -> NDArray[np.float64]:
@@ -102,9 +159,13 @@ def sdlb(start: ArrayLike, end: ArrayLike, fraction: ArrayLike, *, way: WayRound
     >>> dual_quaternion.pose_from_dual_quat(sdlb(start, end, 0.2))[1].round(6) + 0.0
     array([0.    , 0.    , 1.9251])
     """
-    t = np.asarray(fraction, dtype=np.float64)
-    poses = np.stack(np.broadcast_arrays(start, end), axis=-2)
-    return dlb(poses, np.stack([1.0 - t, t], axis=-1), way=way)
+    check_way(way)
+
+    def kernel(first: _rows.Rows, last: _rows.Rows, t: _rows.Rows) -> list[Float]:
+        blend = _rows.weighted([1.0 - t[0], t[0]], [first, _choose_signs(last, first, way)])
+        return _rows.normalized(blend, VANISHING_NORM)
+
+    return in_blocks(kernel, start, end, np.asarray(fraction, dtype=np.float64)[..., None], width=8)
 
 
 def lagrange_weights(fraction: ArrayLike, knots: ArrayLike) -> NDArray[np.float64]:
@@ -135,17 +196,27 @@ def lagrange_weights(fraction: ArrayLike, knots: ArrayLike) -> NDArray[np.float6
     >>> lagrange_weights(0.25, [0.0, 0.5, 1.0])
     array([ 0.375,  0.75 , -0.125])
     """
-    t = np.asarray(fraction, dtype=np.float64)[..., None]
     knot = np.asarray(knots, dtype=np.float64)
     if np.unique(knot).size != knot.size:
         msg = f"knots must differ from each other, found {knot.tolist()}"
         raise ValueError(msg)
-    weights = np.ones(np.broadcast_shapes(t.shape, knot.shape))
-    for j in range(knot.size):
-        for k in range(knot.size):
-            if k != j:
-                weights[..., j] *= (t[..., 0] - knot[k]) / (knot[j] - knot[k])
-    return weights
+    values: list[float] = knot.tolist()
+    sizes = [_products_but_one([value - other for other in values])[j] for j, value in enumerate(values)]
+
+    def kernel(t: _rows.Rows) -> list[Float]:
+        products = _products_but_one([t[0] - value for value in values])
+        return [product / size for product, size in zip(products, sizes, strict=True)]
+
+    return in_blocks(kernel, np.asarray(fraction, dtype=np.float64)[..., None], width=knot.size)
+
+
+def _products_but_one(factors: Sequence[Any]) -> list[Any]:
+    """Products of all factors but the first, all but the second, and so on: of numbers, or of arrays."""
+    before = list(itertools.accumulate(factors[:-1], operator.mul))
+    behind = list(itertools.accumulate(factors[:0:-1], operator.mul))[::-1]
+    if not before:
+        return [1.0]
+    return [behind[0], *(one * other for one, other in zip(before[:-1], behind[1:], strict=True)), before[-1]]
 
 
 def dlb(poses: ArrayLike, weights: ArrayLike, *, way: WayRound = "shortest") -> NDArray[np.float64]:
@@ -184,17 +255,52 @@ def dlb(poses: ArrayLike, weights: ArrayLike, *, way: WayRound = "shortest") -> 
     >>> dual_quaternion.pose_from_dual_quat(blend)[1].round(6) + 0.0
     array([0.     , 0.     , 2.03664])
     """
-    Q = _signs_from_first(poses, way)
-    w = np.asarray(weights, dtype=np.float64)
-    blend = (w[..., None, :] @ Q)[..., 0, :]
-    vanishing = length(blend[..., :4]) < VANISHING_NORM
-    return np.where(vanishing[..., None], np.nan, dual_quaternion.normalize(blend))
+    keys, w = _Keys.of(poses, way), np.asarray(weights, dtype=np.float64)
+    return in_blocks(keys.blend, keys.flat, w, width=8)
 
 
-def _signs_from_first(poses: ArrayLike, way: WayRound) -> NDArray[np.float64]:
-    Q = np.asarray(poses, dtype=np.float64)
-    chosen = _choose_signs(Q, Q[..., :1, :], way)
-    return np.concatenate([Q[..., :1, :], chosen[..., 1:, :]], axis=-2)
+class _Keys(NamedTuple):
+    """Keyframes to blend, with their signs chosen.
+
+    Attributes
+    ----------
+    flat : ndarray, shape (..., n * 8)
+        All poses of a frame, one after the other.
+    way : WayRound
+    columns : ndarray, shape (8, n), or None
+        The poses as they are to be blended if they are the same in all frames.
+    """
+
+    flat: Float
+    way: WayRound
+    columns: Float | None
+
+    @classmethod
+    def of(cls, poses: ArrayLike, way: WayRound) -> _Keys:
+        check_way(way)
+        Q = np.asarray(poses, dtype=np.float64)
+        flat = Q.reshape(*Q.shape[:-2], 8 * Q.shape[-2])
+        if not is_single(flat):
+            return cls(flat, way, None)
+        return cls(flat, way, np.stack(cls(flat, way, None).rows(flat.reshape(-1, 1)), axis=1)[..., 0])
+
+    def rows(self, flat: Float) -> list[_rows.Rows]:
+        """Rows of each pose, out of the rows of all."""
+        first, *others = flat.reshape(-1, 8, flat.shape[-1])
+        return [first, *(_choose_signs(other, first, self.way) for other in others)]
+
+    def blend(self, flat: Float, weights: Float) -> list[Float]:
+        """Weighted sum, normalized (P 33)."""
+        total = _rows.weighted(weights, self.rows(flat)) if self.columns is None else self.columns @ weights
+        return _rows.normalized(total, VANISHING_NORM)
+
+    def steps(self, flat: Float) -> Callable[[_rows.Rows], Iterator[_rows.Rows]]:
+        """Give a function of poses B that gives the steps from there to each keyframe, ``B* Q_i``."""
+        if self.columns is None:
+            keys = self.rows(flat)
+            return lambda B: (_rows.dual_product(_rows.conjugate(B), key) for key in keys)
+        maps = [_rows.right_maps(key) for key in self.columns.T]
+        return lambda B: (_rows.mapped(one, np.stack(_rows.conjugate(B))) for one in maps)
 
 
 class IterativeBlend(NamedTuple):
@@ -265,19 +371,25 @@ def dib(
     >>> dual_quaternion.pose_from_dual_quat(blend.dual_quat)[1].round(6) + 0.0
     array([0., 0., 2.])
     """
-    Q = _signs_from_first(poses, way)
-    w = np.asarray(weights, dtype=np.float64)
-    blend = dlb(Q, w, way="as given")
-    scale = 1.0 + np.max(length(dual_quaternion.pose_from_dual_quat(Q)[1]), axis=-1, initial=0.0)
-    residual = np.full(blend.shape[:-1], np.inf)
-    done = 0
-    while done < max_iterations and np.any(residual > tolerance):
-        steps = dual_quaternion.multiply(dual_quaternion.conjugate(blend)[..., None, :], Q)
-        step = (w[..., None, :] @ dual_quaternion.log(steps))[..., 0, :]
-        blend = dual_quaternion.normalize(dual_quaternion.multiply(blend, dual_quaternion.exp(step)))
-        residual = np.maximum(length(step[..., :3]), length(step[..., 3:]) / scale)
-        done += 1
-    return IterativeBlend(blend, done, residual)
+    keys, w = _Keys.of(poses, way), np.asarray(weights, dtype=np.float64)
+    reach = np.max(length(dual_quaternion.pose_from_dual_quat(poses)[1]), axis=-1, initial=0.0)
+    iterations = 0
+
+    def kernel(flat: Float, weights: Float, reach: Float) -> list[Float]:
+        nonlocal iterations
+        blend, steps = keys.blend(flat, weights), keys.steps(flat)
+        residual = np.full(blend[0].shape, np.inf)
+        done = 0
+        while done < max_iterations and np.any(residual > tolerance):
+            step = _rows.weighted(weights, [_rows.logarithm(step)[0] for step in steps(blend)])
+            blend = _rows.normalized(_rows.dual_product(blend, _rows.exponential(step)))
+            residual = np.maximum(row_length(step[:3]), row_length(step[3:]) / (1.0 + reach[0]))
+            done += 1
+        iterations = max(iterations, done)
+        return [*blend, residual]
+
+    found = in_blocks(kernel, keys.flat, w, reach[..., None], width=9)
+    return IterativeBlend(found[..., :8], iterations, found[..., 8])
 
 
 def nlerp(start: ArrayLike, end: ArrayLike, fraction: ArrayLike, *, way: WayRound = "shortest") -> NDArray[np.float64]:
@@ -311,12 +423,13 @@ def nlerp(start: ArrayLike, end: ArrayLike, fraction: ArrayLike, *, way: WayRoun
     >>> nlerp([1, 0, 0, 0], [0, 0, 0, 1], 0.5).round(6)
     array([0.707107, 0.      , 0.      , 0.707107])
     """
-    first, last = np.asarray(start, dtype=np.float64), np.asarray(end, dtype=np.float64)
-    last = _choose_signs(last, first, way)
-    t = np.asarray(fraction, dtype=np.float64)[..., None]
-    blend = (1.0 - t) * first + t * last
-    vanishing = length(blend)[..., None] < VANISHING_NORM
-    return np.where(vanishing, np.nan, quaternion.normalize(blend))
+    check_way(way)
+
+    def kernel(first: _rows.Rows, last: _rows.Rows, t: _rows.Rows) -> list[Float]:
+        blend = _rows.weighted([1.0 - t[0], t[0]], [first, _choose_signs(last, first, way)])
+        return divide_rows(blend, row_length(blend), VANISHING_NORM)
+
+    return in_blocks(kernel, start, end, np.asarray(fraction, dtype=np.float64)[..., None], width=4)
 
 
 def chain(poses: ArrayLike) -> NDArray[np.float64]:
