@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-import pytransform3d.trajectories as pt
+import pytransform3d.trajectories
 from numpy.typing import NDArray
 from scipy.spatial.transform import RigidTransform
 
@@ -29,6 +29,8 @@ from elbowscrew.geometry import quaternion
 
 Float = NDArray[np.float64]
 Task = Callable[[], Any]
+
+pt: Any = pytransform3d.trajectories  # it has types in parts only
 
 SHORT = 450
 SHORT_REPEATS = 200

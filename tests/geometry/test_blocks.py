@@ -53,6 +53,10 @@ def series(seed: int) -> tuple[Float, Float, Float]:
     return random_poses((LONG,), seed), random_poses((LONG,), seed + 1), np.random.default_rng(seed).uniform(size=LONG)
 
 
+def every_other_of_twice(values: Float) -> Float:
+    return np.repeat(values, 2, axis=-1)[..., ::2]
+
+
 @pytest.mark.parametrize("name", FUNCTIONS)
 def test_blocks_and_layouts_give_what_single_calls_give(name: str) -> None:
     a, b, t = series(1)
@@ -60,8 +64,8 @@ def test_blocks_and_layouts_give_what_single_calls_give(name: str) -> None:
     whole = FUNCTIONS[name](a, b, t)
     alone = np.stack([FUNCTIONS[name](a[k : k + 1], b[k : k + 1], t[k : k + 1])[0] for k in rows])
     assert whole[list(rows)] == pytest.approx(alone, abs=1e-13)
-    for layout in (np.ascontiguousarray, np.asfortranarray, lambda x: np.repeat(x, 2, axis=-1)[..., ::2]):
-        other = FUNCTIONS[name](layout(a), layout(b), np.repeat(t, 2)[::2])
+    for layout in (np.ascontiguousarray, np.asfortranarray, every_other_of_twice):
+        other = FUNCTIONS[name](layout(a), layout(b), every_other_of_twice(t))
         assert np.abs(other - whole).max() <= 1e-13
 
 

@@ -256,7 +256,7 @@ def dual_quat_from_pose(quat: ArrayLike, position: ArrayLike) -> NDArray[np.floa
 def _from_pose(quat: _rows.Rows, position: _rows.Rows) -> list[NDArray[np.float64]]:
     w, x, y, z = quat
     a, b, c = (0.5 * row for row in position)
-    return [*quat, -(a * x + b * y + c * z), a * w + b * z - c * y, b * w + c * x - a * z, c * w + a * y - b * x]
+    return [*quat, 0.0 - (a * x + b * y + c * z), a * w + b * z - c * y, b * w + c * x - a * z, c * w + a * y - b * x]
 
 
 def pose_from_dual_quat(dual_quat: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
