@@ -7,9 +7,9 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowscrew.geometry._small_angle import length
-from elbowscrew.geometry.dual_quaternion import conjugate, multiply, pose_from_dual_quat
-from elbowscrew.geometry.quaternion import rotation_matrix_from_quat
+from elbowscrew.geometry import _rows
+from elbowscrew.geometry._blocks import in_blocks
+from elbowscrew.geometry._small_angle import row_length
 from elbowscrew.model import BodyPoints
 
 Float = NDArray[np.float64]
@@ -20,13 +20,21 @@ DEFAULT_RADIUS: Final = 0.05
 
 def angle_between(pose_a: Float, pose_b: Float) -> Float:
     """Angle of the rotation from one orientation to the other, radians in [0, pi], shape (...)."""
-    step = multiply(conjugate(pose_a), pose_b)
-    return 2.0 * np.arctan2(length(step[..., 1:4]), np.abs(step[..., 0]))
+    return in_blocks(_angle_between, pose_a, pose_b, width=1)[..., 0]
+
+
+def _angle_between(a: _rows.Rows, b: _rows.Rows) -> list[Float]:
+    step = _rows.product(_rows.conjugate(a[:4]), b[:4])
+    return [2.0 * np.arctan2(row_length(step[1:]), np.abs(step[0]))]
 
 
 def origin_distance(pose_a: Float, pose_b: Float) -> Float:
     """Distance between the body's origins in the two poses, shape (...)."""
-    return length(pose_from_dual_quat(pose_a)[1] - pose_from_dual_quat(pose_b)[1])
+    return in_blocks(lambda a, b: [row_length(_shift(a, b))], pose_a, pose_b, width=1)[..., 0]
+
+
+def _shift(a: _rows.Rows, b: _rows.Rows) -> list[Float]:
+    return [one - other for one, other in zip(_rows.position(a), _rows.position(b), strict=True)]
 
 
 def rms_displacement(pose_a: Float, pose_b: Float, points: BodyPoints) -> Float:
@@ -44,12 +52,20 @@ def rms_displacement(pose_a: Float, pose_b: Float, points: BodyPoints) -> Float:
     ndarray, shape (...)
         Exactly the RMS over the points. It is a metric, and does not change with the laboratory frame.
     """
-    (quat_a, d_a), (quat_b, d_b) = pose_from_dual_quat(pose_a), pose_from_dual_quat(pose_b)
-    dR = rotation_matrix_from_quat(quat_a) - rotation_matrix_from_quat(quat_b)
-    centroid_shift = dR @ points.centroid + (d_a - d_b)
-    about_centroid = np.sum((dR @ points.covariance) * dR, axis=(-1, -2))
-    square: Float = np.sum(centroid_shift**2, axis=-1) + about_centroid
-    return np.sqrt(np.maximum(square, 0.0))
+    c, S = points.centroid.tolist(), points.covariance.tolist()
+
+    def kernel(a: _rows.Rows, b: _rows.Rows) -> list[Float]:
+        rotations = zip(_rows.rotation_matrix(a[:4]), _rows.rotation_matrix(b[:4]), strict=True)
+        dR = [one - other for one, other in rotations]
+        square = 0.0
+        for k, shift in enumerate(_shift(a, b)):
+            x, y, z = dR[3 * k : 3 * k + 3]
+            square = square + (x * c[0] + y * c[1] + z * c[2] + shift) ** 2
+            square += x * (S[0][0] * x + 2.0 * S[0][1] * y + 2.0 * S[0][2] * z)
+            square += y * (S[1][1] * y + 2.0 * S[1][2] * z) + S[2][2] * z * z
+        return [np.sqrt(np.maximum(square, 0.0))]
+
+    return in_blocks(kernel, pose_a, pose_b, width=1)[..., 0]
 
 
 def points_from_markers(offsets: Float) -> BodyPoints:
