@@ -24,6 +24,8 @@ _METADATA: Final[dict[str, dict[str, Any]]] = {
     "svg": {"Date": None, "Creator": None},
     "pdf": {"CreationDate": None, "Creator": None, "Producer": None},
 }
+# A third less time for a tenth more bytes.
+_ENCODING: Final[dict[str, dict[str, Any]]] = {"png": {"pil_kwargs": {"compress_level": 3}}, "svg": {}, "pdf": {}}
 
 
 def save_analysis(
@@ -95,7 +97,7 @@ def _write_figures(folder: Path, analysis: Analysis, formats: Sequence[str]) -> 
             figure = make(analysis)
             settle(figure)
             for kind in formats:
-                figure.savefig(folder / f"{name}.{kind}", format=kind, metadata=_METADATA[kind])
+                figure.savefig(folder / f"{name}.{kind}", format=kind, metadata=_METADATA[kind], **_ENCODING[kind])
 
 
 def save_simulation(
@@ -185,7 +187,7 @@ def save_paper_figures(folder: str | os.PathLike[str]) -> tuple[Path, ...]:
             figure = FIGURES[name](analysis)
             settle(figure)
             stream = io.BytesIO()
-            figure.savefig(stream, format="png", metadata=_METADATA["png"])
+            figure.savefig(stream, format="png", metadata=_METADATA["png"], **_ENCODING["png"])
             contents[target / file] = stream.getvalue()
     write_files(contents, replaceable=None)
     return tuple(contents)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -48,10 +50,10 @@ def test_the_picture_is_that_of_all_points() -> None:
     rng = np.random.default_rng(1)
     time_s = np.linspace(0.0, 1.0, 200_000)
     curve = np.sin(9.0 * time_s) + rng.normal(scale=0.05, size=time_s.size)
-    pictures = []
+    pictures: list[Any] = []
     for rows in (np.arange(time_s.size), drawn_rows(curve)):
         figure = Figure(figsize=(6.7, 3.0), dpi=300)
-        canvas = FigureCanvasAgg(figure)
+        canvas: Any = FigureCanvasAgg(figure)
         figure.add_subplot().plot(time_s[rows], curve[rows], color="black", linewidth=1.3)
         canvas.draw()
         pictures.append(np.asarray(canvas.buffer_rgba(), dtype=np.float64)[..., 0])

@@ -50,7 +50,7 @@ def plot_euler_parameter(ax: Axes, analysis: Analysis, component: int) -> Axes:
     rows = analysis.keyframes.row
     ax.plot(time_s[rows], measured[rows], label="keyframes", **style.KEYFRAME)
     mark_tracking(ax, analysis)
-    ax.set_ylabel(f"$e_{component}$ (–)")
+    ax.set_ylabel(f"e{'₀₁₂₃'[component]} (–)")
     return _over_time(ax, time_s)
 
 
