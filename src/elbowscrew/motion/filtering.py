@@ -220,9 +220,10 @@ class _Lowpass:
         # Seen from its own first pose, so that digits go to the motion and not to the place in the laboratory.
         local = _continued(multiply(conjugate(run[0]), run), settling)[:count]
         ratio = np.tan(np.pi * np.arange(len(local) // 2 + 1) / len(local)) / self._tangent
-        spectrum = np.fft.rfft(local, axis=0) / (1.0 + ratio[:, None] ** 4)
-        smooth = np.fft.irfft(spectrum, len(local), axis=0)
-        return multiply(run[0], normalize(smooth[settling : settling + len(run)]))
+        attenuation = 1.0 + ratio**4
+        for component in local.T:  # one by one, which takes an eighth of the memory
+            component[...] = np.fft.irfft(np.fft.rfft(component) / attenuation, len(local))
+        return multiply(run[0], normalize(local[settling : settling + len(run)]))
 
 
 def _fast_length(least: int) -> int:
