@@ -16,7 +16,8 @@ from elbowscrew.motion.joint_axis import estimate_joint_axis, forearm_line
 from elbowscrew.motion.mean_axis import mean_axis_of
 from elbowscrew.motion.measurement import Measurement
 from elbowscrew.motion.pose_noise import STILL_STRETCH
-from elbowscrew.motion.relative import IDENTITY
+from elbowscrew.motion.relative import IDENTITY, expressed
+from elbowscrew.motion.smoothing import Smoothing
 from elbowscrew.settings import Settings
 
 Float = NDArray[np.float64]
@@ -75,11 +76,9 @@ def _instantaneous(measured: Measurement, mean: MeanAxis, settings: Settings) ->
             found = _TWIST_HZ
         low, high = (share * smoothing.rate_hz for share in _POSSIBLE_SHARES)
         smoothing = smoothing._replace(cutoff_hz=float(np.clip(min(found, _TWIST_HZ), low, high)))
-        arm, forearm = smoothing.apply(measured.arm, measured.forearm)
-        arm_pose = IDENTITY if arm is None else arm.dual_quat_lab_body
-        D = multiply(conjugate(measured.joint.reference), multiply(conjugate(arm_pose), forearm.dual_quat_lab_body))
+        D = _smoothed_displacement(measured, smoothing)
     return instantaneous_motion(
-        multiply(multiply(measured.change, D), conjugate(measured.change)),
+        expressed(D, measured.joint, settings.express_in),
         measured.joint.measured,
         measured.screw.frame,
         measured.screw.time_s,
@@ -90,6 +89,12 @@ def _instantaneous(measured: Measurement, mean: MeanAxis, settings: Settings) ->
         margin=smoothing.margin,
         lowpass_hz=smoothing.cutoff_hz or np.inf,
     )
+
+
+def _smoothed_displacement(measured: Measurement, smoothing: Smoothing) -> Float:
+    arm, forearm = smoothing.apply(measured.arm, measured.forearm)
+    arm_pose = IDENTITY if arm is None else arm.dual_quat_lab_body
+    return multiply(conjugate(measured.joint.reference), multiply(conjugate(arm_pose), forearm.dual_quat_lab_body))
 
 
 def _steps(measured: Measurement, mean: MeanAxis, settings: Settings) -> HelicalSteps | None:

@@ -87,11 +87,11 @@ def lowpass_poses(
     True
     """
     lowpass = _Lowpass(rate_hz, cutoff_hz)
-    filtered = continuous_signs(poses)
-    filtered[~np.isfinite(filtered).all(axis=1)] = np.nan
-    for run in _runs(filtered, elapsed, rate_hz, broken_rows, FEWEST_FRAMES):
-        filtered[run] = lowpass(filtered[run])
-    return filtered
+    poses = continuous_signs(poses)
+    poses[~np.isfinite(poses).all(axis=1)] = np.nan
+    for run in _runs(poses, elapsed, rate_hz, broken_rows, FEWEST_FRAMES):
+        poses[run] = lowpass(poses[run])
+    return poses
 
 
 def noise_gain(rate_hz: float, cutoff_hz: float) -> float:
@@ -223,7 +223,8 @@ class _Lowpass:
         attenuation = 1.0 + ratio**4
         for component in local.T:  # one by one, which takes an eighth of the memory
             component[...] = np.fft.irfft(np.fft.rfft(component) / attenuation, len(local))
-        return multiply(run[0], normalize(local[settling : settling + len(run)]))
+        local = normalize(local[settling : settling + len(run)])
+        return multiply(run[0], local)
 
 
 def _fast_length(least: int) -> int:

@@ -302,6 +302,8 @@ def check_swaps(one: RigidBody, other: RigidBody, recording: Recording, elapsed:
 
 
 def _lost(body: RigidBody, rows: Index, reason: TrackingLoss) -> RigidBody:
+    if not rows.size and body.tracked.all():
+        return body  # as most are, and no copy is needed
     loss = body.loss.copy()
     loss[rows] = reason
     lost = (loss != TrackingLoss.NONE)[:, None]
