@@ -13,7 +13,7 @@ from elbowscrew.errors import RecordingError
 
 _HEAD_BYTES: Final = 65536
 _MAX_LINE: Final = 1 << 24
-_BLOCK_CHARACTERS: Final = 1 << 21
+_BLOCK_CHARACTERS: Final = 1 << 20
 csv.field_size_limit(_MAX_LINE)
 
 # Signatures of files that are taken for a CSV export by mistake.
