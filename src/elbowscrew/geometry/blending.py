@@ -150,7 +150,12 @@ class _Keys(NamedTuple):
             keys = self.rows(flat)
             return lambda B: (_rows.dual_product(_rows.conjugate(B), key) for key in keys)
         maps = [_rows.right_maps(key) for key in self.columns.T]
-        return lambda B: (_rows.mapped(one, np.stack(_rows.conjugate(B))) for one in maps)
+
+        def steps(B: _rows.Rows) -> Iterator[_rows.Rows]:
+            back = np.stack(_rows.conjugate(B))
+            return (_rows.mapped(one, back) for one in maps)
+
+        return steps
 
 
 class IterativeBlend(NamedTuple):
