@@ -31,6 +31,8 @@ _METADATA: Final[dict[str, dict[str, Any]]] = {
     "svg": {"Date": None, "Creator": None},
     "pdf": {"CreationDate": None, "Creator": None, "Producer": None},
 }
+# A third less time for a tenth more bytes.
+_ENCODING: Final[dict[str, dict[str, Any]]] = {"png": {"pil_kwargs": {"compress_level": 3}}, "svg": {}, "pdf": {}}
 
 
 def save_analysis(
@@ -111,7 +113,7 @@ def _draw(folder: Path, figures: Mapping[str, Callable[[], Figure]], formats: Se
             figure = make()
             settle(figure)
             for kind in formats:
-                figure.savefig(folder / f"{name}.{kind}", format=kind, metadata=_METADATA[kind])
+                figure.savefig(folder / f"{name}.{kind}", format=kind, metadata=_METADATA[kind], **_ENCODING[kind])
 
 
 def save_simulation(
@@ -201,7 +203,7 @@ def save_paper_figures(folder: str | os.PathLike[str]) -> tuple[Path, ...]:
             figure = FIGURES[name](analysis)
             settle(figure)
             stream = io.BytesIO()
-            figure.savefig(stream, format="png", metadata=_METADATA["png"])
+            figure.savefig(stream, format="png", metadata=_METADATA["png"], **_ENCODING["png"])
             contents[target / file] = stream.getvalue()
     write_files(contents, replaceable=None)
     return tuple(contents)

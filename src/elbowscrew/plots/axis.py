@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 from elbowscrew.geometry.dual_quaternion import conjugate, multiply, pose_from_dual_quat, transform_points
 from elbowscrew.model import Analysis
 from elbowscrew.plots import style
-from elbowscrew.tables import angle_in, length_in
+from elbowscrew.plots.decimation import drawn_rows
+from elbowscrew.tables import LengthUnit, angle_in, length_in
 
 Float = NDArray[np.float64]
 
@@ -52,7 +53,7 @@ def plot_axes_in_space(ax: Axes3D, analysis: Analysis) -> Axes3D:
     ax.add_collection3d(Line3DCollection(list(segments), colors=colors, linewidths=0.7, alpha=0.8))
     ends = length_in(mean.center + 1.3 * half * np.outer([-1.0, 1.0], mean.direction), unit)
     ax.plot(*ends.T, color="black", linewidth=1.6, label="mean axis")
-    ax.plot(*length_in(path, unit).T, color="#D55E00", linewidth=1.2, label="forearm path")
+    plot_path(ax, path, unit)
     shown = [segments.reshape(-1, 3), ends, length_in(seen, unit)]
     if arm is not None:
         ax.plot(*length_in(arm[None], unit).T, "^", color="#0072B2", markersize=5, label="arm")
@@ -65,6 +66,12 @@ def plot_axes_in_space(ax: Axes3D, analysis: Analysis) -> Axes3D:
     for name, label in (("x", ax.set_xlabel), ("y", ax.set_ylabel), ("z", ax.set_zlabel)):
         label(f"{name} ({unit})", labelpad=-2)
     return ax
+
+
+def plot_path(ax: Axes3D, path: Float, unit: LengthUnit) -> None:
+    """Draw the path (N, 3) of the forearm's origin, meters."""
+    rows = drawn_rows(*path.T)
+    ax.plot(*length_in(path[rows], unit).T, color="#D55E00", linewidth=1.2, label="forearm path")
 
 
 def axis_segments(analysis: Analysis, center: Float, half: float) -> tuple[NDArray[np.int64], Float]:
