@@ -124,17 +124,6 @@ def _filtered(measured: Measurement, settings: Settings) -> tuple[float, Float]:
     return float(smoothing.cutoff_hz or np.inf), np.where(np.isfinite(pose), pose, measured.displacement)
 
 
-def _filtered(measured: Measurement, settings: Settings) -> tuple[float, Float]:
-    """Cut-off, and the displacements of filtered bodies, with the signs of the unfiltered ones."""
-    smoothing = twist_smoothing(measured, settings)
-    if isinstance(settings.lowpass_hz, float):
-        smoothing = smoothing._replace(cutoff_hz=settings.lowpass_hz)
-    pose = smoothed_displacement(measured, smoothing)
-    flipped = np.sum(pose[:, :4] * measured.displacement[:, :4], axis=1) < 0.0
-    pose = np.where(flipped[:, None], -pose, pose)
-    return float(smoothing.cutoff_hz or np.inf), np.where(np.isfinite(pose), pose, measured.displacement)
-
-
 def _decimated(factor: int, measured: Measurement, usable: Bool, phases: ModelPhases) -> Treatment:
     start = int(phases.bound_rows[0])
     kept = usable & ((np.arange(usable.size) - start) % factor == 0)
