@@ -53,9 +53,9 @@ def test_every_setting_is_an_option_and_offers_the_same_choices() -> None:
 
 
 def _choices(annotation: Any) -> set[str]:
-    """Literals anywhere inside a type; those of the enumeration of figure formats by their values."""
-    if annotation is options.FigureFormat:
-        return {kind.value for kind in options.FigureFormat}
+    """Literals anywhere inside a type; those of an enumeration by their values."""
+    if annotation in (options.FigureFormat, options.ExportFormat):
+        return {kind.value for kind in annotation}
     found = set()
     for part in get_args(annotation):
         if isinstance(part, str):

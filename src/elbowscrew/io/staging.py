@@ -15,16 +15,21 @@ from elbowscrew.errors import OutputError
 
 FIGURE_NAMES: Final = ("theta", "euler_parameters", "axis", "joint_axis", "error")
 FIGURE_FORMATS: Final = ("png", "svg", "pdf")
+TABLE_NAMES: Final = (
+    "screw",
+    "interpolation",
+    "instantaneous",
+    "steps",
+    "repetitions",
+    "repetition_curve",
+    "anatomy",
+)
 RESULT_FILES: Final = (
-    "screw.csv",
-    "interpolation.csv",
     "summary.json",
     "joint.json",
-    "instantaneous.csv",
-    "steps.csv",
-    "repetitions.csv",
-    "repetition_curve.csv",
-    "anatomy.csv",
+    *(f"{name}.{kind}" for name in TABLE_NAMES for kind in ("csv", "parquet")),
+    "trial.mat",
+    "joint_angle.sto",
     *(f"figures/{name}.{kind}" for name in FIGURE_NAMES for kind in FIGURE_FORMATS),
 )
 """All that a result folder may hold."""
