@@ -8,6 +8,7 @@ import typer
 
 from elbowscrew._version import __version__
 from elbowscrew.cli.analyze import analyze
+from elbowscrew.cli.batch import batch
 from elbowscrew.cli.info import info
 from elbowscrew.cli.paper import paper
 from elbowscrew.cli.simulate import simulate
@@ -35,6 +36,7 @@ def _common(
 
 
 app.command()(analyze)
+app.command()(batch)
 app.command()(info)
 app.command()(simulate)
 app.command()(paper)
