@@ -20,7 +20,7 @@ _HEAD_BYTES: Final = 65536
 _MOST_FAULTS: Final = 5
 _SETTINGS: Final = frozenset(option_name(name) for name in Settings.model_fields)
 _OURS: Final = frozenset({"path", "name", "landmarks"})
-_LANGUAGE: Final = re.compile(r"[\s_]+")
+_BLANKS: Final = re.compile(r"[\s_]+")
 
 
 def is_manifest(path: Path) -> bool:
@@ -61,7 +61,6 @@ def read_manifest(path: Path) -> list[Trial]:
             faults.append(f"{path}:{line}: expected {len(header)} cells as in the header, found {len(cells)}")
             continue
         values = dict(zip(keys, cells, strict=True))
-        named = dict(zip(header, cells, strict=True))
         given = values["path"].replace("\\", "/") if os.name == "nt" else values["path"]
         if not given:
             faults.append(f"{path}:{line}: column 'path': the cell is empty; expected the path of a recording")
@@ -91,7 +90,11 @@ def read_manifest(path: Path) -> list[Trial]:
             Trial(
                 path=Path(os.path.abspath(path.parent / given)),  # noqa: PTH100 - keeps links
                 label=Path(given).as_posix(),
-                columns={name: text for name, text in named.items() if option_name(name) not in ("path", "name")},
+                columns={
+                    column: text
+                    for column, key, text in zip(header, keys, cells, strict=True)
+                    if key not in ("path", "name")
+                },
                 settings=settings,
                 landmarks=path.parent / marks if marks else None,
                 name=values.get("name", ""),
@@ -144,7 +147,7 @@ def _columns(path: Path, header: list[str]) -> list[str]:
             raise UsageError(msg)
         if key in _OURS or key in _SETTINGS:
             continue
-        close = difflib.get_close_matches(key, _SETTINGS | _OURS, n=1, cutoff=0.85)
+        close = difflib.get_close_matches(_spelled(name), _SETTINGS | _OURS, n=1, cutoff=0.85)
         if close:
             msg = f"{path}:1: column {name!r}: did you mean the setting {close[0]!r}? If not, give it another name"
             raise UsageError(msg)
@@ -155,8 +158,13 @@ def _columns(path: Path, header: list[str]) -> list[str]:
 
 
 def _key(name: str) -> str:
-    key = option_name(_LANGUAGE.sub("_", name.strip()).casefold())
+    key = _spelled(name)
     return key if key in _SETTINGS | _OURS else name
+
+
+def _spelled(name: str) -> str:
+    """Spell a column as the options are: ``Min_Angle`` and ``min angle`` are ``min-angle``."""
+    return option_name(_BLANKS.sub("_", name.strip()).casefold())
 
 
 def _value(key: str, text: str, delimiter: str) -> object:

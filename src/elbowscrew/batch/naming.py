@@ -72,21 +72,26 @@ def _name(path: str, length: int) -> str:
     if not digits:
         return plain
     digest = hashlib.sha256(shown.encode("utf-8", "surrogatepass")).hexdigest()[:digits]
-    return f"{_shortened(plain).strip(' .-') or 'trial'}-{digest}"
+    short = _shortened(plain).strip(" .-") or "trial"
+    return f"{'_' if _is_device(short) else ''}{short}-{digest}"
 
 
 def _is_faithful(path: str) -> bool:
     """Whether the plain name says all of the path, and every file system takes it."""
     plain = _plain(path)
-    stem = plain.split(".")[0].strip().casefold()
     return (
         plain == "__".join(_parts(path))
         and plain == _shortened(plain)
         and plain == plain.strip(" .-")
         and bool(plain)
-        and stem not in _DEVICES
+        and not _is_device(plain)
         and folded(plain) not in _TAKEN
     )
+
+
+def _is_device(name: str) -> bool:
+    """Whether Windows takes a name for a device, whatever it ends with."""
+    return name.split(".")[0].strip().casefold() in _DEVICES
 
 
 def _plain(path: str) -> str:

@@ -23,6 +23,7 @@ Task = TypeVar("Task")
 Report = Callable[[int, Failure | None], None]
 
 _SPARE: Final = 2
+_TRIES_ALONE: Final = 2
 
 
 def run_tasks(
@@ -34,8 +35,9 @@ def run_tasks(
 ) -> list[Failure | None]:
     """Do all tasks, and say of each how it failed, if it did.
 
-    When a worker dies, which of the trials in its hands killed it is not known: each of them is tried once more, at the
-    end and alone. Who kills the worker again has failed; the others come out as if nothing had been.
+    When a worker dies, which of the trials in hand killed it is not known, nor which of them had been begun: each is
+    tried at the end and alone. Who kills its worker then, and kills it again, has failed; the others come out as if
+    nothing had been.
 
     Parameters
     ----------
@@ -91,13 +93,15 @@ def run_tasks(
             if broken:
                 executor.drop()
         for index in sorted(suspects):
-            flying.clear()
-            hand_out(deque([index]), 1)
-            twice: list[int] = []
-            if _collect(flying, settle, twice.append):
-                executor.drop()
-            for culprit in twice:
-                settle(culprit, _lost(tasks[culprit]))
+            for _ in range(_TRIES_ALONE):
+                died: list[int] = []
+                hand_out(deque([index]), 1)
+                if _collect(flying, settle, died.append):
+                    executor.drop()
+                if not died:
+                    break
+            else:
+                settle(index, _lost(tasks[index]))
     return found
 
 
