@@ -5,6 +5,7 @@ from __future__ import annotations
 import platform
 from collections.abc import Iterable
 from dataclasses import asdict
+from functools import cache
 from importlib.metadata import version
 from typing import Any, Final
 
@@ -101,7 +102,13 @@ def landmarks_summary(landmarks: Landmarks | None) -> dict[str, Any] | None:
 
 def library_versions() -> dict[str, str]:
     """Versions of Python and of the libraries that results stand on."""
-    return {"python": platform.python_version(), **{name: version(name) for name in _LIBRARIES}}
+    return {"python": platform.python_version(), **{name: _version_of(name) for name in _LIBRARIES}}
+
+
+@cache
+def _version_of(library: str) -> str:
+    """Looked up once: a fifth of the time of a short trial would go into it."""
+    return version(library)
 
 
 def warnings_summary(warnings: Iterable[QualityWarning]) -> list[dict[str, Any]]:
