@@ -222,7 +222,8 @@ STUDY_COLUMNS: Final = (
     _study(Quantity.LENGTH, _MODEL, "max_rms_displacement_mm"),
     _study(Quantity.LENGTH, _MODEL, "points", "radius_of_gyration_mm"),
     _study(Quantity.LABEL, _MODEL, "points", "from", name="radius_from"),
-    _study(Quantity.LABEL, "warnings", name="warnings"),
+    _study(Quantity.LABEL, "warnings", "warning", name="warnings"),
+    _study(Quantity.LABEL, "warnings", "note", name="notes"),
     _study(Quantity.LABEL, "source", "sha256", name="source_sha256"),
     _study(Quantity.LABEL, "elbowscrew"),
 )
@@ -248,7 +249,10 @@ def study_values(summary: Any, angle_unit: AngleUnit, length_unit: LengthUnit) -
     for column in STUDY_COLUMNS:
         value = summary
         for key in column.keys:
-            value = None if value is None else value[key]
+            if isinstance(value, list) and isinstance(key, str):
+                value = [one["code"] for one in value if one["severity"] == key]
+            else:
+                value = None if value is None else value[key]
         scale = scales.get(column.quantity, 1.0)
         values.append(value if value is None or scale == 1.0 else value * scale)
     return values

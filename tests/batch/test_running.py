@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import subprocess
 import sys
 import threading
 import time
@@ -9,6 +10,7 @@ from pathlib import Path
 
 import pytest
 from hazards import Hazard, work
+from hazards import __file__ as hazards_file
 
 from elbowscrew.batch.executors import open_executor
 from elbowscrew.batch.outcome import Failure
@@ -38,6 +40,28 @@ def test_a_worker_that_dies_is_its_trials_failure_only(tmp_path: Path, workers: 
     # Twice alone, and before that perhaps in company.
     assert all(2 <= task.traces <= 3 for task in tasks if task.kind != "" and task.kind != "fails")
     assert all(1 <= task.traces <= 2 for task in tasks if task.kind == "" or task.kind == "fails")
+
+
+ON_DASK = """
+import sys
+sys.path.insert(0, sys.argv[2])
+from hazards import Hazard, work
+from elbowscrew.batch.executors import open_executor
+from elbowscrew.batch.running import run_tasks
+if __name__ == "__main__":
+    tasks = [Hazard(f"t{k}", kind, sys.argv[1]) for k, kind in enumerate(["", "kills", "", "fails", ""])]
+    found = run_tasks(tasks, work, open_executor("local-cluster", 1), 1)
+    print([failure and failure.error_class for failure in found])
+"""
+
+
+def test_the_same_holds_for_workers_of_dask(tmp_path: Path) -> None:
+    script = tmp_path / "on_dask.py"
+    script.write_text(ON_DASK)
+    (tmp_path / "traces").mkdir()
+    arguments = [script, tmp_path / "traces", Path(hazards_file).parent]
+    done = subprocess.run([sys.executable, *map(str, arguments)], capture_output=True, text=True, check=True)
+    assert done.stdout == "[None, 'WorkerLost', None, 'AnalysisError', None]\n"
 
 
 def test_all_tasks_may_kill_their_workers(tmp_path: Path) -> None:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import logging
 import multiprocessing
 import os
+import sys
+import warnings
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, ProcessPoolExecutor
 from contextlib import AbstractContextManager, contextmanager
@@ -87,11 +89,11 @@ def _cluster(scheduler: str, workers: int) -> Iterator[Executor]:
             "MPLBACKEND": "agg",
         },
     }
-    with dask.config.set(quiet):
+    with dask.config.set(quiet), _silence():
         try:
             if scheduler == LOCAL_CLUSTER:
                 cluster = distributed.LocalCluster(
-                    n_workers=workers, threads_per_worker=1, dashboard_address=None, silence_logs=logging.CRITICAL
+                    n_workers=workers, threads_per_worker=1, dashboard_address=":0", silence_logs=logging.CRITICAL
                 )
             else:
                 cluster = None
@@ -109,3 +111,20 @@ def _cluster(scheduler: str, workers: int) -> Iterator[Executor]:
             client.close()
             if cluster is not None:
                 cluster.close()
+
+
+@contextmanager
+def _silence() -> Iterator[None]:
+    """Keep Dask's own words on ports and connections to itself: what matters comes as an error."""
+    loggers = [logging.getLogger(name) for name in logging.root.manager.loggerDict if name.startswith("distributed")]
+    levels = [logger.level for logger in loggers]
+    with warnings.catch_warnings():
+        if not sys.warnoptions:
+            warnings.simplefilter("ignore")
+        for logger in loggers:
+            logger.setLevel(logging.CRITICAL + 1)
+        try:
+            yield
+        finally:
+            for logger, level in zip(loggers, levels, strict=True):
+                logger.setLevel(level)

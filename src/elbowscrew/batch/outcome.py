@@ -100,7 +100,6 @@ def _cell(value: Any) -> str:
         case float():
             return repr(value + 0.0)
         case list():
-            # Frames are numbers, warnings have codes.
-            return safe_cell(";".join(str(one["code"] if isinstance(one, dict) else one) for one in value))
+            return safe_cell(";".join(map(str, value)))
         case _:
             return safe_cell(str(value))

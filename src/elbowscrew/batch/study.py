@@ -57,6 +57,8 @@ class StudyResult:
         Result folders of all trials, failed ones included, in the order of the tables.
     kept : int
         Trials whose results were there already.
+    warned : int
+        Trials with a result that has warnings.
     failed : tuple of FailedTrial
     others : tuple of str
         Results in the folder that the tables do not tell of: of earlier trials, or of trials that fail now.
@@ -65,6 +67,7 @@ class StudyResult:
     folder: Path
     names: tuple[str, ...]
     kept: int
+    warned: int
     failed: tuple[FailedTrial, ...]
     others: tuple[str, ...]
 
@@ -157,6 +160,7 @@ def run_study(
             folder=folder,
             names=tuple(task.folder.name for task in tasks),
             kept=kept,
+            warned=sum(any(one["severity"] == "warning" for one in summary["warnings"]) for *_, summary in rows),
             failed=failures,
             others=tuple(name for name in others if name not in done),
         )

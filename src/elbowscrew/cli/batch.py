@@ -13,6 +13,8 @@ _TRIALS, _WORK = "Trials", "Work"
 
 SOME_FAILED = 7
 
+_HANDED_TO_CLUSTER = 1000  # it may grow while it works
+
 
 @analysis_options
 def batch(
@@ -77,14 +79,15 @@ def batch(
     A result folder for each, summary.csv, failures.csv. Trials whose results are up to date are not analyzed again. The
     exit code is 7 if some failed.
     """
-    from elbowscrew.batch.executors import available_cores, open_executor
+    from elbowscrew.batch.executors import LOCAL_CLUSTER, available_cores, open_executor
     from elbowscrew.batch.study import run_study
     from elbowscrew.batch.trials import find_trials
     from elbowscrew.cli import render
     from elbowscrew.cli.progress import shown_progress
 
     landmarks = given.pop("landmarks")
-    count = workers or available_cores()
+    of_cluster = scheduler is not None and scheduler != LOCAL_CLUSTER
+    count = workers or (_HANDED_TO_CLUSTER if of_cluster else available_cores())
     executor = open_executor(scheduler, count)
     study = find_trials(paths, recursive=recursive, follow_symlinks=follow_symlinks, exclude=output)
     render.skipped_files(study.skipped, verbose=verbose)

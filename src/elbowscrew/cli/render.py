@@ -240,6 +240,7 @@ def study_statement(result: StudyResult, skipped: Sequence[Skipped]) -> dict[str
         "trials": len(result.names),
         "analyzed": len(result.names) - result.kept - len(result.failed),
         "up_to_date": result.kept,
+        "with_warnings": result.warned,
         "failed": len(result.failed),
         "failures": [
             {
@@ -259,7 +260,12 @@ def study_table(result: StudyResult) -> None:
     """Write what a batch has done, and the first of its failures."""
     good = len(result.names) - len(result.failed)
     kept = f", {result.kept} of them up to date already" if result.kept else ""
-    rows = [("Trials", f"{len(result.names)}"), ("Results", f"{good}{kept}"), ("Failed", f"{len(result.failed)}")]
+    warned = f"; {result.warned} with warnings, see summary.csv" if result.warned else ""
+    rows = [
+        ("Trials", f"{len(result.names)}"),
+        ("Results", f"{good}{kept}{warned}"),
+        ("Failed", f"{len(result.failed)}"),
+    ]
     rows += [("", one_line(one.failure.message)) for one in result.failed[:_FAILURES_TOLD]]
     if len(result.failed) > _FAILURES_TOLD:
         rows.append(("", f"and {len(result.failed) - _FAILURES_TOLD} more in failures.csv"))
