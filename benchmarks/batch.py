@@ -14,6 +14,7 @@ import argparse
 import csv
 import os
 import random
+import resource
 import shutil
 import signal
 import subprocess
@@ -24,6 +25,7 @@ import time
 from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
+from typing import NamedTuple
 
 sys.path.insert(0, str(Path(__file__).parent.parent / "tests" / "support"))
 
@@ -49,12 +51,13 @@ def main() -> None:
 def speed(folder: Path, trials: int | None) -> None:
     count = trials or 200
     study(folder / "speed", count, frames=450)
-    single = float(subprocess.run(
-        [sys.executable, __file__.replace("batch.py", "batch_single.py"), folder / "speed", folder / "single"],
-        check=True, capture_output=True, text=True,
-    ).stdout)  # fmt: skip
-    print(f"single-trial work, one process: {single:7.2f} s, {1000 * single / count:.0f} ms a trial")
-    times = {}
+    script = Path(__file__).with_name("batch_single.py")
+    single = [sys.executable, *map(str, (script, folder / "speed", folder / "single"))]
+    one_thread = {**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MPLBACKEND": "agg"}
+    told = subprocess.run(single, check=True, capture_output=True, text=True, env=one_thread).stdout
+    alone, processor = map(float, told.split())
+    print(f"single-trial work, one process: {alone:7.2f} s ({processor:.2f} s of processor time)")
+    found = {}
     for workers in (1, 2):
         for share in (4, 1):
             some = folder / f"speed{share}"
@@ -62,13 +65,25 @@ def speed(folder: Path, trials: int | None) -> None:
             some.mkdir()
             for path in sorted((folder / "speed").iterdir())[: count // share]:
                 os.link(path, some / path.name)
-            elapsed, memory = timed(some, folder / f"out{workers}", workers)
-            print(
-                f"{workers} workers, {count // share:4d} trials: {elapsed:7.2f} s; largest worker {memory / 1e6:.0f} MB"
-            )
-            times[workers] = elapsed
-    print(f"2 workers / 1 worker: {times[1] / times[2]:.2f} x as fast (at least 1.8)")
-    print(f"overhead of 1 worker over the single-trial work: {100 * (times[1] / single - 1):.1f} % (at most 10)")
+            found[workers] = timed(some, folder / f"out{workers}", workers)
+            print(f"{workers} workers, {count // share:4d} trials: {found[workers]}")
+    print(f"2 workers / 1 worker: {found[1].elapsed / found[2].elapsed:.2f} x as fast (at least 1.8)")
+    for name, before, after in (
+        ("time", alone, found[1].elapsed),
+        ("processor time", processor, found[1].processor),
+    ):
+        told = f"{100 * (after / before - 1):.1f} % (at most 10)"
+        print(f"overhead of 1 worker over the single-trial work, {name}: {told}")
+
+
+class Timing(NamedTuple):
+    elapsed: float
+    processor: float
+    memory: int
+
+    def __str__(self) -> str:
+        processor = f"{self.processor:.2f} s of processor time"
+        return f"{self.elapsed:7.2f} s ({processor}); largest worker {self.memory / 1e6:.0f} MB"
 
 
 def broken(folder: Path, trials: int | None) -> None:
@@ -146,18 +161,19 @@ def run(data: Path, out: Path, *options: object, code: int) -> float:
     return time.perf_counter() - start
 
 
-def timed(data: Path, out: Path, workers: int) -> tuple[float, int]:
-    """Time of a batch, and the most memory one of its workers took."""
+def timed(data: Path, out: Path, workers: int) -> Timing:
+    """Time of a batch, processor time of all its processes, and the most memory one of its workers took."""
     shutil.rmtree(out, ignore_errors=True)
-    start = time.perf_counter()
+    before, start = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
     process = subprocess.Popen(command(data, "-q", "-o", out, "--workers", workers))
     most: list[int] = [0]
     watcher = threading.Thread(target=watch, args=(process, most))
     watcher.start()
     assert process.wait() == 0
-    elapsed = time.perf_counter() - start
+    elapsed, after = time.perf_counter() - start, resource.getrusage(resource.RUSAGE_CHILDREN)
     watcher.join()
-    return elapsed, max(most)
+    processor = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    return Timing(elapsed, processor, max(most))
 
 
 def watch(process: subprocess.Popen[bytes], most: list[int]) -> None:

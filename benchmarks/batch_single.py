@@ -1,4 +1,4 @@
-"""The yardstick of ``batch.py``: seconds of the work on each trial of a folder, one after another in this process.
+"""The yardstick of ``batch.py``: seconds, and seconds of processor time, of the work on a folder in one process.
 
 Reading, analyzing and writing, as ``elbowscrew analyze`` does them; imports and the first trial, which fills caches,
 are not counted, but made up for by the mean of the others.
@@ -15,12 +15,13 @@ from elbowscrew.results import analyze_file
 
 
 def main(data: Path, out: Path) -> None:
-    times = []
+    times, processor = [], []
     for path in sorted(data.glob("*.csv")):
-        start = time.perf_counter()
+        start, start_processor = time.perf_counter(), time.process_time()
         save_analysis(analyze_file(path, Settings()), out / path.stem, force=True)
         times.append(time.perf_counter() - start)
-    print(sum(times[1:]) * len(times) / (len(times) - 1))
+        processor.append(time.process_time() - start_processor)
+    print(*(sum(values[1:]) * len(values) / (len(values) - 1) for values in (times, processor)))
 
 
 if __name__ == "__main__":

@@ -45,8 +45,29 @@ class FailedTrial:
     failure: Failure
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StudyRow:
+    """What a row of ``summary.csv`` is made from.
+
+    Attributes
+    ----------
+    trial : str
+        Name of the result folder.
+    path : str
+    columns : mapping
+        What the manifest says.
+    summary : mapping
+        The trial's ``summary.json``.
+    """
+
+    trial: str
+    path: str
+    columns: Mapping[str, str]
+    summary: Mapping[str, Any]
+
+
 def summary_table(
-    rows: Iterable[tuple[str, str, Mapping[str, str], Mapping[str, Any]]],
+    rows: Iterable[StudyRow],
     carried: Sequence[str],
     angle_unit: AngleUnit,
     length_unit: LengthUnit,
@@ -55,8 +76,7 @@ def summary_table(
 
     Parameters
     ----------
-    rows : iterable of tuple
-        Name, path, manifest's cells and ``summary.json`` of each trial.
+    rows : iterable of StudyRow
     carried : sequence of str
         Columns of the manifest.
     angle_unit : {"deg", "rad"}
@@ -69,8 +89,13 @@ def summary_table(
     """
     header = ["trial", "path", *carried, *study_header(angle_unit, length_unit)]
     lines = (
-        [name, path, *(cells.get(column, "") for column in carried), *study_values(summary, angle_unit, length_unit)]
-        for name, path, cells, summary in rows
+        [
+            row.trial,
+            row.path,
+            *(row.columns.get(name, "") for name in carried),
+            *study_values(row.summary, angle_unit, length_unit),
+        ]
+        for row in rows
     )
     return _csv(header, lines)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -11,7 +11,7 @@ from typing import Any
 from elbowscrew.batch.executors import OpenExecutor
 from elbowscrew.batch.folder import batch_folder
 from elbowscrew.batch.naming import result_names
-from elbowscrew.batch.outcome import FailedTrial, Failure, failures_table, summary_table
+from elbowscrew.batch.outcome import FailedTrial, Failure, StudyRow, failures_table, summary_table
 from elbowscrew.batch.resume import is_current
 from elbowscrew.batch.running import run_tasks
 from elbowscrew.batch.task import TrialTask, analyze_trial, versions_here
@@ -128,42 +128,58 @@ def run_study(
         todo = [k for k, task in enumerate(tasks) if restart or not is_current(task)]
         if todo:
             _remove_tables(folder)  # what stands there is of a batch that is finished; this one is not
-        failed: dict[int, Failure] = {}
-        kept = len(tasks) - len(todo)
-        finished = kept
-
-        def settled(index: int, failure: Failure | None) -> None:
-            nonlocal finished
-            finished += 1
-            latest = None
-            if failure is not None:
-                failed[todo[index]] = failure
-                latest = FailedTrial(path=tasks[todo[index]].label, failure=failure)
-            report(Progress(total=len(tasks), done=finished, failed=len(failed), kept=kept, latest=latest))
-
-        report(Progress(total=len(tasks), done=finished, failed=0, kept=kept))
-        if todo:
-            run_tasks([tasks[k] for k in todo], analyze_trial, open_executor, workers, settled)
+        failed = _analyze(tasks, todo, open_executor, workers, report)
         failures = tuple(FailedTrial(path=tasks[k].label, failure=failed[k]) for k in sorted(failed))
-        carried = list(dict.fromkeys(name for trial in trials for name in trial.columns))
         rows = [
-            (task.folder.name, task.label, trial.columns, _summary_of(task))
+            StudyRow(trial=task.folder.name, path=task.label, columns=trial.columns, summary=_summary_of(task))
             for k, (task, trial) in enumerate(zip(tasks, trials, strict=True))
             if k not in failed
         ]
+        carried = list(dict.fromkeys(name for trial in trials for name in trial.columns))
         replace_file(folder / FAILURES_TABLE, failures_table(failures))
         replace_file(folder / SUMMARY_TABLE, summary_table(rows, carried, common.angle_unit, common.length_unit))
         # Both tables are in their places: what is made from them, a page of the study, is made here.
-        done = {name for name, *_ in rows}
-        others = sorted(path.parent.name for path in folder.glob(f"*/{SUMMARY}") if is_summary(path))
         return StudyResult(
             folder=folder,
             names=tuple(task.folder.name for task in tasks),
-            kept=kept,
-            warned=sum(any(one["severity"] == "warning" for one in summary["warnings"]) for *_, summary in rows),
+            kept=len(tasks) - len(todo),
+            warned=sum(any(one["severity"] == "warning" for one in row.summary["warnings"]) for row in rows),
             failed=failures,
-            others=tuple(name for name in others if name not in done),
+            others=_others(folder, {row.trial for row in rows}),
         )
+
+
+def _analyze(
+    tasks: Sequence[TrialTask],
+    todo: Sequence[int],
+    open_executor: OpenExecutor,
+    workers: int,
+    report: Callable[[Progress], None],
+) -> dict[int, Failure]:
+    """Analyze the trials that are left, tell of each, and give the failures."""
+    failed: dict[int, Failure] = {}
+    done = kept = len(tasks) - len(todo)
+
+    def tell(latest: FailedTrial | None = None) -> None:
+        report(Progress(total=len(tasks), done=done, failed=len(failed), kept=kept, latest=latest))
+
+    def settled(index: int, failure: Failure | None) -> None:
+        nonlocal done
+        done += 1
+        if failure is None:
+            tell()
+        else:
+            failed[todo[index]] = failure
+            tell(FailedTrial(path=tasks[todo[index]].label, failure=failure))
+
+    tell()
+    run_tasks([tasks[k] for k in todo], analyze_trial, open_executor, workers, settled)
+    return failed
+
+
+def _others(folder: Path, told: Collection[str]) -> tuple[str, ...]:
+    results = (path.parent.name for path in folder.glob(f"*/{SUMMARY}") if is_summary(path))
+    return tuple(sorted(name for name in results if name not in told))
 
 
 def _tasks(
