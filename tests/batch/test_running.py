@@ -5,7 +5,6 @@ from __future__ import annotations
 import subprocess
 import sys
 import threading
-import time
 from pathlib import Path
 
 import pytest
@@ -71,10 +70,9 @@ def test_all_tasks_may_kill_their_workers(tmp_path: Path) -> None:
 
 def test_what_meets_every_trial_stops_all_at_once(tmp_path: Path) -> None:
     tasks = hazards(tmp_path, "", "full", "slow", *[""] * 20)
-    start = time.monotonic()
     with pytest.raises(OutputError, match="the disk is full"):
         run_tasks(tasks, work, open_executor(None, 2), 2)
-    assert time.monotonic() - start < 50.0  # the slow one is not waited for
+    assert not (tmp_path / "waited for").exists()
     assert sum(task.traces for task in tasks) < len(tasks)
 
 
@@ -82,10 +80,9 @@ def test_an_interruption_ends_the_workers(tmp_path: Path) -> None:
     def interrupt(_index: int, _failure: Failure | None) -> None:
         raise KeyboardInterrupt
 
-    start = time.monotonic()
     with pytest.raises(KeyboardInterrupt):
         run_tasks(hazards(tmp_path, "", "slow", "slow"), work, open_executor(None, 2), 2, interrupt)
-    assert time.monotonic() - start < 50.0
+    assert not (tmp_path / "waited for").exists()
 
 
 def test_workers_that_cannot_do_the_work_are_no_failure_of_trials(tmp_path: Path) -> None:

@@ -240,10 +240,12 @@ def test_an_interrupted_batch_leaves_whole_results_only(
 def test_killed_workers_cost_no_trial(tmp_path: Path, running: subprocess.Popen[str]) -> None:
     """Two times a worker is shot from outside: its trial is done again, and all comes out."""
     for _ in range(2):
-        victims = workers_of(running.pid)
-        if victims:
-            os.kill(victims[0], signal.SIGKILL)
-        time.sleep(0.3)
+        while not (victims := workers_of(running.pid)):
+            assert running.poll() is None
+            time.sleep(0.005)
+        os.kill(victims[0], signal.SIGKILL)
+        while victims[0] in workers_of(running.pid):
+            time.sleep(0.005)
     _, error = running.communicate(timeout=120)
     assert running.returncode == 0, error
     assert len(rows(tmp_path / "out" / "summary.csv")) == 40

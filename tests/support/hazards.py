@@ -38,4 +38,5 @@ def work(task: Hazard) -> Failure | None:
             return Failure(error_class="OutputError", message="the disk is full", exit_code=6, stops_all=True)
         case "slow":
             time.sleep(60)
+            Path(task.folder, "waited for").touch()
     return None
