@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -84,9 +85,15 @@ def test_leftovers_of_ours_go_and_nothing_else(tmp_path: Path) -> None:
         elsewhere.mkdir()
         (elsewhere / "mine").touch()
         (out / ".elbowscrew-0123456789abcde1.partial").symlink_to(elsewhere)
-    left = {path.name for path in out.iterdir() if path.suffix != ".lock"}
-    assert left == {*kept, ".elbowscrew-0123456789abcde1.partial"}
+        leave = shutil.copytree(out, tmp_path / "killed", symlinks=True)  # what a kill -9 at this moment leaves
+    with batch_folder(leave):
+        assert left(leave) == {*kept, ".elbowscrew-0123456789abcde1.partial"}
+    assert left(out) == left(leave)
     assert (elsewhere / "mine").exists()
+
+
+def left(folder: Path) -> set[str]:
+    return {path.name for path in folder.iterdir() if path.suffix != ".lock"}
 
 
 def test_a_folder_of_something_else_is_not_touched(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

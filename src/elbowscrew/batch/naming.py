@@ -44,7 +44,7 @@ def result_names(paths: Sequence[str], by_file: Sequence[bool] | None = None) ->
     Examples
     --------
     >>> result_names(["P01/flexion 1.csv", "P01/flexion 1.trc", "../x.csv"])
-    ['P01__flexion 1', 'P01__flexion 1.trc', '_.__x-a0b5ba19']
+    ['P01__flexion 1', 'P01__flexion 1.trc', '_.__x-c6a35c28']
     """
     lengths = [_BY_FILE if alone else 0 for alone in by_file or [False] * len(paths)]
     while True:

@@ -21,7 +21,7 @@ def batch(
     paths: Annotated[
         list[str],
         typer.Argument(
-            metavar="PATH...",
+            metavar="PATH",
             help="Folders, files, patterns, or a manifest: a CSV with a column 'path'.",
             show_default=False,
         ),
@@ -76,8 +76,7 @@ def batch(
 ) -> None:
     """Analyze every trial of a study.
 
-    A result folder for each, summary.csv, failures.csv. Trials whose results are up to date are not analyzed again. The
-    exit code is 7 if some failed.
+    A result folder for each, summary.csv and failures.csv; what is up to date stays. Exit code 7: some failed.
     """
     from elbowscrew.batch.executors import LOCAL_CLUSTER, available_cores, open_executor
     from elbowscrew.batch.study import run_study
