@@ -85,7 +85,7 @@ def analyze_trial(task: TrialTask) -> Failure | None:
     except Exception as error:
         place = traceback.extract_tb(error.__traceback__)[-1]
         message = (
-            f"{task.label}: a defect of the program: {type(error).__name__}: {error} "
+            f"{task.label}: a defect of the program: {type(error).__name__}: {' '.join(str(error).split())} "
             f"({Path(place.filename).name}:{place.lineno}); please report it"
         )
         return Failure(error_class=DEFECT, message=message, exit_code=1)
