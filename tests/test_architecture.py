@@ -5,6 +5,7 @@ from __future__ import annotations
 import inspect
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, get_args
 
@@ -12,6 +13,7 @@ import pytest
 
 from elbowscrew.cli import options
 from elbowscrew.cli.analyze import analyze
+from elbowscrew.cli.batch import batch
 from elbowscrew.errors import ElbowscrewError
 from elbowscrew.motion.laws import LAWS
 from elbowscrew.motion.modeling import METHODS
@@ -26,7 +28,9 @@ def loaded_after(code: str) -> set[str]:
     return set(result.stderr.split())
 
 
-@pytest.mark.parametrize("arguments", [["--help"], ["analyze", "--help"], ["simulate", "--help"], ["--version"]])
+@pytest.mark.parametrize(
+    "arguments", [["--help"], ["analyze", "--help"], ["batch", "--help"], ["simulate", "--help"], ["--version"]]
+)
 def test_help_and_version_load_no_heavy_library(arguments: list[str]) -> None:
     loaded = loaded_after(f"from elbowscrew.cli import main\nassert main({arguments!r}) == 0")
     assert not loaded & set(HEAVY)
@@ -42,8 +46,9 @@ def test_analyzing_without_figures_needs_neither_pandas_nor_matplotlib(samples: 
     assert not loaded & {"pandas", "matplotlib", "scipy"}
 
 
-def test_every_setting_is_an_option_and_offers_the_same_choices() -> None:
-    parameters = inspect.signature(analyze, eval_str=True).parameters
+@pytest.mark.parametrize("command", [analyze, batch])
+def test_every_setting_is_an_option_and_offers_the_same_choices(command: Callable[..., None]) -> None:
+    parameters = inspect.signature(command, eval_str=True).parameters
     given = {name.replace("_", "-"): parameter for name, parameter in parameters.items()}
     for name, field in Settings.model_fields.items():
         option = given[option_name(name)]
@@ -53,9 +58,9 @@ def test_every_setting_is_an_option_and_offers_the_same_choices() -> None:
 
 
 def _choices(annotation: Any) -> set[str]:
-    """Literals anywhere inside a type; those of the enumeration of figure formats by their values."""
-    if annotation is options.FigureFormat:
-        return {kind.value for kind in options.FigureFormat}
+    """Literals anywhere inside a type; those of an enumeration by their values."""
+    if annotation in (options.FigureFormat, options.ExportFormat):
+        return {kind.value for kind in annotation}
     found = set()
     for part in get_args(annotation):
         if isinstance(part, str):

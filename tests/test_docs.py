@@ -12,7 +12,7 @@ import pytest
 
 from elbowscrew import __version__
 from elbowscrew.cli.app import app
-from elbowscrew.tables import INTERPOLATION_COLUMNS, SCREW_COLUMNS
+from elbowscrew.tables import FAILURE_COLUMNS, INTERPOLATION_COLUMNS, SCREW_COLUMNS, study_header
 
 LINK = re.compile(r"!?\[[^\]]*\]\(([^)#]+)")
 
@@ -57,6 +57,14 @@ def test_every_column_is_documented(root: Path) -> None:
     for column in (*SCREW_COLUMNS, *INTERPOLATION_COLUMNS):
         stem = column.name.rstrip("0123") if re.fullmatch(r"e\d", column.name) else column.name
         assert re.search(rf"`{re.escape(stem.removesuffix('_x').removesuffix('_y').removesuffix('_z'))}", text), column
+
+
+def test_every_column_of_a_study_is_documented(root: Path) -> None:
+    text = (root / "docs" / "batch.md").read_text(encoding="utf-8")
+    header = study_header("deg", "mm")
+    for column in [*header, *FAILURE_COLUMNS]:
+        told = re.sub(r"_y(_mm)?$", r"_x\1", column)  # of three components the first and the last are named
+        assert f"`{told}`" in text, column
 
 
 def test_the_version_stands_in_changelog_and_citation(root: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import io
 import json
 import os
@@ -12,18 +13,24 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Literal
 
 from elbowscrew import tables
-from elbowscrew.errors import UsageError
+from elbowscrew.errors import ElbowscrewError, OutputError, UsageError
 from elbowscrew.io.comparison_summary import comparison_summary, trials_summary
+from elbowscrew.io.exporting import check_exports, write_exports
 from elbowscrew.io.joint_summary import joint_summary
 from elbowscrew.io.optitrack_writer import motive_columns_lines, row_tagged_lines
-from elbowscrew.io.staging import COMPARISON, result_folder, write_files
+from elbowscrew.io.reading import read_recording
+from elbowscrew.io.staging import COMPARISON, RESULT_FILES, result_folder, write_files
 from elbowscrew.io.summary import summary_from_analysis
 from elbowscrew.io.writing import write_csv, write_tables
-from elbowscrew.model import Analysis, Comparison, RebuiltMotion, TrialsComparison
+from elbowscrew.model import Analysis, Comparison, Landmarks, RebuiltMotion, TrialsComparison
+from elbowscrew.motion.analysis import analyze
+from elbowscrew.settings import Settings
 from elbowscrew.simulate import SimulatedTrial
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+SUMMARY: Final = "summary.json"
 
 # Without dates and program versions the same analysis gives the same bytes.
 _METADATA: Final[dict[str, dict[str, Any]]] = {
@@ -35,14 +42,34 @@ _METADATA: Final[dict[str, dict[str, Any]]] = {
 _ENCODING: Final[dict[str, dict[str, Any]]] = {"png": {"pil_kwargs": {"compress_level": 3}}, "svg": {}, "pdf": {}}
 
 
+def analyze_file(path: Path, settings: Settings, *, landmarks: Landmarks | None = None) -> Analysis:
+    """Read one recording with the markers that are asked for, and analyze it; every error names the file.
+
+    Raises
+    ------
+    RecordingError, SettingError, AnalysisError
+        As `elbowscrew.read_recording` and `elbowscrew.analyze` do.
+    """
+    markers = (*settings.markers, *(() if landmarks is None else landmarks.markers))
+    recording = read_recording(path, units=settings.units, rotation=settings.rotation, markers=markers)
+    try:
+        return analyze(recording, settings, landmarks=landmarks)
+    except ElbowscrewError as error:
+        msg = f"{path}: {error}"
+        raise type(error)(msg) from error
+
+
 def save_analysis(
     analysis: Analysis,
     folder: str | os.PathLike[str],
     *,
     force: bool = False,
     figure_formats: Sequence[str] | None = None,
+    exports: Sequence[str] | None = None,
 ) -> Path:
     """Write the tables, ``summary.json``, ``joint.json`` and ``figures/`` into a folder, whole or not at all.
+
+    The summary says under ``files`` what else is in the folder, each with its SHA-256.
 
     Parameters
     ----------
@@ -54,6 +81,8 @@ def save_analysis(
         Replace an earlier result.
     figure_formats : sequence of {"png", "svg", "pdf"}, optional
         Those of the analysis' settings by default; may be empty.
+    exports : sequence of {"parquet", "mat", "sto"}, optional
+        Formats of other programs to write the tables in, too; those of the analysis' settings by default.
 
     Returns
     -------
@@ -65,7 +94,7 @@ def save_analysis(
     OutputError
         If a result is there already, or the disk does not take it.
     UsageError
-        If a figure format is not known.
+        If a format is not known, or its library is not installed.
 
     Examples
     --------
@@ -77,16 +106,16 @@ def save_analysis(
     """
     target = Path(folder)
     formats = _known_formats(analysis.settings.figure_formats if figure_formats is None else tuple(figure_formats))
+    others = analysis.settings.export if exports is None else tuple(exports)
+    check_exports(others)
+    summary = summary_from_analysis(analysis)
     with result_folder(target, force=force) as staged:
         write_tables(staged, analysis)
-        for name, content in (
-            ("summary.json", summary_from_analysis(analysis)),
-            ("joint.json", joint_summary(analysis)),
-        ):
-            text = json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False)
-            (staged / name).write_text(text + "\n", encoding="utf-8")
+        _write_json(staged / "joint.json", joint_summary(analysis))
         if formats:
             _write_figures(staged / "figures", analysis, formats)
+        write_exports(staged, analysis, summary, others)
+        _write_json(staged / SUMMARY, {**summary, "files": digests(staged)})  # the last, when all else is there
     return target
 
 
@@ -96,6 +125,37 @@ def _known_formats(formats: tuple[str, ...]) -> tuple[str, ...]:
         msg = f"figure formats: expected {', '.join(_METADATA)}, found {', '.join(unknown)}"
         raise UsageError(msg)
     return formats
+
+
+def read_summary(folder: str | os.PathLike[str]) -> dict[str, Any]:
+    """Read the ``summary.json`` of a result folder.
+
+    Raises
+    ------
+    OutputError
+        If there is no such result, or it is damaged.
+    """
+    path = Path(folder) / SUMMARY
+    try:
+        summary = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError, RecursionError) as error:
+        msg = f"{path}: cannot be read as a summary: {getattr(error, 'strerror', None) or error}; analyze again"
+        raise OutputError(msg) from error
+    if not isinstance(summary, dict) or "elbowscrew" not in summary:
+        msg = f"{path}: no summary of elbowscrew; give a result folder"
+        raise OutputError(msg)
+    return summary
+
+
+def digests(folder: Path) -> dict[str, str]:
+    """SHA-256 of the files of a result folder, all but the summary that holds them and the report made from it."""
+    names = (name for name in RESULT_FILES if name not in (SUMMARY, "report.html") and (folder / name).is_file())
+    return {name: hashlib.sha256((folder / name).read_bytes()).hexdigest() for name in names}
+
+
+def _write_json(path: Path, content: Mapping[str, Any]) -> None:
+    text = json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False)
+    path.write_text(text + "\n", encoding="utf-8")
 
 
 def _write_figures(folder: Path, analysis: Analysis, formats: Sequence[str]) -> None:
@@ -188,10 +248,8 @@ def save_paper_figures(folder: str | os.PathLike[str]) -> tuple[Path, ...]:
     OutputError
         If a file is there already, or the disk does not take them.
     """
-    from elbowscrew.motion.analysis import analyze
     from elbowscrew.plots.figures import FIGURES
     from elbowscrew.plots.style import publication_style, settle
-    from elbowscrew.settings import Settings
     from elbowscrew.simulate import simulate_trial
 
     analysis = analyze(simulate_trial(marker_noise_mm=0.1, seed=2010).recording, Settings(inversion=211))
@@ -302,9 +360,8 @@ def save_comparison(
         columns = tables.columns(comparison.models, tables.TRIALS_COMPARISON_COLUMNS, *units)
         summary = trials_summary(comparison)
     with result_folder(target, force=force, kind=COMPARISON) as staged:
-        write_csv(staged / "compare.csv", columns)
-        text = json.dumps(summary, indent=2, ensure_ascii=False, allow_nan=False)
-        (staged / "compare.json").write_text(text + "\n", encoding="utf-8")
+        write_csv(staged / "compare.csv", columns, quoted=True)
+        _write_json(staged / "compare.json", summary)
         if formats:
             from elbowscrew.plots.comparison import comparison_figure
 

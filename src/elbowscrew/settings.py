@@ -15,7 +15,8 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_valida
 from elbowscrew.errors import UsageError
 from elbowscrew.tables import AngleUnit, LengthUnit
 
-_LISTS: Final = ("keyframes", "figure-format", "arm-markers", "forearm-markers")
+LISTS: Final = ("keyframes", "figure-format", "export", "arm-markers", "forearm-markers")
+"""Settings of which there may be several."""
 _UNIT_SUFFIXES: Final = ("_deg_s", "_rad_s", "_m_s", "_deg", "_mm", "_hz", "_s", "_percent")
 
 LawName = Literal[
@@ -112,6 +113,8 @@ class Settings(BaseModel):
         Unit of lengths in tables and figures.
     figure_format : tuple of {"png", "svg", "pdf", "none"}
         Formats of the figures.
+    export : tuple of {"parquet", "mat", "sto"}
+        Formats of other programs to write the tables in, too.
     units : {"m", "cm", "mm"} or None
         Unit of length of a file that states none.
     rotation : {"quaternion", "XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX"} or None
@@ -182,6 +185,9 @@ class Settings(BaseModel):
     length_unit: LengthUnit = Field("mm", description="Unit of lengths in tables and figures")
     figure_format: tuple[Literal["png", "svg", "pdf", "none"], ...] = Field(
         ("png",), min_length=1, description="Formats of the figures"
+    )
+    export: tuple[Literal["parquet", "mat", "sto"], ...] = Field(
+        (), description="Formats of other programs to write the tables in, too"
     )
     units: Literal["m", "cm", "mm"] | None = Field(None, description="Unit of length of a file that states none")
     rotation: Literal["quaternion", "XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX"] | None = Field(
@@ -333,7 +339,7 @@ def _read_toml(config: Path) -> dict[str, Any]:
             if len(table) < len(given):
                 msg = f"{config}: one setting stands twice under two spellings; keep one of {', '.join(given)}"
                 raise UsageError(msg)
-            return {key: [value] if key in _LISTS and isinstance(value, str) else value for key, value in table.items()}
+            return {key: [value] if key in LISTS and isinstance(value, str) else value for key, value in table.items()}
     except OSError as error:
         msg = f"{config}: cannot be read as a settings file: {error.strerror}"
         raise UsageError(msg) from error

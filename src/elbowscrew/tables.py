@@ -172,14 +172,14 @@ KEYFRAME_COLUMNS: Final = (
     _column("law_end_s", "law_end_of_each", Quantity.NUMBER),
 )
 
-_MODEL: Final = (
+_COMPARED: Final = (
     _column("rank", "rank", Quantity.INTEGER),
     *(_column(name, name, Quantity.LABEL) for name in ("data", "method", "blend", "law", "knots")),
     _column("keyframes_per_phase", "keyframes_per_phase", Quantity.INTEGER),
 )
 
 COMPARISON_COLUMNS: Final = (
-    *_MODEL,
+    *_COMPARED,
     _column("keyframes", "keyframes", Quantity.INTEGER),
     _column("rms_displacement", "rms_displacement", Quantity.LENGTH),
     _column("max_displacement", "max_displacement", Quantity.LENGTH),
@@ -193,7 +193,7 @@ COMPARISON_COLUMNS: Final = (
 )
 
 TRIALS_COMPARISON_COLUMNS: Final = (
-    *_MODEL,
+    *_COMPARED,
     _column("trials", "trials", Quantity.INTEGER),
     *(_column(f"rms_displacement_{kind}", f"rms_displacement_{kind}", Quantity.LENGTH) for kind in ("mean", "sd")),
     *(_column(f"max_displacement_{kind}", f"max_displacement_{kind}", Quantity.LENGTH) for kind in ("mean", "sd")),
@@ -201,6 +201,112 @@ TRIALS_COMPARISON_COLUMNS: Final = (
     *(_column(f"max_angle_error_{kind}", f"max_angle_error_{kind}", Quantity.ANGLE) for kind in ("mean", "sd")),
     *(_column(f"ns_per_frame_{kind}", f"ns_per_frame_{kind}", Quantity.NUMBER) for kind in ("mean", "sd")),
 )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StudyColumn:
+    """One column of ``summary.csv``: its name without unit, where ``summary.json`` has its value, and its kind."""
+
+    name: str
+    keys: tuple[str | int, ...]
+    quantity: Quantity
+    suffix: str = ""
+
+
+def _study(quantity: Quantity, *keys: str | int, name: str = "", suffix: str = "") -> StudyColumn:
+    if not name:
+        name = str(keys[-1]).removesuffix("_deg").removesuffix("_mm")
+    return StudyColumn(name=name, keys=keys, quantity=quantity, suffix=suffix)
+
+
+def _study_vector(stem: str, quantity: Quantity, *keys: str) -> tuple[StudyColumn, ...]:
+    return tuple(_study(quantity, *keys, k, name=f"{stem}_{letter}") for k, letter in enumerate("xyz"))
+
+
+_MEAN: Final = ("motion", "mean_axis")
+_JOINT: Final = ("motion", "joint_axis")
+_MODEL: Final = "interpolation"
+
+STUDY_COLUMNS: Final = (
+    _study(Quantity.INTEGER, "trial", "frames"),
+    _study(Quantity.NUMBER, "trial", "rate_hz"),
+    _study(Quantity.NUMBER, "trial", "duration_s"),
+    _study(Quantity.LABEL, "trial", "arm", "name", name="arm_body"),
+    _study(Quantity.LABEL, "trial", "forearm", "name", name="forearm_body"),
+    _study(Quantity.NUMBER, "trial", "arm", "tracked_share", name="arm_tracked_share"),
+    _study(Quantity.NUMBER, "trial", "forearm", "tracked_share", name="forearm_tracked_share"),
+    _study(Quantity.INTEGER, "trial", "measured_frames"),
+    _study(Quantity.INTEGER, "trial", "filled_frames"),
+    _study(Quantity.NUMBER, "trial", "missing_share"),
+    _study(Quantity.INTEGER, "trial", "reference_frame"),
+    _study(Quantity.ANGLE, "motion", "theta_max_deg"),
+    _study(Quantity.ANGLE, "motion", "theta_min_deg"),
+    _study(Quantity.INTEGER, "motion", "theta_max_frame"),
+    _study(Quantity.LABEL, "motion", "inversion_frames"),
+    _study(Quantity.LENGTH, "motion", "slide_median_mm"),
+    _study(Quantity.LENGTH, "motion", "slide_min_mm"),
+    _study(Quantity.LENGTH, "motion", "slide_max_mm"),
+    _study(Quantity.INTEGER, "motion", "repetitions"),
+    _study(Quantity.LABEL, "motion", "expressed_in"),
+    _study(Quantity.INTEGER, "motion", "axis_frames"),
+    *_study_vector("axis", Quantity.NUMBER, *_MEAN, "direction"),
+    *_study_vector("point", Quantity.LENGTH, *_MEAN, "point_mm"),
+    _study(Quantity.ANGLE, "motion", "axis_dispersion_deg"),
+    _study(Quantity.ANGLE, "motion", "axis_dispersion_rms_deg"),
+    _study(Quantity.ANGLE, "motion", "axis_dispersion_max_deg"),
+    _study(Quantity.LENGTH, "motion", "axis_distance_rms_mm"),
+    _study(Quantity.INTEGER, "motion", "single_axis"),
+    _study(Quantity.LABEL, *_JOINT, "model", name="joint_model"),
+    *_study_vector("joint_axis", Quantity.NUMBER, *_JOINT, "direction"),
+    *_study_vector("joint_point", Quantity.LENGTH, *_JOINT, "point_mm"),
+    _study(Quantity.ANGLE, *_JOINT, "axis_cone95_deg", name="joint_axis_cone95"),
+    _study(Quantity.LENGTH, *_JOINT, "point_radius95_mm", name="joint_point_radius95"),
+    _study(Quantity.LENGTH, *_JOINT, "pitch_mm_per_rad", name="joint_pitch", suffix="_per_rad"),
+    _study(Quantity.ANGLE, _MODEL, "rmse_theta_deg"),
+    _study(Quantity.ANGLE, _MODEL, "max_theta_error_deg"),
+    _study(Quantity.INTEGER, _MODEL, "max_theta_error_frame"),
+    _study(Quantity.ANGLE, _MODEL, "rms_angle_error_deg"),
+    _study(Quantity.ANGLE, _MODEL, "max_angle_error_deg"),
+    _study(Quantity.LENGTH, _MODEL, "rms_translation_error_mm"),
+    _study(Quantity.LENGTH, _MODEL, "max_translation_error_mm"),
+    _study(Quantity.LENGTH, _MODEL, "rms_displacement_mm"),
+    _study(Quantity.LENGTH, _MODEL, "max_rms_displacement_mm"),
+    _study(Quantity.LENGTH, _MODEL, "points", "radius_of_gyration_mm"),
+    _study(Quantity.LABEL, _MODEL, "points", "from", name="radius_from"),
+    _study(Quantity.LABEL, "warnings", "warning", name="warnings"),
+    _study(Quantity.LABEL, "warnings", "note", name="notes"),
+    _study(Quantity.LABEL, "source", "sha256", name="source_sha256"),
+    _study(Quantity.LABEL, "elbowscrew"),
+)
+"""What ``summary.csv`` has of each trial, after its name, its path and what a manifest says of it."""
+
+FAILURE_COLUMNS: Final = ("path", "error_class", "message", "exit_code")
+"""The columns of ``failures.csv``."""
+
+
+def study_header(angle_unit: AngleUnit, length_unit: LengthUnit) -> list[str]:
+    """Names of `STUDY_COLUMNS` in the units asked for."""
+    units: dict[Quantity, str] = {Quantity.ANGLE: f"_{angle_unit}", Quantity.LENGTH: f"_{length_unit}"}
+    return [f"{column.name}{units.get(column.quantity, '')}{column.suffix}" for column in STUDY_COLUMNS]
+
+
+def study_values(summary: Any, angle_unit: AngleUnit, length_unit: LengthUnit) -> list[Any]:
+    """Values of `STUDY_COLUMNS` out of a ``summary.json``, which has degrees and millimeters; None if not known."""
+    scales = {
+        Quantity.ANGLE: float(np.radians(1.0)) if angle_unit == "rad" else 1.0,
+        Quantity.LENGTH: METERS["mm"] / METERS[length_unit],
+    }
+    values = []
+    for column in STUDY_COLUMNS:
+        value = summary
+        for key in column.keys:
+            if isinstance(value, list) and isinstance(key, str):
+                value = [one["code"] for one in value if one["severity"] == key]
+            else:
+                value = None if value is None else value[key]
+        scale = scales.get(column.quantity, 1.0)
+        values.append(value if value is None or scale == 1.0 else value * scale)
+    return values
 
 
 def angle_in(radians: NDArray[np.float64], unit: AngleUnit) -> NDArray[np.float64]:

@@ -8,6 +8,7 @@ import typer
 
 from elbowscrew._version import __version__
 from elbowscrew.cli.analyze import analyze
+from elbowscrew.cli.batch import batch
 from elbowscrew.cli.compare import compare
 from elbowscrew.cli.info import info
 from elbowscrew.cli.interpolate import interpolate
@@ -37,6 +38,7 @@ def _common(
 
 
 app.command()(analyze)
+app.command()(batch)
 app.command()(compare)
 app.command()(interpolate)
 app.command()(info)

@@ -27,6 +27,14 @@ class FigureFormat(StrEnum):
     NONE = "none"
 
 
+class ExportFormat(StrEnum):
+    """Formats of other programs."""
+
+    PARQUET = "parquet"
+    MAT = "mat"
+    STO = "sto"
+
+
 def frame_numbers(text: str | None) -> tuple[int, ...] | None:
     """Split ``0,211,449`` into frame numbers.
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rich.console import Console, RenderableType
 from rich.table import Table
@@ -15,8 +15,14 @@ from rich.text import Text
 from elbowscrew.cli.text import NobodyReads, one_line, printable
 from elbowscrew.paper import Comparison
 
+if TYPE_CHECKING:
+    from elbowscrew.batch.study import StudyResult
+    from elbowscrew.batch.trials import Skipped
+
 _MARKERS_TOLD = 24
 _FRAMES_TOLD = 12
+_SKIPPED_TOLD = 5
+_FAILURES_TOLD = 10
 
 
 def warnings(found: Iterable[Mapping[str, Any]]) -> None:
@@ -256,3 +262,58 @@ def _joint_axis(motion: Mapping[str, Any]) -> str:
 
 def _radius(model: Mapping[str, Any]) -> str:
     return f"radius of gyration {model['points']['radius_of_gyration_mm']:g} mm"
+
+
+def skipped_files(skipped: Sequence[Skipped], *, verbose: bool) -> None:
+    """Tell what was passed over: of many the first few, unless all are asked for."""
+    for one in skipped if verbose else skipped[:_SKIPPED_TOLD]:
+        sys.stderr.write(f"elbowscrew: passed over: {one_line(f'{one.path}: {one.reason}')}\n")
+    if len(skipped) > _SKIPPED_TOLD and not verbose:
+        sys.stderr.write(f"elbowscrew: passed over: {len(skipped) - _SKIPPED_TOLD} more; --verbose names them\n")
+
+
+def other_results(result: StudyResult) -> None:
+    """Warn of results in the output folder that the tables do not tell of."""
+    if result.others:
+        told = ", ".join(result.others[:_SKIPPED_TOLD]) + (", ..." if len(result.others) > _SKIPPED_TOLD else "")
+        message = f"{result.folder} holds results that are not of this batch, and not in summary.csv: {told}"
+        sys.stderr.write(f"elbowscrew: warning: {one_line(message)} [other-results]\n")
+
+
+def study_statement(result: StudyResult, skipped: Sequence[Skipped]) -> dict[str, Any]:
+    """What a batch has done, ready for JSON."""
+    return {
+        "output": str(result.folder),
+        "trials": len(result.names),
+        "analyzed": len(result.names) - result.kept - len(result.failed),
+        "up_to_date": result.kept,
+        "with_warnings": result.warned,
+        "failed": len(result.failed),
+        "failures": [
+            {
+                "path": one.path,
+                "error_class": one.failure.error_class,
+                "message": one.failure.message,
+                "exit_code": one.failure.exit_code,
+            }
+            for one in result.failed
+        ],
+        "skipped": [{"path": one.path, "reason": one.reason} for one in skipped],
+        "other_results": list(result.others),
+    }
+
+
+def study_table(result: StudyResult) -> None:
+    """Write what a batch has done, and the first of its failures."""
+    good = len(result.names) - len(result.failed)
+    kept = f", {result.kept} of them up to date already" if result.kept else ""
+    warned = f"; {result.warned} with warnings, see summary.csv" if result.warned else ""
+    rows = [
+        ("Trials", f"{len(result.names)}"),
+        ("Results", f"{good}{kept}{warned}"),
+        ("Failed", f"{len(result.failed)}"),
+    ]
+    rows += [("", one_line(one.failure.message)) for one in result.failed[:_FAILURES_TOLD]]
+    if len(result.failed) > _FAILURES_TOLD:
+        rows.append(("", f"and {len(result.failed) - _FAILURES_TOLD} more in failures.csv"))
+    _print_rows("", [*rows, ("Tables", f"{result.folder / 'summary.csv'}, {result.folder / 'failures.csv'}")])

@@ -10,7 +10,13 @@ import numpy as np
 from elbowscrew import tables
 from elbowscrew._version import __version__
 from elbowscrew.io.statistics import known
-from elbowscrew.io.summary import recording_summary, selection_summary, source_summary, warnings_summary
+from elbowscrew.io.summary import (
+    recording_summary,
+    selection_summary,
+    settings_summary,
+    source_summary,
+    warnings_summary,
+)
 from elbowscrew.model import Comparison, TrialsComparison
 
 _BEST_TOLD: Final = 20
@@ -23,7 +29,7 @@ def comparison_summary(comparison: Comparison) -> dict[str, Any]:
     return {
         "elbowscrew": __version__,
         "source": source_summary(comparison.recording),
-        "settings": comparison.settings.model_dump(mode="json", by_alias=True),
+        "settings": settings_summary(comparison.settings),
         "trial": recording_summary(comparison.recording),
         "phases": [
             {"start_frame": int(frame[first]), "end_frame": int(frame[last])} for first, last in phases.law_rows
@@ -46,7 +52,7 @@ def trials_summary(found: TrialsComparison) -> dict[str, Any]:
     """Say the best models over several recordings, and what each recording's selection needs."""
     return {
         "elbowscrew": __version__,
-        "settings": found.settings.model_dump(mode="json", by_alias=True),
+        "settings": settings_summary(found.settings),
         "trials": [
             {
                 "source": source_summary(one.recording),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import secrets
 import shutil
 from collections.abc import Iterable, Iterator, Mapping
@@ -15,17 +16,22 @@ from elbowscrew.errors import OutputError
 
 FIGURE_NAMES: Final = ("theta", "euler_parameters", "axis", "joint_axis", "error")
 FIGURE_FORMATS: Final = ("png", "svg", "pdf")
+TABLE_NAMES: Final = (
+    "screw",
+    "interpolation",
+    "keyframes",
+    "instantaneous",
+    "steps",
+    "repetitions",
+    "repetition_curve",
+    "anatomy",
+)
 RESULT_FILES: Final = (
-    "screw.csv",
-    "interpolation.csv",
-    "keyframes.csv",
     "summary.json",
     "joint.json",
-    "instantaneous.csv",
-    "steps.csv",
-    "repetitions.csv",
-    "repetition_curve.csv",
-    "anatomy.csv",
+    *(f"{name}.{kind}" for name in TABLE_NAMES for kind in ("csv", "parquet")),
+    "trial.mat",
+    "joint_angle.sto",
     *(f"figures/{name}.{kind}" for name in FIGURE_NAMES for kind in FIGURE_FORMATS),
 )
 """All that a result folder may hold."""
@@ -44,6 +50,7 @@ COMPARISON: Final = ResultKind(
 )
 
 _PREFIX: Final = ".elbowscrew-"
+_TEMPORARY: Final = re.compile(re.escape(_PREFIX) + r"[0-9a-f]{16}\.(partial|replaced)")
 
 
 @contextmanager
@@ -98,7 +105,7 @@ def check_result_folder(target: Path, *, force: bool, kind: ResultKind = ANALYSI
         if not present:
             return
         strangers = sorted(present - set(kind.files))
-        if strangers or not _is_summary(target / kind.summary):
+        if strangers or not is_summary(target / kind.summary):
             what = f"holds {strangers[0]!r}, which is not ours" if strangers else "holds files but no elbowscrew result"
             msg = f"{target}: the folder {what}; give another --output"
             raise OutputError(msg)
@@ -109,7 +116,8 @@ def check_result_folder(target: Path, *, force: bool, kind: ResultKind = ANALYSI
         raise OutputError(msg)
 
 
-def _is_summary(path: Path) -> bool:
+def is_summary(path: Path) -> bool:
+    """Whether a file is the summary of a result."""
     try:
         summary = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError, RecursionError):
@@ -158,6 +166,50 @@ def write_files(contents: Mapping[Path, Iterable[str] | bytes], *, replaceable: 
         for temporary in staged.values():
             temporary.unlink(missing_ok=True)
         _remove_empty(made)
+
+
+def replace_file(target: Path, content: bytes) -> None:
+    """Write a file whole, in the place of an earlier one.
+
+    Raises
+    ------
+    OutputError
+        If the disk does not take it; an earlier file is as it was.
+    """
+    temporary = _temporary(target)
+    try:
+        with temporary.open("xb") as stream:
+            stream.write(content)
+            stream.flush()
+            os.fsync(stream.fileno())
+        temporary.replace(target)
+    except OSError as error:
+        raise _output_error(target, error) from error
+    finally:
+        with suppress(OSError):
+            temporary.unlink(missing_ok=True)
+
+
+def remove_leftovers(folder: Path) -> None:
+    """Remove what runs that were killed have left in a folder: temporary files and folders of ours, nothing else."""
+    for path in folder.iterdir():
+        if not _TEMPORARY.fullmatch(path.name) or path.is_symlink():
+            continue
+        if path.is_dir():
+            shutil.rmtree(path, ignore_errors=True)
+        else:
+            path.unlink(missing_ok=True)
+
+
+def remove_damaged(target: Path) -> None:
+    """Remove a result that a power failure has cut: files of our names only, without a summary that can be read."""
+    if not target.is_dir() or target.is_symlink() or is_summary(target / "summary.json"):
+        return
+    present = {path.relative_to(target).as_posix() for path in target.rglob("*")} - {"figures"}
+    if "summary.json" in present and present <= set(RESULT_FILES):
+        for name in present:
+            (target / name).unlink(missing_ok=True)
+        _remove_empty([target / "figures"])
 
 
 def _check_file(target: Path, replaceable: str | None) -> None:

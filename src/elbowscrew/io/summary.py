@@ -5,6 +5,7 @@ from __future__ import annotations
 import platform
 from collections.abc import Iterable
 from dataclasses import asdict
+from functools import cache
 from importlib.metadata import version
 from typing import Any, Final
 
@@ -15,7 +16,8 @@ from elbowscrew._version import __version__
 from elbowscrew.errors import SettingError
 from elbowscrew.io.options import ASK_FOR_MARKERS
 from elbowscrew.io.statistics import known, rms, statistic
-from elbowscrew.model import Analysis, BodyQuality, JointAxis, QualityWarning, Recording, Selection, Spread
+from elbowscrew.model import Analysis, BodyQuality, JointAxis, Landmarks, QualityWarning, Recording, Selection, Spread
+from elbowscrew.model.anatomy import LANDMARKS
 from elbowscrew.motion.quality import body_quality, check_bodies, clock_quality
 from elbowscrew.motion.selection import choose_bodies
 from elbowscrew.settings import Settings
@@ -50,12 +52,13 @@ def summary_from_analysis(analysis: Analysis) -> dict[str, Any]:
     return {
         "elbowscrew": __version__,
         "source": source_summary(analysis.recording),
-        "settings": analysis.settings.model_dump(mode="json", by_alias=True),
+        "settings": settings_summary(analysis.settings),
+        "landmarks": landmarks_summary(None if analysis.anatomy is None else analysis.anatomy.landmarks),
         "trial": {**recording_summary(analysis.recording), **_trial(analysis)},
         "motion": _motion(analysis),
         "interpolation": _interpolation(analysis),
         "warnings": warnings_summary(analysis.warnings),
-        "versions": {"python": platform.python_version(), **{name: version(name) for name in _LIBRARIES}},
+        "versions": library_versions(),
     }
 
 
@@ -74,6 +77,39 @@ def summary_from_recording(recording: Recording, settings: Settings | None = Non
         "roles": _roles(recording),
         "warnings": warnings_summary((*recording.warnings, *warnings)),
     }
+
+
+def settings_summary(settings: Settings) -> dict[str, Any]:
+    """Every setting by the name of its option."""
+    told = settings.model_dump(mode="json", by_alias=True)
+    return {**told, "method": settings.model_method, "law": settings.model_law}
+
+
+def landmarks_summary(landmarks: Landmarks | None) -> dict[str, Any] | None:
+    """The landmarks as they were asked for: markers' names, or coordinates."""
+    if landmarks is None:
+        return None
+    given = {name: getattr(landmarks, name) for name in LANDMARKS}
+    return {
+        "side": landmarks.side,
+        **{
+            name: {"markers": list(place.markers)}
+            if place.point is None
+            else {"body": place.frame, "mm": (1000.0 * place.point).tolist()}
+            for name, place in given.items()
+        },
+    }
+
+
+def library_versions() -> dict[str, str]:
+    """Versions of Python and of the libraries that results stand on."""
+    return {"python": platform.python_version(), **{name: _version_of(name) for name in _LIBRARIES}}
+
+
+@cache
+def _version_of(library: str) -> str:
+    """Looked up once: a fifth of the time of a short trial would go into it."""
+    return version(library)
 
 
 def warnings_summary(warnings: Iterable[QualityWarning]) -> list[dict[str, Any]]:

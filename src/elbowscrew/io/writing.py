@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 from pathlib import Path
 from typing import Any
 
@@ -16,11 +17,11 @@ from elbowscrew.motion.rebuilding import keyframes_of
 _BLOCK_ROWS = 4096
 
 
-def write_tables(folder: Path, analysis: Analysis) -> None:
-    """Write ``screw.csv``, ``interpolation.csv`` and what else was asked for, in the units of the settings."""
+def named_tables(analysis: Analysis) -> dict[str, dict[str, NDArray[Any]]]:
+    """Give the columns of ``screw``, ``interpolation`` and what else was asked for, in the units of the settings."""
     units = analysis.settings.angle_unit, analysis.settings.length_unit
     several = analysis.repetitions.number.size > 1
-    for name, result, table in (
+    wanted: tuple[tuple[str, object, tuple[tables.Column, ...]], ...] = (
         ("screw", analysis.screw, tables.SCREW_COLUMNS),
         ("interpolation", analysis.interpolated, tables.INTERPOLATION_COLUMNS),
         ("keyframes", keyframes_of(analysis), tables.KEYFRAME_COLUMNS),
@@ -29,13 +30,24 @@ def write_tables(folder: Path, analysis: Analysis) -> None:
         ("repetition_curve", analysis.repeatability if several else None, tables.CURVE_COLUMNS),
         ("steps", analysis.steps, tables.STEP_COLUMNS),
         ("anatomy", analysis.anatomy, tables.ANATOMY_COLUMNS),
-    ):
-        if result is not None:
-            write_csv(folder / f"{name}.csv", tables.columns(result, table, *units))
+    )
+    return {name: tables.columns(result, table, *units) for name, result, table in wanted if result is not None}
 
 
-def write_csv(path: Path, columns: dict[str, NDArray[Any]]) -> None:
-    """Write columns of equal length; NaN and masked values become empty cells."""
+def write_tables(folder: Path, analysis: Analysis) -> None:
+    """Write the tables of an analysis, each to a file of its name."""
+    for name, columns in named_tables(analysis).items():
+        write_csv(folder / f"{name}.csv", columns)
+
+
+def write_csv(path: Path, columns: dict[str, NDArray[Any]], *, quoted: bool = False) -> None:
+    """Write columns of equal length; NaN and masked values become empty cells, text is quoted if that is asked for."""
+    if quoted:
+        with path.open("w", encoding="utf-8", newline="") as stream:
+            table = csv.writer(stream, lineterminator="\n")
+            table.writerow(columns)
+            table.writerows(zip(*(_cells(values) for values in columns.values()), strict=True))
+        return
     rows = len(next(iter(columns.values())))
     with path.open("wb") as stream:
         stream.write((",".join(columns) + "\n").encode())

@@ -115,6 +115,8 @@ class AnatomicalMotion(Brief):
         The ISB's frames of humerus and forearm, as poses in the frames of the two bodies.
     places : mapping of str to ndarray, shape (3,)
         EL, EM and GH in the arm's frame, US and RS in the forearm's, meters.
+    landmarks : Landmarks
+        What was asked for.
 
     References
     ----------
@@ -136,6 +138,7 @@ class AnatomicalMotion(Brief):
     dual_quat_arm_humerus: Float
     dual_quat_forearm_isb: Float
     places: Mapping[str, Float]
+    landmarks: Landmarks
 
     def to_frame(self, angle_unit: tables.AngleUnit = "deg", length_unit: tables.LengthUnit = "mm") -> pd.DataFrame:
         """Return the columns of ``anatomy.csv``."""

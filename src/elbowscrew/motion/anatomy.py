@@ -237,6 +237,7 @@ def anatomical_motion(
         dual_quat_arm_humerus=humerus,
         dual_quat_forearm_isb=distal,
         places=places,
+        landmarks=landmarks,
     )
     return motion, (*warnings, *_doubts(motion, landmarks))
 

@@ -1,0 +1,201 @@
+"""Batch on a large study: run ``python benchmarks/batch.py`` (a few minutes), or one of its parts by name.
+
+``speed``   200 trials with their figures: the sum of single-trial work in one process, then batch with 1 and 2 workers.
+            Yardsticks: 2 workers at least 1.8 times as fast as 1; 1 worker within 10 % of the single-trial work; memory
+            of a worker that does not grow with the number of trials.
+``broken``  1,000 trials, one in twenty broken in ten ways: exit code 7, the good ones there, the bad ones named; the
+            same bytes with 1 worker, 2 workers and two workers of a Dask cluster.
+``kills``   kill -9 at 20 random moments of that study: the run after that gives the bytes of an undisturbed one.
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import os
+import random
+import resource
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+from collections.abc import Sequence
+from concurrent.futures import ProcessPoolExecutor
+from pathlib import Path
+from typing import NamedTuple
+
+sys.path.insert(0, str(Path(__file__).parent.parent / "tests" / "support"))
+
+from studies import WAYS, break_trial, command, contents
+
+FAST = ("--figure-format", "none")
+CHOSEN = list(WAYS)[:10]
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("parts", nargs="*", choices=["speed", "broken", "kills", []], default=[])
+    parser.add_argument("--trials", type=int, help="trials of each part")
+    parser.add_argument("--folder", type=Path, help="where to work; a temporary folder by default")
+    given = parser.parse_args()
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = given.folder or Path(temporary)
+        for part in given.parts or ["speed", "broken", "kills"]:
+            print(f"== {part}")
+            {"speed": speed, "broken": broken, "kills": kills}[part](folder, given.trials)
+
+
+def speed(folder: Path, trials: int | None) -> None:
+    count = trials or 200
+    study(folder / "speed", count, frames=450)
+    script = Path(__file__).with_name("batch_single.py")
+    single = [sys.executable, *map(str, (script, folder / "speed", folder / "single"))]
+    one_thread = {**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MPLBACKEND": "agg"}
+    told = subprocess.run(single, check=True, capture_output=True, text=True, env=one_thread).stdout
+    alone, processor = map(float, told.split())
+    print(f"single-trial work, one process: {alone:7.2f} s ({processor:.2f} s of processor time)")
+    found = {}
+    for workers in (1, 2):
+        for share in (4, 1):
+            some = folder / f"speed{share}"
+            shutil.rmtree(some, ignore_errors=True)
+            some.mkdir()
+            for path in sorted((folder / "speed").iterdir())[: count // share]:
+                os.link(path, some / path.name)
+            found[workers] = timed(some, folder / f"out{workers}", workers)
+            print(f"{workers} workers, {count // share:4d} trials: {found[workers]}")
+    print(f"2 workers / 1 worker: {found[1].elapsed / found[2].elapsed:.2f} x as fast (at least 1.8)")
+    for name, before, after in (
+        ("time", alone, found[1].elapsed),
+        ("processor time", processor, found[1].processor),
+    ):
+        told = f"{100 * (after / before - 1):.1f} % (at most 10)"
+        print(f"overhead of 1 worker over the single-trial work, {name}: {told}")
+
+
+class Timing(NamedTuple):
+    elapsed: float
+    processor: float
+    memory: int
+
+    def __str__(self) -> str:
+        processor = f"{self.processor:.2f} s of processor time"
+        return f"{self.elapsed:7.2f} s ({processor}); largest worker {self.memory / 1e6:.0f} MB"
+
+
+def broken(folder: Path, trials: int | None) -> None:
+    count = trials or 1000
+    bad = study(folder / "broken", count, frames=60, broken=0.05)
+    ways = {"2 workers": ("--workers", 2), "1 worker": ("--workers", 1),
+            "Dask, 2 workers": ("--workers", 2, "--scheduler", "local-cluster")}  # fmt: skip
+    outputs = {}
+    for name, options in ways.items():
+        out = folder / f"broken {name}"
+        elapsed = run(folder / "broken", out, *options, *FAST, code=7)
+        outputs[name] = contents(out)
+        print(f"{name:16s} {elapsed:7.2f} s, {1000 * elapsed / count:.1f} ms a trial")
+    first = outputs["2 workers"]
+    assert all(other == first for other in outputs.values())
+    failures = list(csv.DictReader(first["failures.csv"].decode().splitlines()))
+    assert {row["path"]: row["error_class"] for row in failures} == bad
+    good = list(csv.DictReader(first["summary.csv"].decode().splitlines()))
+    assert len(good) == count - len(bad)
+    for row in good:
+        assert abs(float(row["theta_max_deg"]) - (80.0 + int(row["trial"][1:]) % 60)) < 2.0
+    print(f"{len(good)} results, {len(bad)} failures named, every file the same in all three")
+
+
+def kills(folder: Path, trials: int | None) -> None:
+    count = trials or 1000
+    if not (folder / "broken").exists():
+        study(folder / "broken", count, frames=60, broken=0.05)
+    undisturbed = folder / "undisturbed"
+    elapsed = run(folder / "broken", undisturbed, "--workers", 2, *FAST, code=7)
+    out = folder / "killed"
+    chance = random.Random(2010)  # noqa: S311
+    moments = sorted(chance.uniform(0.0, elapsed) for _ in range(20))
+    done = []
+    for before, moment in zip([0.0, *moments], moments, strict=False):
+        arguments = command(folder / "broken", "-q", "-o", out, "--workers", 2, *FAST)
+        process = subprocess.Popen(arguments, start_new_session=True)
+        # What earlier runs have finished is there already: each run gets the start-up and the time to its own moment.
+        time.sleep(chance.uniform(0.0, 0.8) + moment - before)
+        process.send_signal(signal.SIGKILL)
+        process.wait()
+        done.append(len(list(out.glob("*/summary.json"))))
+    last = run(folder / "broken", out, "--workers", 2, *FAST, code=7)
+    assert contents(out) == contents(undisturbed)
+    print(f"killed 20 times with {', '.join(map(str, done))} results there; the last run took {last:.2f} s: same bytes")
+
+
+def study(folder: Path, count: int, *, frames: int, broken: float = 0.0) -> dict[str, str]:
+    """Write a study, and say which trials are broken and what their errors are called."""
+    if folder.exists():
+        shutil.rmtree(folder)
+    folder.mkdir(parents=True)
+    with ProcessPoolExecutor() as pool:
+        list(pool.map(write_one, [folder] * count, range(count), [frames] * count, chunksize=10))
+    bad = {}
+    for k in range(round(broken * count)):
+        path, way = folder / f"t{k * count // round(broken * count)}.csv", CHOSEN[k % len(CHOSEN)]
+        break_trial(path, way)
+        bad[path.name] = WAYS[way][1]
+    return bad
+
+
+def write_one(folder: Path, k: int, frames: int) -> None:
+    from elbowscrew import save_simulation, simulate_trial
+
+    trial = simulate_trial(frames=frames, inversion=frames // 2, top_deg=80.0 + k % 60, seed=k)
+    save_simulation(trial, folder / f"t{k}.csv")[1].unlink()
+
+
+def run(data: Path, out: Path, *options: object, code: int) -> float:
+    shutil.rmtree(out, ignore_errors=True) if "killed" not in out.name else None
+    start = time.perf_counter()
+    done = subprocess.run(command(data, "-q", "-o", out, *options), check=False)
+    assert done.returncode == code
+    return time.perf_counter() - start
+
+
+def timed(data: Path, out: Path, workers: int) -> Timing:
+    """Time of a batch, processor time of all its processes, and the most memory one of its workers took."""
+    shutil.rmtree(out, ignore_errors=True)
+    before, start = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
+    process = subprocess.Popen(command(data, "-q", "-o", out, "--workers", workers))
+    most: list[int] = [0]
+    watcher = threading.Thread(target=watch, args=(process, most))
+    watcher.start()
+    assert process.wait() == 0
+    elapsed, after = time.perf_counter() - start, resource.getrusage(resource.RUSAGE_CHILDREN)
+    watcher.join()
+    processor = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    return Timing(elapsed, processor, max(most))
+
+
+def watch(process: subprocess.Popen[bytes], most: list[int]) -> None:
+    while process.poll() is None:
+        most.append(max([0, *(high_water(pid) for pid in children(process.pid))]))
+        time.sleep(0.2)
+
+
+def children(pid: int) -> Sequence[int]:
+    try:
+        return [int(word) for word in Path(f"/proc/{pid}/task/{pid}/children").read_text().split()]
+    except OSError:
+        return []
+
+
+def high_water(pid: int) -> int:
+    try:
+        lines = Path(f"/proc/{pid}/status").read_text().splitlines()
+    except OSError:
+        return 0
+    return next((1024 * int(line.split()[1]) for line in lines if line.startswith("VmHWM")), 0)
+
+
+if __name__ == "__main__":
+    main()

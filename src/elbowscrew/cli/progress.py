@@ -1,0 +1,101 @@
+"""The progress of a batch on standard error: a bar on a terminal, a line now and then elsewhere."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeRemainingColumn
+from rich.progress import Progress as Bar
+from rich.text import Text
+
+from elbowscrew.batch.study import Progress
+from elbowscrew.cli.text import one_line
+
+_SECONDS_BETWEEN_LINES = 10.0
+
+
+@contextmanager
+def shown_progress(*, quiet: bool, verbose: bool) -> Iterator[Callable[[Progress], None]]:
+    """Give a function that shows how far a batch has come, as long as the block lasts."""
+    if quiet:
+        yield lambda _progress: None
+        return
+    console = Console(stderr=True)
+    if not console.is_terminal:
+        yield _Lines(verbose)
+        return
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TextColumn("{task.fields[told]}"),
+        TimeRemainingColumn(),
+    )
+    with Bar(*columns, console=console, transient=True) as bar:
+        task = bar.add_task("Trials", total=None, told="")
+        rate = _Rate()
+
+        def show(progress: Progress) -> None:
+            rate.update(progress)
+            told = f"{progress.failed} failed, {rate}"
+            bar.update(task, total=progress.total, completed=progress.done, told=told)
+            if verbose and progress.latest is not None:
+                bar.console.print(Text(one_line(f"failed: {progress.latest.failure.message}")))
+
+        yield show
+
+
+class _Lines:
+    """A line at the begin, at the end and every few seconds."""
+
+    def __init__(self, verbose: bool) -> None:
+        self._verbose = verbose
+        self._rate = _Rate()
+        self._last = -_SECONDS_BETWEEN_LINES
+
+    def __call__(self, progress: Progress) -> None:
+        self._rate.update(progress)
+        if self._verbose and progress.latest is not None:
+            _write(f"failed: {progress.latest.failure.message}")
+        now = time.monotonic()
+        if now - self._last < _SECONDS_BETWEEN_LINES and progress.done < progress.total:
+            return
+        self._last = now
+        kept = f" ({progress.kept} were up to date)" if progress.kept else ""
+        left = self._rate.left(progress)
+        parts = [f"{progress.done} of {progress.total} trials done{kept}", f"{progress.failed} failed"]
+        parts += [str(self._rate)] if self._rate.known else []
+        parts += [f"{left:.0f} s left"] if left else []
+        _write(", ".join(parts))
+
+
+class _Rate:
+    """Trials a second, of those that this run has analyzed."""
+
+    def __init__(self) -> None:
+        self._start = time.monotonic()
+        self._analyzed = 0
+        self._elapsed = 0.0
+
+    @property
+    def known(self) -> bool:
+        return self._analyzed > 0
+
+    def update(self, progress: Progress) -> None:
+        self._analyzed = progress.done - progress.kept
+        self._elapsed = time.monotonic() - self._start
+
+    def left(self, progress: Progress) -> float:
+        return (progress.total - progress.done) * self._elapsed / self._analyzed if self._analyzed else 0.0
+
+    def __str__(self) -> str:
+        return f"{self._analyzed / self._elapsed:.1f}/s" if self._analyzed and self._elapsed else ""
+
+
+def _write(text: str) -> None:
+    sys.stderr.write(f"elbowscrew: {one_line(text)}\n")
+    sys.stderr.flush()
