@@ -8,13 +8,13 @@ from typing import Final, cast
 from matplotlib.figure import Figure
 from mpl_toolkits.mplot3d.axes3d import Axes3D
 
-from elbowscrew.model import Analysis
+from elbowscrew.model.shown import Shown
 from elbowscrew.plots import axis, joint, series, style
 
 _WIDTH_MM: Final = 170.0
 
 
-def theta_figure(analysis: Analysis) -> Figure:
+def theta_figure(analysis: Shown) -> Figure:
     """Make the figure of measured and modeled angle over time with keyframes."""
     figure = style.new_figure(_WIDTH_MM, 80.0)
     ax = series.plot_theta(figure.add_subplot(), analysis)
@@ -22,7 +22,7 @@ def theta_figure(analysis: Analysis) -> Figure:
     return figure
 
 
-def euler_parameters_figure(analysis: Analysis) -> Figure:
+def euler_parameters_figure(analysis: Shown) -> Figure:
     """Make the figure of measured and modeled e0..e3 over time."""
     figure = style.new_figure(_WIDTH_MM, 105.0)
     panels = figure.subplots(2, 2, sharex=True).ravel()
@@ -34,7 +34,7 @@ def euler_parameters_figure(analysis: Analysis) -> Figure:
     return figure
 
 
-def axis_figure(analysis: Analysis) -> Figure:
+def axis_figure(analysis: Shown) -> Figure:
     """Make the figure of the axes in space, of their directions and of their places."""
     figure = style.new_figure(_WIDTH_MM, 84.0)
     # The second column keeps the labels of the space apart from the next panel's: the layout does not see them.
@@ -52,7 +52,7 @@ def axis_figure(analysis: Analysis) -> Figure:
     return figure
 
 
-def joint_axis_figure(analysis: Analysis) -> Figure:
+def joint_axis_figure(analysis: Shown) -> Figure:
     """Make the figure of the joint's axis with its 95 % cone, in space and in three projections."""
     figure = style.new_figure(_WIDTH_MM, 140.0)
     grid = figure.add_gridspec(3, 2, height_ratios=[1.0, 0.75, 0.04])
@@ -72,7 +72,7 @@ def joint_axis_figure(analysis: Analysis) -> Figure:
     return figure
 
 
-def error_figure(analysis: Analysis) -> Figure:
+def error_figure(analysis: Shown) -> Figure:
     """Make the figure of angle error and RMS displacement over time."""
     figure = style.new_figure(_WIDTH_MM, 100.0)
     upper, lower = figure.subplots(2, 1, sharex=True)
@@ -82,7 +82,7 @@ def error_figure(analysis: Analysis) -> Figure:
     return figure
 
 
-FIGURES: Final[dict[str, Callable[[Analysis], Figure]]] = {
+FIGURES: Final[dict[str, Callable[[Shown], Figure]]] = {
     "theta": theta_figure,
     "euler_parameters": euler_parameters_figure,
     "axis": axis_figure,

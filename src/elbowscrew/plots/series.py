@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
-from elbowscrew.model import Analysis
+from elbowscrew.model.shown import Shown
 from elbowscrew.motion.phases import runs_of
 from elbowscrew.plots import style
 from elbowscrew.tables import angle_in, length_in
@@ -18,7 +18,7 @@ Float = NDArray[np.float64]
 _NORMAL_95: Final = 1.959964
 
 
-def plot_theta(ax: Axes, analysis: Analysis) -> Axes:
+def plot_theta(ax: Axes, analysis: Shown) -> Axes:
     """Draw measured and modeled angle over time with the keyframes (the paper's figures 7 and 8)."""
     unit = analysis.settings.angle_unit
     angle = angle_in(analysis.screw.angle, unit)
@@ -37,7 +37,7 @@ def plot_theta(ax: Axes, analysis: Analysis) -> Axes:
     return _over_time(ax, time_s)
 
 
-def plot_euler_parameter(ax: Axes, analysis: Analysis, component: int) -> Axes:
+def plot_euler_parameter(ax: Axes, analysis: Shown, component: int) -> Axes:
     """Draw one of e0..e3, measured and modeled, over time (the paper's figures 9 and 10)."""
     time_s = analysis.screw.time_s
     measured = analysis.screw.euler_parameters[:, component]
@@ -55,20 +55,20 @@ def plot_euler_parameter(ax: Axes, analysis: Analysis, component: int) -> Axes:
     return _over_time(ax, time_s)
 
 
-def plot_angle_error(ax: Axes, analysis: Analysis) -> Axes:
+def plot_angle_error(ax: Axes, analysis: Shown) -> Axes:
     """Draw the angle between modeled and measured orientation over time, with its RMS."""
     unit = analysis.settings.angle_unit
     return _plot_error(ax, analysis, angle_in(analysis.interpolated.angle_error, unit), "Angle error", unit)
 
 
-def plot_rms_displacement(ax: Axes, analysis: Analysis) -> Axes:
+def plot_rms_displacement(ax: Axes, analysis: Shown) -> Axes:
     """Draw the RMS displacement of the forearm's points over time, with its RMS."""
     unit = analysis.settings.length_unit
     values = length_in(analysis.interpolated.rms_displacement, unit)
     return _plot_error(ax, analysis, values, "RMS displacement", unit)
 
 
-def mark_tracking(ax: Axes, analysis: Analysis) -> Axes:
+def mark_tracking(ax: Axes, analysis: Shown) -> Axes:
     """Shade the frames without a measured pose: plain where they stay empty, hatched where they were filled in."""
     screw = analysis.screw
     half = 0.5 / analysis.recording.rate_hz
@@ -82,7 +82,7 @@ def mark_tracking(ax: Axes, analysis: Analysis) -> Axes:
     return ax
 
 
-def mark_movements(ax: Axes, analysis: Analysis) -> Axes:
+def mark_movements(ax: Axes, analysis: Shown) -> Axes:
     """Shade the movements between rests."""
     time_s, phases = analysis.screw.time_s, analysis.phases
     for k, (onset, offset) in enumerate(zip(phases.onset_rows, phases.offset_rows, strict=True)):
@@ -91,7 +91,7 @@ def mark_movements(ax: Axes, analysis: Analysis) -> Axes:
     return ax
 
 
-def _plot_error(ax: Axes, analysis: Analysis, values: Float, name: str, unit: str) -> Axes:
+def _plot_error(ax: Axes, analysis: Shown, values: Float, name: str, unit: str) -> Axes:
     time_s = analysis.screw.time_s
     ax.plot(time_s, values, label="model against measurement", **style.MEASURED)
     if np.isfinite(values).any():
@@ -122,7 +122,7 @@ def _over_time(ax: Axes, time_s: Float) -> Axes:
     return ax
 
 
-def _model_label(analysis: Analysis) -> str:
+def _model_label(analysis: Shown) -> str:
     names = {"dlb": "DLB", "sclerp": "ScLERP", "sdlb": "sDLB", "dib": "DIB", "catmull-rom": "Catmull-Rom"}
     method = analysis.settings.method
     return f"{names.get(method, method)} through {analysis.keyframes.row.size} poses"
