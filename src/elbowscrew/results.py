@@ -2,28 +2,22 @@
 
 from __future__ import annotations
 
-import io
 import json
 import os
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import Any, Final, Literal
+from typing import Literal
 
 from elbowscrew.errors import UsageError
 from elbowscrew.io.joint_summary import joint_summary
 from elbowscrew.io.optitrack_writer import motive_columns_lines, row_tagged_lines
-from elbowscrew.io.staging import result_folder, write_files
+from elbowscrew.io.results_reading import read_finished
+from elbowscrew.io.staging import FIGURE_FORMATS, FIGURE_NAMES, result_folder, write_files
 from elbowscrew.io.summary import summary_from_analysis
 from elbowscrew.io.writing import write_tables
 from elbowscrew.model import Analysis
+from elbowscrew.report import write_trial_page
 from elbowscrew.simulate import SimulatedTrial
-
-# Without dates and program versions the same analysis gives the same bytes.
-_METADATA: Final[dict[str, dict[str, Any]]] = {
-    "png": {"Software": None},
-    "svg": {"Date": None, "Creator": None},
-    "pdf": {"CreationDate": None, "Creator": None, "Producer": None},
-}
 
 
 def save_analysis(
@@ -32,8 +26,12 @@ def save_analysis(
     *,
     force: bool = False,
     figure_formats: Sequence[str] | None = None,
+    report: bool = True,
 ) -> Path:
-    """Write the tables, ``summary.json``, ``joint.json`` and ``figures/`` into a folder, whole or not at all.
+    """Write the tables, ``summary.json``, ``joint.json``, ``figures/`` and ``report.html`` into a folder.
+
+    Whole or not at all. Figures and page are made from the tables and JSON just written, so that
+    ``elbowscrew report`` makes the same of them at any later time.
 
     Parameters
     ----------
@@ -45,6 +43,8 @@ def save_analysis(
         Replace an earlier result.
     figure_formats : sequence of {"png", "svg", "pdf"}, optional
         Those of the analysis' settings by default; may be empty.
+    report : bool
+        Write the page.
 
     Returns
     -------
@@ -68,9 +68,9 @@ def save_analysis(
     """
     target = Path(folder)
     formats = analysis.settings.figure_formats if figure_formats is None else tuple(figure_formats)
-    unknown = sorted(set(formats) - set(_METADATA))
+    unknown = sorted(set(formats) - set(FIGURE_FORMATS))
     if unknown:
-        msg = f"figure formats: expected {', '.join(_METADATA)}, found {', '.join(unknown)}"
+        msg = f"figure formats: expected {', '.join(FIGURE_FORMATS)}, found {', '.join(unknown)}"
         raise UsageError(msg)
     with result_folder(target, force=force) as staged:
         write_tables(staged, analysis)
@@ -81,21 +81,18 @@ def save_analysis(
             text = json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False)
             (staged / name).write_text(text + "\n", encoding="utf-8")
         if formats:
-            _write_figures(staged / "figures", analysis, formats)
+            _write_figures(staged, formats)
+        if report:
+            write_trial_page(staged)
     return target
 
 
-def _write_figures(folder: Path, analysis: Analysis, formats: Sequence[str]) -> None:
-    from elbowscrew.plots.figures import FIGURES
-    from elbowscrew.plots.style import publication_style, settle
+def _write_figures(staged: Path, formats: Sequence[str]) -> None:
+    from elbowscrew.report.figure_files import figure_files
 
-    folder.mkdir()
-    with publication_style():
-        for name, make in FIGURES.items():
-            figure = make(analysis)
-            settle(figure)
-            for kind in formats:
-                figure.savefig(folder / f"{name}.{kind}", format=kind, metadata=_METADATA[kind])
+    (staged / "figures").mkdir()
+    for name, content in figure_files(read_finished(staged), FIGURE_NAMES, formats).items():
+        (staged / "figures" / name).write_bytes(content)
 
 
 def save_simulation(
@@ -171,21 +168,13 @@ def save_paper_figures(folder: str | os.PathLike[str]) -> tuple[Path, ...]:
         If a file is there already, or the disk does not take them.
     """
     from elbowscrew.motion.analysis import analyze
-    from elbowscrew.plots.figures import FIGURES
-    from elbowscrew.plots.style import publication_style, settle
+    from elbowscrew.report.figure_files import figure_files
     from elbowscrew.settings import Settings
     from elbowscrew.simulate import simulate_trial
 
     analysis = analyze(simulate_trial(marker_noise_mm=0.1, seed=2010).recording, Settings(inversion=211))
-    target = Path(folder)
     names = {"figures_7_and_8.png": "theta", "figures_9_and_10.png": "euler_parameters"}
-    contents = {}
-    with publication_style():
-        for file, name in names.items():
-            figure = FIGURES[name](analysis)
-            settle(figure)
-            stream = io.BytesIO()
-            figure.savefig(stream, format="png", metadata=_METADATA["png"])
-            contents[target / file] = stream.getvalue()
+    drawn = figure_files(analysis, tuple(names.values()), ("png",))
+    contents = {Path(folder) / file: drawn[f"{name}.png"] for file, name in names.items()}
     write_files(contents, replaceable=None)
     return tuple(contents)

@@ -34,7 +34,7 @@ def plot_theta(ax: Axes, analysis: Shown) -> Axes:
     mark_movements(ax, analysis)
     mark_tracking(ax, analysis)
     ax.set_ylabel(f"Angle θ ({unit})")
-    return _over_time(ax, time_s)
+    return over_time(ax, time_s)
 
 
 def plot_euler_parameter(ax: Axes, analysis: Shown, component: int) -> Axes:
@@ -52,7 +52,7 @@ def plot_euler_parameter(ax: Axes, analysis: Shown, component: int) -> Axes:
     ax.plot(time_s[rows], measured[rows], label="keyframes", **style.KEYFRAME)
     mark_tracking(ax, analysis)
     ax.set_ylabel(f"$e_{component}$ (–)")
-    return _over_time(ax, time_s)
+    return over_time(ax, time_s)
 
 
 def plot_angle_error(ax: Axes, analysis: Shown) -> Axes:
@@ -112,10 +112,11 @@ def _plot_error(ax: Axes, analysis: Shown, values: Float, name: str, unit: str) 
     mark_tracking(ax, analysis)
     ax.set_ylabel(f"{name} ({unit})")
     ax.set_ylim(bottom=min(0.0, ax.get_ylim()[0]))
-    return _over_time(ax, time_s)
+    return over_time(ax, time_s)
 
 
-def _over_time(ax: Axes, time_s: Float) -> Axes:
+def over_time(ax: Axes, time_s: Float) -> Axes:
+    """Let the axis along be the time of the recording."""
     margin = 0.01 * (time_s[-1] - time_s[0]) or 0.01
     ax.set_xlim(time_s[0] - margin, time_s[-1] + margin)
     ax.set_xlabel("Time (s)")
