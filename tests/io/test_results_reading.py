@@ -11,10 +11,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
+from finished_results import ball
 
-from elbowscrew import Analysis, Recording, RigidBody, Settings, analyze, save_analysis, simulate_trial
+from elbowscrew import Analysis, Settings, analyze, save_analysis, simulate_trial
 from elbowscrew.errors import ResultError
-from elbowscrew.geometry.quaternion import quat_from_rotation_vector
 from elbowscrew.io.results_reading import is_result, read_finished
 from elbowscrew.model.finished import FinishedTrial
 from elbowscrew.model.shown import Shown
@@ -34,15 +34,6 @@ WAYS: dict[str, dict[str, Any]] = {
 class Pair(NamedTuple):
     analysis: Analysis
     finished: FinishedTrial
-
-
-def ball() -> Recording:
-    """Two rotations across each other: a motion without a single axis, of bodies without markers."""
-    turn = np.linspace(0.0, 2.0 * np.pi, 150)
-    vector = np.stack([np.sin(turn), np.sin(2.0 * turn), 0.3 * np.cos(turn)], axis=1)
-    place = np.stack([0.1 * np.cos(turn), 0.2 + 0.1 * np.sin(turn), 0.0 * turn], axis=1)
-    body = RigidBody.from_quaternions("Forearm", quat_from_rotation_vector(vector), place)
-    return Recording.from_bodies([body], rate_hz=100.0)
 
 
 @pytest.fixture(scope="module", params=WAYS)

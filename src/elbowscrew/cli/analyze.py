@@ -209,6 +209,9 @@ def analyze(
         list[options.FigureFormat] | None,
         typer.Option(rich_help_panel=_OUTPUT, help="May be given more than once.", show_default="png"),
     ] = None,
+    page: Annotated[
+        bool, typer.Option("--report/--no-report", rich_help_panel=_OUTPUT, help="Write the page report.html.")
+    ] = True,
     config: Annotated[
         Path | None, typer.Option(metavar="FILE.toml", rich_help_panel=_OUTPUT, help="Settings; options are stronger.")
     ] = None,
@@ -283,7 +286,7 @@ def analyze(
     except ElbowscrewError as error:
         msg = f"{trial}: {error}"
         raise type(error)(msg) from error
-    save_analysis(analysis, target, force=force)
+    save_analysis(analysis, target, force=force, report=page)
     summary = summary_from_analysis(analysis)
     render.warnings(summary["warnings"])
     if json_output:

@@ -10,6 +10,7 @@ from elbowscrew._version import __version__
 from elbowscrew.cli.analyze import analyze
 from elbowscrew.cli.info import info
 from elbowscrew.cli.paper import paper
+from elbowscrew.cli.report import report
 from elbowscrew.cli.simulate import simulate
 
 app = typer.Typer(
@@ -35,6 +36,7 @@ def _common(
 
 
 app.command()(analyze)
+app.command()(report)
 app.command()(info)
 app.command()(simulate)
 app.command()(paper)

@@ -11,7 +11,7 @@ from elbowscrew.model.shown import Shown
 from elbowscrew.plots import axis, joint, series, style
 
 WIDTH_MM: Final = 170.0
-_NARROW_MM: Final = 120.0  # below this panels stand one below the other
+NARROW_MM: Final = 120.0  # below this panels stand one below the other
 
 
 class MakeFigure(Protocol):
@@ -24,7 +24,7 @@ class MakeFigure(Protocol):
 
 def theta_figure(analysis: Shown, *, width_mm: float = WIDTH_MM) -> Figure:
     """Make the figure of measured and modeled angle over time with keyframes."""
-    narrow = width_mm < _NARROW_MM
+    narrow = width_mm < NARROW_MM
     figure = style.new_figure(width_mm, 72.0 if narrow else 80.0)
     ax = series.plot_theta(figure.add_subplot(), analysis)
     figure.legend(*ax.get_legend_handles_labels(), loc="outside upper center", ncols=2 if narrow else 4)
@@ -33,7 +33,7 @@ def theta_figure(analysis: Shown, *, width_mm: float = WIDTH_MM) -> Figure:
 
 def euler_parameters_figure(analysis: Shown, *, width_mm: float = WIDTH_MM) -> Figure:
     """Make the figure of measured and modeled e0..e3 over time."""
-    narrow = width_mm < _NARROW_MM
+    narrow = width_mm < NARROW_MM
     figure = style.new_figure(width_mm, 150.0 if narrow else 105.0)
     panels = figure.subplots(4 if narrow else 2, 1 if narrow else 2, sharex=True).ravel()
     for component, ax in enumerate(panels):
@@ -47,7 +47,7 @@ def euler_parameters_figure(analysis: Shown, *, width_mm: float = WIDTH_MM) -> F
 
 def axis_figure(analysis: Shown, *, width_mm: float = WIDTH_MM) -> Figure:
     """Make the figure of the axes in space, of their directions and of their places."""
-    if width_mm < _NARROW_MM:
+    if width_mm < NARROW_MM:
         figure = style.new_figure(width_mm, 160.0)
         # The second row keeps the legend of the space apart from the panels below it: the layout does not see it.
         grid = figure.add_gridspec(4, 2, height_ratios=[1.5, 0.2, 1.0, 0.05])
@@ -72,7 +72,7 @@ def axis_figure(analysis: Shown, *, width_mm: float = WIDTH_MM) -> Figure:
 
 def joint_axis_figure(analysis: Shown, *, width_mm: float = WIDTH_MM) -> Figure:
     """Make the figure of the joint's axis with its 95 % cone, in space and in three projections."""
-    narrow = width_mm < _NARROW_MM
+    narrow = width_mm < NARROW_MM
     if narrow:
         figure = style.new_figure(width_mm, 230.0)
         grid = figure.add_gridspec(5, 1, height_ratios=[1.4, 1.2, 0.8, 0.8, 0.06])
@@ -100,7 +100,7 @@ def joint_axis_figure(analysis: Shown, *, width_mm: float = WIDTH_MM) -> Figure:
 
 def error_figure(analysis: Shown, *, width_mm: float = WIDTH_MM) -> Figure:
     """Make the figure of angle error and RMS displacement over time."""
-    narrow = width_mm < _NARROW_MM
+    narrow = width_mm < NARROW_MM
     figure = style.new_figure(width_mm, 100.0)
     upper, lower = figure.subplots(2, 1, sharex=True)
     series.plot_angle_error(upper, analysis).set_xlabel("")

@@ -18,8 +18,8 @@ LIMIT: Final = 3.5
 LEAST: Final = 5
 _NORMAL_MAD: Final = 0.6745
 _NORMAL_MEAN: Final = 1.253314
-_WIDTH: Final = 900.0
-_ROW: Final = 46.0
+_WIDTH: Final = 640.0
+_ROW: Final = 40.0
 _LONGEST: Final = 22
 
 
@@ -70,7 +70,7 @@ def strip_chart(name: str, title: str, unit: str, groups: Mapping[str, tuple[Flo
         return left + (right - left) * (value - low) / (high - low)
 
     parts = []
-    values, decimals = ticks_between(low, high, 8)
+    values, decimals = ticks_between(low, high, 6)
     for value in values:
         text = f"{value + 0.0:.{decimals}f}".replace("-", "−")
         parts.append(f'<path class="grid" d="M{along(value):.1f} 4V{bottom:g}"/>')

@@ -14,7 +14,9 @@
   tools.hidden = false;
   tools.addEventListener("submit", (event) => event.preventDefault());
 
-  const texts = new Map(rows.map((row) => [row, row.textContent.toLocaleLowerCase()]));
+  // Words, not numbers: a 1 is in nearly every row.
+  const words = (row) => [...row.querySelectorAll("th, td[data-factor], td[data-sort]")].map((cell) => cell.textContent);
+  const texts = new Map(rows.map((row) => [row, words(row).join(" ").toLocaleLowerCase()]));
   const apply = () => {
     const wanted = filter.value.trim().toLocaleLowerCase().split(/\s+/).filter(Boolean);
     let shown = 0;
