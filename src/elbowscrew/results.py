@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 from elbowscrew.errors import UsageError
 from elbowscrew.io.joint_summary import joint_summary
@@ -72,26 +72,28 @@ def save_analysis(
     if unknown:
         msg = f"figure formats: expected {', '.join(FIGURE_FORMATS)}, found {', '.join(unknown)}"
         raise UsageError(msg)
+    summary = summary_from_analysis(analysis)
     with result_folder(target, force=force) as staged:
         write_tables(staged, analysis)
-        for name, content in (
-            ("summary.json", summary_from_analysis(analysis)),
-            ("joint.json", joint_summary(analysis)),
-        ):
-            text = json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False)
-            (staged / name).write_text(text + "\n", encoding="utf-8")
+        _write_json(staged / "joint.json", joint_summary(analysis))
         if formats:
-            _write_figures(staged, formats)
+            _write_figures(staged, summary, formats)
+        _write_json(staged / "summary.json", summary)
         if report:
             write_trial_page(staged)
     return target
 
 
-def _write_figures(staged: Path, formats: Sequence[str]) -> None:
+def _write_json(path: Path, content: Mapping[str, Any]) -> None:
+    text = json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False)
+    path.write_text(text + "\n", encoding="utf-8")
+
+
+def _write_figures(staged: Path, summary: Mapping[str, Any], formats: Sequence[str]) -> None:
     from elbowscrew.report.figure_files import figure_files
 
     (staged / "figures").mkdir()
-    for name, content in figure_files(read_finished(staged), FIGURE_NAMES, formats).items():
+    for name, content in figure_files(read_finished(staged, summary), FIGURE_NAMES, formats).items():
         (staged / "figures" / name).write_bytes(content)
 
 

@@ -180,3 +180,22 @@ def test_too_few_or_all_alike_have_no_outliers() -> None:
     mostly = modified_z(np.array([5.0] * 9 + [6.0]))
     assert mostly[-1] > LIMIT
     assert (mostly[:-1] == 0.0).all()
+
+
+def test_the_columns_of_a_batchs_manifest_are_those_between_path_and_frames(result: Path, tmp_path: Path) -> None:
+    for name in ("=one", "two", "left over"):
+        shutil.copytree(result, tmp_path / name)
+    header = ["trial", "path", "session", "condition", "frames", "expressed_in"]
+    rows = [["'=one", "in/1.csv", "1", "<i>a</i>", "450", "arm"], ["two", "in/2.csv", "2", "b", "450", "lab"]]
+    write_rows(tmp_path / "summary.csv", [header, *rows])
+    found = read_study(tmp_path)
+    assert found.factors == ("condition", "session")
+    assert [trial.factors for trial in found.trials] == [
+        {"condition": "<i>a</i>", "session": "1"},
+        {"condition": "b", "session": "2"},
+    ]
+    assert found.others == ("left over",)
+    page = write_study_page(tmp_path).read_text(encoding="utf-8")
+    assert links(page) == ["%3Done/report.html", "two/report.html"]
+    assert "1 further result in this folder (left over)" in page
+    assert "<i>a" not in page

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -61,13 +62,15 @@ def read_summary(path: Path) -> dict[str, Any]:
     return content
 
 
-def read_finished(folder: Path) -> FinishedTrial:
+def read_finished(folder: Path, summary: Mapping[str, Any] | None = None) -> FinishedTrial:
     """Read a result folder back, without analyzing anything again.
 
     Parameters
     ----------
     folder : Path
         As `elbowscrew.save_analysis` wrote it, in whatever units.
+    summary : mapping, optional
+        What will stand in ``summary.json``, which is written last.
 
     Returns
     -------
@@ -78,7 +81,8 @@ def read_finished(folder: Path) -> FinishedTrial:
     ResultError
         If the folder holds no finished result, or a damaged one.
     """
-    summary = read_summary(folder / "summary.json")
+    if summary is None:
+        summary = read_summary(folder / "summary.json")
     joint_summary = read_summary(folder / "joint.json")
     try:
         return _finished(folder, summary, joint_summary)
@@ -90,7 +94,7 @@ def read_finished(folder: Path) -> FinishedTrial:
         raise ResultError(" ".join(msg.split())) from error
 
 
-def _finished(folder: Path, summary: dict[str, Any], joint_summary: dict[str, Any]) -> FinishedTrial:
+def _finished(folder: Path, summary: Mapping[str, Any], joint_summary: dict[str, Any]) -> FinishedTrial:
     settings = Settings.model_validate(summary["settings"])
     units = settings.angle_unit, settings.length_unit
     read = {
@@ -253,7 +257,7 @@ def _phases(movements: list[dict[str, int]], frame: NDArray[np.int64]) -> Moveme
     return MovementPhases(onset_rows=onset, offset_rows=offset, moving=moving, threshold=float("nan"))
 
 
-def _keyframes(summary: dict[str, Any], frame: NDArray[np.int64]) -> Keyframes:
+def _keyframes(summary: Mapping[str, Any], frame: NDArray[np.int64]) -> Keyframes:
     numbers = np.array(summary["interpolation"]["keyframes"], dtype=np.int64)
     inner = np.flatnonzero(np.isin(numbers[1:-1], summary["motion"]["inversion_frames"])) + 1
     bounds = np.array([0, *inner, numbers.size - 1], dtype=np.int64)

@@ -22,6 +22,7 @@ Float = NDArray[np.float64]
 
 CONDITION: Final = "condition"
 _ALWAYS: Final = ("subject", CONDITION)
+_BEFORE, _BEHIND = "path", "frames"  # columns of a batch's summary.csv around those that its manifest brought
 _MOST_LEVELS: Final = 12
 _MOST_FACTORS: Final = 6
 _THETA: Final = tuple(column for column in tables.SCREW_COLUMNS if column.name in ("theta", "time_s"))
@@ -62,12 +63,16 @@ class Failure:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Study:
-    """All trials of a folder by their places, the columns that the manifest brought, and what failed."""
+    """Trials of a folder by their places, the columns that the manifest brought, and what failed.
+
+    Where there is a ``summary.csv``, trials are those that it names; `others` are results beside them.
+    """
 
     name: str
     trials: tuple[StudyTrial, ...]
     factors: tuple[str, ...]
     failures: tuple[Failure, ...]
+    others: tuple[str, ...] = ()
 
 
 def result_folders(folder: Path) -> Iterator[Path]:
@@ -117,9 +122,11 @@ def read_study(folder: Path, factors: Sequence[str] | None = None) -> Study:
             factors={name: said.get(trial.place, {}).get(name, "") for name in chosen},
         )
         for trial in trials
+        if not said or trial.place in said
     ]
+    others = tuple(trial.place for trial in trials if said and trial.place not in said)
     name = folder.resolve().name or "study"
-    return Study(name=name, trials=tuple(kept), factors=chosen, failures=tuple(failures))
+    return Study(name=name, trials=tuple(kept), factors=chosen, failures=tuple(failures), others=others)
 
 
 def _trial(result: Path, place: str) -> StudyTrial:
@@ -154,16 +161,20 @@ def _said_of(path: Path, places: set[str]) -> dict[str, dict[str, str]]:
 
 
 def _folder(row: list[str], column: int) -> str:
-    return row[column].replace("\\", "/").rstrip("/") if column < len(row) else ""
+    """Read a cell as a folder; an apostrophe is what keeps spreadsheets from taking a name for a formula."""
+    return row[column].replace("\\", "/").rstrip("/").removeprefix("'") if column < len(row) else ""
 
 
 def _factors(said: Mapping[str, Mapping[str, str]]) -> list[str]:
-    """Subject and condition, and other columns of a few different words."""
+    """Subject and condition, and other columns of a few different words; of a batch those of its manifest."""
     names = list(dict.fromkeys(name for row in said.values() for name in row))
+    carried = _BEFORE in names and _BEHIND in names
+    if carried:
+        names = names[names.index(_BEFORE) + 1 : names.index(_BEHIND)]
     found = [name for name in names if name.strip().casefold() in _ALWAYS]
     for name in names:
         levels = {row.get(name, "") for row in said.values()} - {""}
-        if name not in found and 1 < len(levels) <= _MOST_LEVELS and not any(map(_is_number, levels)):
+        if name not in found and 1 < len(levels) <= _MOST_LEVELS and (carried or not any(map(_is_number, levels))):
             found.append(name)
     return found[:_MOST_FACTORS]
 

@@ -81,6 +81,7 @@ def study_page(study: Study) -> str:
         "measures": MEASURES,
         "charts": _charts(rows, groups),
         "failures": failures,
+        "others": study.others,
         "outliers": sum(bool(row["outlier"]) for row in rows),
         "warned": sum(bool(row["warnings"]) for row in rows),
         "limit": LIMIT,
