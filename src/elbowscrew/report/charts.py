@@ -210,12 +210,14 @@ class Chart:
             place = float(self.x(np.array(value)))
             parts.append(f'<path class="tick" d="M{place:.1f} {bottom:g}v5"/>')
             parts.append(
-                f'<text x="{place:.1f}" y="{bottom + 20:g}" text-anchor="middle">{_text(value, decimals)}</text>'
+                f'<text x="{place:.1f}" y="{bottom + 20:g}" text-anchor="middle">{tick_text(value, decimals)}</text>'
             )
         values, decimals = ticks_between(*self._y, _UP_TICKS)
         for value in values:
             place = float(self.y(np.array(value))) + 4.5
-            parts.append(f'<text x="{left - 8:g}" y="{place:.1f}" text-anchor="end">{_text(value, decimals)}</text>')
+            parts.append(
+                f'<text x="{left - 8:g}" y="{place:.1f}" text-anchor="end">{tick_text(value, decimals)}</text>'
+            )
         parts.append(f'<path class="axis" d="M{left:g} {bottom:g}H{right:g}"/>')
         middle, height = 0.5 * (left + right), 0.5 * (top + bottom)
         parts.append(f'<text x="{middle:g}" y="{bottom + 40:g}" text-anchor="middle">{escape(self._labels[0])}</text>')
@@ -266,5 +268,6 @@ def range_of(*series: Float, zero: bool = False, air: float = 0.06) -> tuple[flo
     return low if zero and low == 0.0 else low - air * width, high + air * width
 
 
-def _text(value: float, decimals: int) -> str:
+def tick_text(value: float, decimals: int) -> str:
+    """Write the number of a tick, with a true minus sign."""
     return f"{value + 0.0:.{decimals}f}".replace("-", "−")

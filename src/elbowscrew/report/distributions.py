@@ -10,7 +10,7 @@ import numpy as np
 from markupsafe import Markup
 from numpy.typing import NDArray
 
-from elbowscrew.report.charts import picture, range_of, ticks_between
+from elbowscrew.report.charts import picture, range_of, tick_text, ticks_between
 
 Float = NDArray[np.float64]
 
@@ -72,7 +72,7 @@ def strip_chart(name: str, title: str, unit: str, groups: Mapping[str, tuple[Flo
     parts = []
     values, decimals = ticks_between(low, high, 6)
     for value in values:
-        text = f"{value + 0.0:.{decimals}f}".replace("-", "−")
+        text = tick_text(value, decimals)
         parts.append(f'<path class="grid" d="M{along(value):.1f} 4V{bottom:g}"/>')
         parts.append(f'<text x="{along(value):.1f}" y="{bottom + 20:g}" text-anchor="middle">{text}</text>')
     parts.append(f'<path class="axis" d="M{left:g} {bottom:g}H{right:g}"/>')

@@ -102,7 +102,7 @@ def _environment() -> jinja2.Environment:
         lstrip_blocks=True,
         auto_reload=False,
     )
-    environment.filters.update(number=number, vector=vector, percent=percent, words=words)
+    environment.filters.update(number=number, brief=brief, vector=vector, percent=percent, words=words)
     return environment
 
 
@@ -114,6 +114,16 @@ def number(value: float | None, decimals: int = 2) -> str:
     if float(text) == 0.0:
         text = text.lstrip("-")
     return text.replace("-", "−")
+
+
+def brief(value: float | None, digits: int = 2) -> str:
+    """Write a number to so many digits that count, never with an exponent unless it is very small."""
+    if value is None or not math.isfinite(value):
+        return _NONE
+    if value == 0.0 or abs(value) < 1e-4:
+        return f"{value:.{digits - 1}g}".replace("-", "−")
+    decimals = digits - 1 - math.floor(math.log10(abs(value)))
+    return number(round(value, decimals), max(decimals, 0))
 
 
 def vector(values: Iterable[float | None] | None, decimals: int = 1) -> str:

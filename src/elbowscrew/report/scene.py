@@ -16,6 +16,8 @@ Float = NDArray[np.float64]
 
 MOST_FRAMES: Final = 900
 """Frames that are played; of longer trials every so many."""
+WIDEST: Final = 1.0
+"""Half-angle (rad) of the widest region that is drawn; a wider one hides all else."""
 _DECIMALS: Final = 2
 _PURE_DECIMALS: Final = 5
 
@@ -86,7 +88,7 @@ def _body(origin: Float | None, markers: Float | None) -> dict[str, Any] | None:
 
 
 def _region(region: Region) -> list[float] | None:
-    if not np.isfinite([region.angle, region.radius]).all():
+    if not np.isfinite([region.angle, region.radius]).all() or region.angle > WIDEST:
         return None
     return [round(region.angle, 6), round(region.radius, 4)]
 

@@ -12,7 +12,18 @@ from numpy.typing import NDArray
 from elbowscrew.model.finished import FinishedTrial
 from elbowscrew.motion.phases import runs_of
 from elbowscrew.motion.scene import Bundle, directions_across, joint_bundle
-from elbowscrew.report.charts import COLORS, WIDTH, Chart, color_of, keys_of, picture, range_of, ticks_between
+from elbowscrew.report.charts import (
+    COLORS,
+    WIDTH,
+    Chart,
+    color_of,
+    keys_of,
+    picture,
+    range_of,
+    tick_text,
+    ticks_between,
+)
+from elbowscrew.report.scene import WIDEST
 
 Float = NDArray[np.float64]
 
@@ -104,7 +115,7 @@ def axis_chart(trial: FinishedTrial) -> Markup:
     bundle = joint_bundle(trial).scaled(1000.0)
     across, names = directions_across(bundle.direction)
     offset = bundle.segments - bundle.center
-    widest = 1.25 * max(float(region.reach(np.array([bundle.half]))[0]) for _, region in _regions(bundle)) or 1.0
+    widest = _reach(bundle, offset - (offset @ bundle.direction)[..., None] * bundle.direction)
     angle = np.degrees(trial.screw.angle[bundle.rows])
     colors = [color_of(float(share)) for share in (angle - angle.min()) / (float(np.ptp(angle)) or 1.0)]
     size = (0.5 * WIDTH, 0.42 * WIDTH)
@@ -226,6 +237,14 @@ def _regions(bundle: Bundle) -> list[tuple[str, Any]]:
     return regions
 
 
+def _reach(bundle: Bundle, across: Float) -> float:
+    """How far across the axis the view goes: as far as the regions, or, if one is too wide, most of the axes."""
+    reaches = [float(region.reach(np.array([bundle.half]))[0]) for _, region in _regions(bundle)]
+    if any(region.angle > WIDEST for _, region in _regions(bundle)):
+        reaches = [float(np.percentile(np.linalg.norm(across, axis=2), 95.0))]
+    return 1.25 * max(reaches) or 1.0
+
+
 def _color_bar(low: float, high: float, top: float) -> list[str]:
     """Draw the scale of the angle below both panels."""
     left, width = 62.0, WIDTH - 78.0
@@ -239,7 +258,7 @@ def _color_bar(low: float, high: float, top: float) -> list[str]:
     values, decimals = ticks_between(low, high, 8)
     for value in values:
         place = left + width * (value - low) / ((high - low) or 1.0)
-        parts.append(f'<text x="{place:.1f}" y="{top + 25:g}" text-anchor="middle">{value + 0.0:.{decimals}f}</text>')
+        parts.append(f'<text x="{place:.1f}" y="{top + 25:g}" text-anchor="middle">{tick_text(value, decimals)}</text>')
     parts.append(
         f'<text x="{left + 0.5 * width:g}" y="{top + 45:g}" text-anchor="middle">Angle θ of the frame (deg)</text>'
     )

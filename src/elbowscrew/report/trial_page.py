@@ -12,7 +12,7 @@ from elbowscrew.io.results_reading import read_finished
 from elbowscrew.model.finished import FinishedTrial
 from elbowscrew.report.methods import citations_of, methods_of
 from elbowscrew.report.pages import UNSHOWABLE, render, unshowable, write_page
-from elbowscrew.report.scene import scene_of
+from elbowscrew.report.scene import WIDEST, scene_of
 from elbowscrew.report.trial_charts import (
     axis_chart,
     error_chart,
@@ -24,6 +24,7 @@ from elbowscrew.report.trial_charts import (
 from elbowscrew.settings import Settings
 
 _FRAMES_TOLD: Final = 24
+_HARDLY_DEG: Final = 30.0  # a cone wider than this tells of no direction
 _FILES: Final = (
     ("screw.csv", "measured motion and screw axis, frame by frame"),
     ("interpolation.csv", "modeled motion and its error, frame by frame"),
@@ -84,6 +85,8 @@ def trial_page(trial: FinishedTrial) -> str:
         "warnings": [warning for warning in warnings if warning["severity"] == "warning"],
         "notes": [warning for warning in warnings if warning["severity"] != "warning"],
         "model_name": model_name(trial),
+        "hardly_deg": _HARDLY_DEG,
+        "widest_deg": float(np.degrees(WIDEST)),
         "theta_chart": theta_chart(trial),
         "axis_chart": axis_chart(trial),
         "error_chart": error_chart(trial),

@@ -119,7 +119,10 @@
     context.lineWidth = 1;
     context.stroke();
   };
-  const pairs = (points) => points.flatMap((p, k) => points.slice(k + 1).flatMap((q) => [p, q, null]));
+  // Few markers are joined each to each, many to the body's origin.
+  const joined = (points, origin) => (points.length < 5
+    ? points.flatMap((p, k) => points.slice(k + 1).flatMap((q) => [p, q, null]))
+    : points.flatMap((p) => [origin, p, null]));
   const around = 36;
   const surface = (region, color, alpha) => {
     if (!region) return;
@@ -234,14 +237,14 @@
       line(ends, colorAt(scene.theta[k]), 3.5);
     }
     if (scene.arm) {
-      line(pairs(scene.arm.markers), "#0072b2", 1, 0.5);
+      line(joined(scene.arm.markers, scene.arm.origin), "#0072b2", 1, 0.5);
       scene.arm.markers.forEach((p) => disc(p, 4, "#0072b2"));
       disc(scene.arm.origin, 5.5, "#0072b2");
       label(add(scene.arm.origin, times(18 / scale, view.rows[1])), "upper arm", "#00507d");
     }
     if (here) {
       const markers = scene.forearm.markers.map((p) => moved(k, p));
-      line(pairs(markers), "#d55e00", 1, 0.6);
+      line(joined(markers, here), "#d55e00", 1, 0.6);
       markers.forEach((p) => disc(p, 4, "#d55e00"));
       disc(here, 5.5, "#d55e00");
       label(add(here, times(18 / scale, view.rows[1])), "forearm", "#a34800");
