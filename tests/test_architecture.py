@@ -26,7 +26,9 @@ def loaded_after(code: str) -> set[str]:
     return set(result.stderr.split())
 
 
-@pytest.mark.parametrize("arguments", [["--help"], ["analyze", "--help"], ["simulate", "--help"], ["--version"]])
+@pytest.mark.parametrize(
+    "arguments", [["--help"], ["analyze", "--help"], ["report", "--help"], ["simulate", "--help"], ["--version"]]
+)
 def test_help_and_version_load_no_heavy_library(arguments: list[str]) -> None:
     loaded = loaded_after(f"from elbowscrew.cli import main\nassert main({arguments!r}) == 0")
     assert not loaded & set(HEAVY)

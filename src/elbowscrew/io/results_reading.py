@@ -266,5 +266,10 @@ def _keyframes(summary: Mapping[str, Any], frame: NDArray[np.int64]) -> Keyframe
 
 def _rows(numbers: Any, frame: NDArray[np.int64]) -> NDArray[np.int64]:
     """Rows of frame numbers; a number that stands twice is taken where it stands first."""
-    where = {int(number): row for row, number in reversed(list(enumerate(frame.tolist())))}
-    return np.array([where[int(number)] for number in numbers], dtype=np.int64)
+    order = np.argsort(frame, kind="stable")
+    wanted = np.array(numbers, dtype=np.int64)
+    places = np.searchsorted(frame, wanted, sorter=order)
+    if (places == frame.size).any() or (frame[order[places]] != wanted).any():
+        msg = "a frame of the summary is not in screw.csv"
+        raise ValueError(msg)
+    return order[places].astype(np.int64)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import os
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Final
 
@@ -41,6 +41,8 @@ class StudyTrial:
         Its ``summary.json``.
     time_s, theta : ndarray, shape (N,)
         Seconds and degrees.
+    page : bool
+        Whether it has a ``report.html``.
     factors : mapping of str to str
         What the manifest says of it.
     """
@@ -49,6 +51,7 @@ class StudyTrial:
     summary: Mapping[str, Any]
     time_s: Float
     theta: Float
+    page: bool
     factors: Mapping[str, str] = field(default_factory=dict)
 
 
@@ -113,20 +116,14 @@ def read_study(folder: Path, factors: Sequence[str] | None = None) -> Study:
         raise ResultError(msg)
     said = _said_of(folder / "summary.csv", {trial.place for trial in trials})
     chosen = tuple(_factors(said) if factors is None else factors)
-    kept = [
-        StudyTrial(
-            place=trial.place,
-            summary=trial.summary,
-            time_s=trial.time_s,
-            theta=trial.theta,
-            factors={name: said.get(trial.place, {}).get(name, "") for name in chosen},
-        )
+    kept = tuple(
+        replace(trial, factors={name: said.get(trial.place, {}).get(name, "") for name in chosen})
         for trial in trials
         if not said or trial.place in said
-    ]
+    )
     others = tuple(trial.place for trial in trials if said and trial.place not in said)
     name = folder.resolve().name or "study"
-    return Study(name=name, trials=tuple(kept), factors=chosen, failures=tuple(failures), others=others)
+    return Study(name=name, trials=kept, factors=chosen, failures=tuple(failures), others=others)
 
 
 def _trial(result: Path, place: str) -> StudyTrial:
@@ -137,7 +134,13 @@ def _trial(result: Path, place: str) -> StudyTrial:
     except UNREADABLE as error:
         msg = f"{result}: not a result of this version of the program: {' '.join(str(error).split())}"
         raise ResultError(msg) from error
-    return StudyTrial(place=place, summary=summary, time_s=columns["time_s"], theta=np.degrees(columns["theta"]))
+    return StudyTrial(
+        place=place,
+        summary=summary,
+        time_s=columns["time_s"],
+        theta=np.degrees(columns["theta"]),
+        page=(result / "report.html").is_file(),
+    )
 
 
 def _failures(path: Path) -> list[Failure]:

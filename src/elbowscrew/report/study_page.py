@@ -123,7 +123,7 @@ def _row(trial: StudyTrial, scale: tuple[float, float]) -> dict[str, Any]:
     values = {one.key: summary[one.section][one.name] for one in MEASURES}
     return {
         "place": trial.place,
-        "link": quote(f"{trial.place}/report.html", safe="/"),
+        "link": quote(f"{trial.place}/report.html", safe="/") if trial.page else None,
         "thumb": thumbnail(trial.time_s, trial.theta, scale),
         "factors": list(trial.factors.items()),
         "frames": int(figures["frames"]),
