@@ -16,6 +16,7 @@ from elbowscrew import tables
 from elbowscrew.errors import ResultError
 from elbowscrew.io.result_tables import read_columns
 from elbowscrew.io.results_reading import UNREADABLE, is_result, read_summary
+from elbowscrew.report.charts import min_max_rows
 from elbowscrew.settings import Settings
 
 Float = NDArray[np.float64]
@@ -26,6 +27,7 @@ _BEFORE, _BEHIND = "path", "frames"  # columns of a batch's summary.csv around t
 _MOST_LEVELS: Final = 12
 _MOST_FACTORS: Final = 6
 _THETA: Final = tuple(column for column in tables.SCREW_COLUMNS if column.name in ("theta", "time_s"))
+_KEPT_BUCKETS: Final = 400
 _LONGEST_CELL: Final = 1 << 20
 
 
@@ -39,8 +41,8 @@ class StudyTrial:
         The result's folder relative to the study's, with slashes.
     summary : mapping
         Its ``summary.json``.
-    time_s, theta : ndarray, shape (N,)
-        Seconds and degrees.
+    time_s, theta : ndarray, shape (M,)
+        Seconds and degrees; of long trials as many points as a thumbnail needs.
     page : bool
         Whether it has a ``report.html``.
     factors : mapping of str to str
@@ -134,11 +136,13 @@ def _trial(result: Path, place: str) -> StudyTrial:
     except UNREADABLE as error:
         msg = f"{result}: not a result of this version of the program: {' '.join(str(error).split())}"
         raise ResultError(msg) from error
+    theta = np.degrees(columns["theta"])
+    rows = min_max_rows(theta, _KEPT_BUCKETS)
     return StudyTrial(
         place=place,
         summary=summary,
-        time_s=columns["time_s"],
-        theta=np.degrees(columns["theta"]),
+        time_s=columns["time_s"][rows],
+        theta=theta[rows],
         page=(result / "report.html").is_file(),
     )
 
