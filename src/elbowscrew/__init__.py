@@ -15,18 +15,25 @@ TYPE_CHECKING = False  # typing itself would double the time of `elbowscrew --ve
 if TYPE_CHECKING:
     from typing import Any
 
+    from elbowscrew.comparing import compare_trials
     from elbowscrew.errors import ElbowscrewError
+    from elbowscrew.io.keyframe_table import read_keyframes
     from elbowscrew.io.landmarks import read_landmarks
     from elbowscrew.io.reading import read_recording
     from elbowscrew.io.summary import summary_from_analysis
-    from elbowscrew.model import Analysis, Landmark, Landmarks, Recording, RigidBody
+    from elbowscrew.model import Analysis, Comparison, Landmark, Landmarks, Recording, RigidBody, TrialsComparison
     from elbowscrew.motion.analysis import analyze
-    from elbowscrew.results import save_analysis, save_simulation
+    from elbowscrew.motion.comparison import compare
+    from elbowscrew.motion.rebuilding import interpolate, keyframes_of
+    from elbowscrew.motion.treatments import ComparisonPlan
+    from elbowscrew.results import save_analysis, save_comparison, save_motion, save_simulation
     from elbowscrew.settings import Settings
     from elbowscrew.simulate import Simulation, simulate_trial
 
 __all__ = [
     "Analysis",
+    "Comparison",
+    "ComparisonPlan",
     "ElbowscrewError",
     "Landmark",
     "Landmarks",
@@ -34,11 +41,19 @@ __all__ = [
     "RigidBody",
     "Settings",
     "Simulation",
+    "TrialsComparison",
     "__version__",
     "analyze",
+    "compare",
+    "compare_trials",
+    "interpolate",
+    "keyframes_of",
+    "read_keyframes",
     "read_landmarks",
     "read_recording",
     "save_analysis",
+    "save_comparison",
+    "save_motion",
     "save_simulation",
     "simulate_trial",
     "summary_from_analysis",
@@ -47,6 +62,8 @@ __all__ = [
 # Names are loaded when first used, so that `elbowscrew --help` starts without NumPy.
 _HOME = {
     "Analysis": "model",
+    "Comparison": "model",
+    "ComparisonPlan": "motion.treatments",
     "ElbowscrewError": "errors",
     "Landmark": "model",
     "Landmarks": "model",
@@ -54,10 +71,18 @@ _HOME = {
     "RigidBody": "model",
     "Settings": "settings",
     "Simulation": "simulate",
+    "TrialsComparison": "model",
     "analyze": "motion.analysis",
+    "compare": "motion.comparison",
+    "compare_trials": "comparing",
+    "interpolate": "motion.rebuilding",
+    "keyframes_of": "motion.rebuilding",
+    "read_keyframes": "io.keyframe_table",
     "read_landmarks": "io.landmarks",
     "read_recording": "io.reading",
     "save_analysis": "results",
+    "save_comparison": "results",
+    "save_motion": "results",
     "save_simulation": "results",
     "simulate_trial": "simulate",
     "summary_from_analysis": "io.summary",

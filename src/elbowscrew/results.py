@@ -4,18 +4,21 @@ from __future__ import annotations
 
 import json
 import os
+import tempfile
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Literal
 
+from elbowscrew import tables
 from elbowscrew.errors import UsageError
+from elbowscrew.io.comparison_summary import comparison_summary, trials_summary
 from elbowscrew.io.joint_summary import joint_summary
 from elbowscrew.io.optitrack_writer import motive_columns_lines, row_tagged_lines
 from elbowscrew.io.results_reading import read_finished
-from elbowscrew.io.staging import FIGURE_FORMATS, FIGURE_NAMES, result_folder, write_files
+from elbowscrew.io.staging import COMPARISON, FIGURE_FORMATS, FIGURE_NAMES, result_folder, write_files
 from elbowscrew.io.summary import summary_from_analysis
-from elbowscrew.io.writing import write_tables
-from elbowscrew.model import Analysis
+from elbowscrew.io.writing import write_csv, write_tables
+from elbowscrew.model import Analysis, Comparison, RebuiltMotion, TrialsComparison
 from elbowscrew.report import write_trial_page
 from elbowscrew.simulate import SimulatedTrial
 
@@ -67,11 +70,7 @@ def save_analysis(
     True
     """
     target = Path(folder)
-    formats = analysis.settings.figure_formats if figure_formats is None else tuple(figure_formats)
-    unknown = sorted(set(formats) - set(FIGURE_FORMATS))
-    if unknown:
-        msg = f"figure formats: expected {', '.join(FIGURE_FORMATS)}, found {', '.join(unknown)}"
-        raise UsageError(msg)
+    formats = _known_formats(analysis.settings.figure_formats if figure_formats is None else tuple(figure_formats))
     summary = summary_from_analysis(analysis)
     with result_folder(target, force=force) as staged:
         write_tables(staged, analysis)
@@ -84,6 +83,14 @@ def save_analysis(
     return target
 
 
+def _known_formats(formats: tuple[str, ...]) -> tuple[str, ...]:
+    unknown = sorted(set(formats) - set(FIGURE_FORMATS))
+    if unknown:
+        msg = f"figure formats: expected {', '.join(FIGURE_FORMATS)}, found {', '.join(unknown)}"
+        raise UsageError(msg)
+    return formats
+
+
 def _write_json(path: Path, content: Mapping[str, Any]) -> None:
     text = json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False)
     path.write_text(text + "\n", encoding="utf-8")
@@ -92,9 +99,13 @@ def _write_json(path: Path, content: Mapping[str, Any]) -> None:
 def _write_figures(staged: Path, summary: Mapping[str, Any], formats: Sequence[str]) -> None:
     from elbowscrew.report.figure_files import figure_files
 
-    (staged / "figures").mkdir()
-    for name, content in figure_files(read_finished(staged, summary), FIGURE_NAMES, formats).items():
-        (staged / "figures" / name).write_bytes(content)
+    _write_all(staged / "figures", figure_files(read_finished(staged, summary), FIGURE_NAMES, formats))
+
+
+def _write_all(folder: Path, files: Mapping[str, bytes]) -> None:
+    folder.mkdir()
+    for name, content in files.items():
+        (folder / name).write_bytes(content)
 
 
 def save_simulation(
@@ -180,3 +191,106 @@ def save_paper_figures(folder: str | os.PathLike[str]) -> tuple[Path, ...]:
     contents = {Path(folder) / file: drawn[f"{name}.png"] for file, name in names.items()}
     write_files(contents, replaceable=None)
     return tuple(contents)
+
+
+def save_motion(motion: RebuiltMotion, path: str | os.PathLike[str], *, force: bool = False) -> Path:
+    """Write a rebuilt motion as CSV, in degrees and millimeters.
+
+    Parameters
+    ----------
+    motion : RebuiltMotion
+        From `elbowscrew.interpolate`.
+    path : path-like
+        The file.
+    force : bool
+        Replace an earlier such file.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    OutputError
+        If a file is there, or the disk does not take it.
+
+    Examples
+    --------
+    >>> import elbowscrew, tempfile
+    >>> keyframes = elbowscrew.keyframes_of(elbowscrew.analyze(elbowscrew.simulate_trial().recording))
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     save_motion(elbowscrew.interpolate(keyframes, 20), f"{folder}/motion.csv").name
+    'motion.csv'
+    """
+    target = Path(path)
+    columns = tables.columns(motion, tables.MOTION_COLUMNS, "deg", "mm")
+    with tempfile.TemporaryDirectory() as folder:
+        staged = Path(folder) / "motion.csv"
+        write_csv(staged, columns)
+        content = staged.read_bytes()
+    write_files({target: content}, replaceable="frame,time_s,phase,t,theta" if force else None)
+    return target
+
+
+def save_comparison(
+    comparison: Comparison | TrialsComparison,
+    folder: str | os.PathLike[str],
+    *,
+    force: bool = False,
+    figure_formats: Sequence[str] | None = None,
+) -> Path:
+    """Write ``compare.csv``, ``compare.json`` and the figures of a comparison into a folder, whole or not at all.
+
+    Parameters
+    ----------
+    comparison : Comparison or TrialsComparison
+        From `elbowscrew.compare` or `elbowscrew.compare_trials`.
+    folder : path-like
+        Where to; it is made.
+    force : bool
+        Replace an earlier comparison.
+    figure_formats : sequence of {"png", "svg", "pdf"}, optional
+        Those of the settings by default; may be empty.
+
+    Returns
+    -------
+    Path
+        The folder.
+
+    Raises
+    ------
+    OutputError
+        If a result is there already, or the disk does not take it.
+    UsageError
+        If a figure format is not known.
+
+    Examples
+    --------
+    >>> import elbowscrew, tempfile
+    >>> from elbowscrew.motion.treatments import ComparisonPlan
+    >>> plan = ComparisonPlan(laws=("linear",), counts=(2,), data=("raw",))
+    >>> found = elbowscrew.compare(elbowscrew.simulate_trial(frames=60, inversion=30).recording, plan=plan)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     (save_comparison(found, f"{folder}/result", figure_formats=()) / "compare.csv").exists()
+    True
+    """
+    target = Path(folder)
+    settings = comparison.settings
+    formats = _known_formats(settings.figure_formats if figure_formats is None else tuple(figure_formats))
+    units = settings.angle_unit, settings.length_unit
+    if isinstance(comparison, Comparison):
+        columns = tables.columns(comparison.models, tables.COMPARISON_COLUMNS, *units)
+        summary = comparison_summary(comparison)
+    else:
+        columns = tables.columns(comparison.models, tables.TRIALS_COMPARISON_COLUMNS, *units)
+        summary = trials_summary(comparison)
+    with result_folder(target, force=force, kind=COMPARISON) as staged:
+        write_csv(staged / "compare.csv", columns)
+        _write_json(staged / "compare.json", summary)
+        if formats:
+            from elbowscrew.plots.comparison import comparison_figure
+            from elbowscrew.report.figure_files import files_of
+
+            _write_all(staged / "figures", files_of({"compare": lambda: comparison_figure(comparison)}, formats))
+    return target

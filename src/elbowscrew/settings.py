@@ -18,6 +18,18 @@ from elbowscrew.tables import AngleUnit, LengthUnit
 _LISTS: Final = ("keyframes", "figure-format", "arm-markers", "forearm-markers")
 _UNIT_SUFFIXES: Final = ("_deg_s", "_rad_s", "_m_s", "_deg", "_mm", "_hz", "_s", "_percent")
 
+LawName = Literal[
+    "cycloidal",
+    "linear",
+    "harmonic",
+    "polynomial-345",
+    "polynomial-4567",
+    "modified-trapezoid",
+    "modified-sine",
+    "empirical",
+    "best",
+]
+
 STILL_ARM: Final = "none"
 """The value of ``arm`` that says: the file has no arm, it stands still."""
 
@@ -78,12 +90,18 @@ class Settings(BaseModel):
         Frame where the motion turns back; None for the frame of the largest angle.
     keyframes : tuple of int or None
         Frames the model passes through; None for start, inversion and end.
-    method : {"dlb", "sclerp", "sdlb", "dib", "catmull-rom"}
-        Interpolation of poses.
+    phases : {"movement", "whole"}
+        Phases between the rests of the movement, or over the whole recording as in the paper.
+    tolerance_mm : float or None
+        Choose the fewest keyframes between which the RMS displacement stays below this; None to choose by phases.
+    method : {"dlb", "sclerp", "sdlb", "dib", "catmull-rom"} or None
+        Interpolation of poses; None for DLB, or ScLERP with a tolerance (`model_method`).
     blend : {"piecewise", "global"}
         Phase by phase, or all poses at once.
-    law : str
-        Law of motion in each phase.
+    law : str or None
+        Law of motion in each phase; None for the cycloidal one, or the linear one with a tolerance (`model_law`).
+    law_peak : float or None
+        Time of the law's highest velocity as a share of the phase; None for the middle.
     knots : {"law", "chord", "uniform", "angle"}
         Parameter of the keyframes.
     radius_mm : float or None
@@ -142,11 +160,20 @@ class Settings(BaseModel):
     robust: bool = Field(False, description="Weigh outliers down in the joint's axis")
     inversion: int | None = Field(None, description="Frame where the motion turns back")
     keyframes: tuple[int, ...] | None = Field(None, min_length=2, description="Frames the model passes through")
-    method: Literal["dlb", "sclerp", "sdlb", "dib", "catmull-rom"] = Field("dlb", description="Interpolation of poses")
+    phases: Literal["movement", "whole"] = Field("movement", description="Phases between rests, or the whole recording")
+    tolerance_mm: float | None = Field(
+        None, ge=1e-3, le=1e5, description="Fewest keyframes that keep the RMS displacement below this, in millimeters"
+    )
+    method: Literal["dlb", "sclerp", "sdlb", "dib", "catmull-rom"] | None = Field(
+        None, description="Interpolation of poses; default: dlb, sclerp with a tolerance"
+    )
     blend: Literal["piecewise", "global"] = Field("piecewise", description="Phase by phase, or all poses at once")
-    law: Literal[
-        "cycloidal", "linear", "harmonic", "polynomial-345", "polynomial-4567", "modified-trapezoid", "modified-sine"
-    ] = Field("cycloidal", description="Law of motion in each phase")
+    law: LawName | None = Field(
+        None, description="Law of motion in each phase; default: cycloidal, linear with a tolerance"
+    )
+    law_peak: float | None = Field(
+        None, ge=0.05, le=0.95, description="Time of the law's highest velocity, as a share of the phase"
+    )
     knots: Literal["law", "chord", "uniform", "angle"] = Field("law", description="Parameter of the keyframes")
     radius_mm: float | None = Field(
         None, gt=0, le=1e5, description="Radius of gyration of the forearm's points; default: its markers, else 50 mm"
@@ -170,6 +197,16 @@ class Settings(BaseModel):
     def figure_formats(self) -> tuple[str, ...]:
         """Formats to write, without doubles; empty for no figures."""
         return tuple(dict.fromkeys(kind for kind in self.figure_format if kind != "none"))
+
+    @property
+    def model_method(self) -> str:
+        """The interpolation, the default resolved."""
+        return self.method or ("dlb" if self.tolerance_mm is None else "sclerp")
+
+    @property
+    def model_law(self) -> str:
+        """The law of motion, the default resolved."""
+        return self.law or ("cycloidal" if self.tolerance_mm is None else "linear")
 
     @field_validator("lowpass_hz", mode="before")
     @classmethod
@@ -200,6 +237,55 @@ class Settings(BaseModel):
         except ValueError as error:
             msg = f"expected degrees or an angle with its unit, as in 2deg, found {value!r}"
             raise ValueError(msg) from error
+
+    @field_validator("tolerance_mm", mode="before")
+    @classmethod
+    def _length_with_unit(cls, value: object) -> object:
+        """Take ``2mm`` and ``0.002m`` for lengths, too."""
+        if not isinstance(value, str):
+            return value
+        text = value.strip()
+        unit = "mm" if text.endswith("mm") else "m" if text.endswith("m") else ""
+        try:
+            return float(text.removesuffix(unit)) * (1000.0 if unit == "m" else 1.0)
+        except ValueError as error:
+            msg = f"expected millimeters or a length with its unit, as in 2mm, found {value!r}"
+            raise ValueError(msg) from error
+
+    @model_validator(mode="after")
+    def _check_law(self) -> Settings:
+        if self.law_peak is not None and self.model_law in ("linear", "empirical", "best"):
+            why = {"linear": "has no highest velocity", "empirical": "is the recording's own", "best": "finds its own"}
+            msg = f"--law-peak: the law '{self.model_law}' {why[self.model_law]}; leave --law-peak out"
+            raise ValueError(msg)
+        return self
+
+    @model_validator(mode="after")
+    def _check_tolerance(self) -> Settings:
+        if self.tolerance_mm is None:
+            return self
+        if self.keyframes is not None:
+            msg = "--tolerance chooses the keyframes itself; give either --tolerance or --keyframes"
+            raise ValueError(msg)
+        if self.model_method not in ("sclerp", "sdlb"):
+            msg = (
+                f"--tolerance: with --method {self.method} a piece depends on more than its two keyframes, and no best "
+                "set can be told; expected sclerp or sdlb"
+            )
+            raise ValueError(msg)
+        if self.law == "empirical":
+            msg = (
+                "--tolerance: the recording's own law need not go forward all the time; expected another --law than "
+                "empirical"
+            )
+            raise ValueError(msg)
+        if self.knots != "law" or self.blend != "piecewise":
+            msg = (
+                "--tolerance: the model must pass each keyframe at its own time, piece by piece; leave --knots and "
+                "--blend out"
+            )
+            raise ValueError(msg)
+        return self
 
     @model_validator(mode="after")
     def _check_keyframes(self) -> Settings:

@@ -27,6 +27,7 @@ Float = NDArray[np.float64]
 # An adult's arm: the line through the elbow in the arm's frame, tilted as the trochlea is; the segments' markers.
 _JOINT_POINT: Final = np.array([0.004, -0.132, 0.011])
 _JOINT_DIRECTION: Final = np.array([0.986, 0.104, -0.131])
+_DRIFT_ACROSS: Final = np.array([0.0, 1.0, 0.0])
 _FOREARM_CENTER: Final = np.array([0.018, -0.251, 0.037])
 _FOREARM_TURN: Final = np.array([0.09, 0.21, -0.06])
 _ARM_PLACE: Final = np.array([0.31, 1.24, -0.18])
@@ -64,8 +65,12 @@ class Simulation:
         Whether the upper arm sways in the laboratory.
     repetitions : int
         How many times the movement is done.
-    rest_before_s, rest_after_s : float
-        Rest before and after the movement, seconds.
+    rest_before_s, hold_s, rest_after_s : float
+        Rest before the movement, at every top, and after the movement, seconds.
+    axis_drift_deg : float
+        Tilt of the joint's line at the top against that at the start; it grows with the angle.
+    tremor_deg, tremor_hz : float
+        Amplitude and frequency of a tremor of the angle, which fades towards rest and top.
     seed : int
         Of all random numbers; the same seed gives the same trial.
     """
@@ -83,7 +88,11 @@ class Simulation:
     arm: Literal["moving", "still"] = "still"
     repetitions: int = 1
     rest_before_s: float = 0.0
+    hold_s: float = 0.0
     rest_after_s: float = 0.0
+    axis_drift_deg: float = 0.0
+    tremor_deg: float = 0.0
+    tremor_hz: float = 6.0
     seed: int = 0
 
     def __post_init__(self) -> None:
@@ -105,7 +114,11 @@ class Simulation:
             "gap-frames": self.gap_frames >= 1,
             "repetitions": self.repetitions >= 1,
             "rest-before": 0.0 <= self.rest_before_s * self.rate_hz < _MOST_FRAMES,
+            "hold": 0.0 <= self.hold_s * self.rate_hz < _MOST_FRAMES,
             "rest-after": 0.0 <= self.rest_after_s * self.rate_hz < _MOST_FRAMES,
+            "axis-drift": abs(self.axis_drift_deg) <= 90.0,
+            "tremor": 0.0 <= self.tremor_deg <= 90.0,
+            "tremor-hz": 0.0 < self.tremor_hz <= 0.5 * self.rate_hz,
             "seed": self.seed >= 0,
         }
         bad = [name for name, good in checks.items() if not good]
@@ -121,10 +134,11 @@ class Simulation:
     @property
     def total_frames(self) -> int:
         """Frames of the whole trial, rests included."""
-        rests = (self.rest_before_s * self.rate_hz, self.rest_after_s * self.rate_hz)
-        return (
-            self.repetitions * (self.frames - 1) + 1 + sum(round(rest) for rest in rests if 0.0 <= rest < _MOST_FRAMES)
+        before, hold, after = (
+            round(rest * self.rate_hz) if 0.0 <= rest * self.rate_hz < _MOST_FRAMES else 0
+            for rest in (self.rest_before_s, self.hold_s, self.rest_after_s)
         )
+        return self.repetitions * (self.frames - 1 + hold) + 1 + before + after
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -175,12 +189,15 @@ def simulate_trial(simulation: Simulation | None = None, **settings: Any) -> Sim
     wanted = replace(simulation or Simulation(), **settings)
     rng = np.random.default_rng(wanted.seed)
     progress, inversions = _progress(wanted)
-    angle, slide = np.radians(wanted.top_deg) * progress, 1e-3 * wanted.slide_mm * progress
     time_s = np.arange(progress.size) / wanted.rate_hz
+    angle, slide = np.radians(wanted.top_deg) * progress, 1e-3 * wanted.slide_mm * progress
+    fading = 4.0 * progress * (1.0 - progress)
+    angle = angle + np.radians(wanted.tremor_deg) * fading * np.sin(2.0 * np.pi * wanted.tremor_hz * time_s)
     line = line_through(_JOINT_POINT, _JOINT_DIRECTION)
+    lines = _drifting(line, np.radians(wanted.axis_drift_deg) * progress)
     start = dual_quat_from_pose(quaternion.quat_from_rotation_vector(_FOREARM_TURN), _FOREARM_CENTER)
     arm_pose = _arm_poses(time_s, wanted.arm)
-    joint = multiply(dual_quat_from_screw(angle, slide, line[:3], line[3:]), start)
+    joint = multiply(dual_quat_from_screw(angle, slide, lines[:, :3], lines[:, 3:]), start)
     forearm_pose = multiply(arm_pose, joint)
     lost = _lost_frames(wanted, progress.size, rng)
     bodies, markers = [], {}
@@ -215,9 +232,20 @@ def _progress(wanted: Simulation) -> tuple[Float, list[int]]:
     repetition = np.concatenate([flexion, extension])
     before, after = (np.zeros(round(rest * wanted.rate_hz)) for rest in (wanted.rest_before_s, wanted.rest_after_s))
     # The end of one repetition is the start of the next.
+    hold = round(wanted.hold_s * wanted.rate_hz)
+    repetition = np.insert(repetition, wanted.inversion, np.full(hold, repetition[wanted.inversion]))
     movement = np.concatenate([repetition, *([repetition[1:]] * (wanted.repetitions - 1))])
-    tops = [before.size + wanted.inversion + k * (wanted.frames - 1) for k in range(wanted.repetitions)]
+    first = before.size + wanted.inversion + hold // 2
+    tops = [first + k * (wanted.frames - 1 + hold) for k in range(wanted.repetitions)]
     return np.concatenate([before, movement, after]), tops
+
+
+def _drifting(line: Float, tilt: Float) -> Float:
+    """Lines (N, 6) through a line's point, tilted by angles (N,) in a plane through it."""
+    direction, across = line[:3], _DRIFT_ACROSS - (_DRIFT_ACROSS @ line[:3]) * line[:3]
+    across = across / np.sqrt(across @ across)
+    tilted = np.cos(tilt)[:, None] * direction + np.sin(tilt)[:, None] * across
+    return np.concatenate([tilted, np.cross(_JOINT_POINT, tilted)], axis=1)
 
 
 def _minimum_jerk(tau: Float) -> Float:

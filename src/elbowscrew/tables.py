@@ -138,7 +138,7 @@ ANATOMY_COLUMNS: Final = (
     _column("axis_distance", "axis_distance", Quantity.LENGTH),
 )
 
-INTERPOLATION_COLUMNS: Final = (
+MOTION_COLUMNS: Final = (
     _column("frame", "frame", Quantity.INTEGER),
     _column("time_s", "time_s", Quantity.NUMBER),
     _column("phase", "phase", Quantity.INTEGER),
@@ -146,9 +146,60 @@ INTERPOLATION_COLUMNS: Final = (
     _column("theta", "angle", Quantity.ANGLE),
     _column("slide", "slide", Quantity.LENGTH),
     *_DISPLACEMENT,
+)
+
+INTERPOLATION_COLUMNS: Final = (
+    *MOTION_COLUMNS,
     _column("angle_error", "angle_error", Quantity.ANGLE),
     _column("translation_error", "translation_error", Quantity.LENGTH),
     _column("rms_displacement", "rms_displacement", Quantity.LENGTH),
+    _column("axis_error", "axis_error", Quantity.ANGLE),
+    _column("axis_distance", "axis_distance", Quantity.LENGTH),
+)
+
+KEYFRAME_COLUMNS: Final = (
+    _column("frame", "frame", Quantity.INTEGER),
+    _column("time_s", "time_s", Quantity.NUMBER),
+    _column("phase", "phase", Quantity.INTEGER),
+    _column("knot", "knot", Quantity.NUMBER),
+    _column("theta", "angle", Quantity.ANGLE),
+    *_DISPLACEMENT,
+    _column("method", "method_of_each", Quantity.LABEL),
+    _column("blend", "blend_of_each", Quantity.LABEL),
+    _column("law", "law_of_each", Quantity.LABEL),
+    _column("law_peak", "peak_of_each", Quantity.NUMBER),
+    _column("law_start_s", "law_start_of_each", Quantity.NUMBER),
+    _column("law_end_s", "law_end_of_each", Quantity.NUMBER),
+)
+
+_MODEL: Final = (
+    _column("rank", "rank", Quantity.INTEGER),
+    *(_column(name, name, Quantity.LABEL) for name in ("data", "method", "blend", "law", "knots")),
+    _column("keyframes_per_phase", "keyframes_per_phase", Quantity.INTEGER),
+)
+
+COMPARISON_COLUMNS: Final = (
+    *_MODEL,
+    _column("keyframes", "keyframes", Quantity.INTEGER),
+    _column("rms_displacement", "rms_displacement", Quantity.LENGTH),
+    _column("max_displacement", "max_displacement", Quantity.LENGTH),
+    _column("max_displacement_frame", "max_displacement_frame", Quantity.INTEGER),
+    *(_column(f"{kind}_angle_error", f"{kind}_angle_error", Quantity.ANGLE) for kind in ("rms", "max")),
+    *(_column(f"{kind}_translation_error", f"{kind}_translation_error", Quantity.LENGTH) for kind in ("rms", "max")),
+    *(_column(f"{kind}_axis_error", f"{kind}_axis_error", Quantity.ANGLE) for kind in ("rms", "max")),
+    *(_column(f"{kind}_axis_distance", f"{kind}_axis_distance", Quantity.LENGTH) for kind in ("rms", "max")),
+    _column("ns_per_frame", "ns_per_frame", Quantity.NUMBER),
+    _column("note", "note", Quantity.LABEL),
+)
+
+TRIALS_COMPARISON_COLUMNS: Final = (
+    *_MODEL,
+    _column("trials", "trials", Quantity.INTEGER),
+    *(_column(f"rms_displacement_{kind}", f"rms_displacement_{kind}", Quantity.LENGTH) for kind in ("mean", "sd")),
+    *(_column(f"max_displacement_{kind}", f"max_displacement_{kind}", Quantity.LENGTH) for kind in ("mean", "sd")),
+    *(_column(f"rms_angle_error_{kind}", f"rms_angle_error_{kind}", Quantity.ANGLE) for kind in ("mean", "sd")),
+    *(_column(f"max_angle_error_{kind}", f"max_angle_error_{kind}", Quantity.ANGLE) for kind in ("mean", "sd")),
+    *(_column(f"ns_per_frame_{kind}", f"ns_per_frame_{kind}", Quantity.NUMBER) for kind in ("mean", "sd")),
 )
 
 

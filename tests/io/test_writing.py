@@ -21,7 +21,7 @@ SCREW_NAMES = (
 ).split()
 INTERPOLATION_NAMES = (
     "frame time_s phase t theta_deg slide_mm e0 e1 e2 e3 d_x_mm d_y_mm d_z_mm "
-    "angle_error_deg translation_error_mm rms_displacement_mm"
+    "angle_error_deg translation_error_mm rms_displacement_mm axis_error_deg axis_distance_mm"
 ).split()
 
 
@@ -60,8 +60,8 @@ def test_units_change_names_and_values_together(tmp_path: Path) -> None:
     assert np.degrees(si["theta_rad"]) == pytest.approx(default["theta_deg"], nan_ok=True)
     for name in ("slide", "point_x", "d_z"):
         assert 1000 * si[f"{name}_m"] == pytest.approx(default[f"{name}_mm"], nan_ok=True)
-    assert list(analysis.interpolated.to_frame("rad", "m").columns[-3:]) == [
-        "angle_error_rad", "translation_error_m", "rms_displacement_m",
+    assert list(analysis.interpolated.to_frame("rad", "m").columns[-5:]) == [
+        "angle_error_rad", "translation_error_m", "rms_displacement_m", "axis_error_rad", "axis_distance_m",
     ]  # fmt: skip
 
 

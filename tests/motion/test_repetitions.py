@@ -40,7 +40,17 @@ def test_every_repetition_is_found_where_it_is() -> None:
     for speed, frames in ((found.flexion_speed, TURN), (found.extension_speed, FRAMES - 1 - TURN)):
         assert np.degrees(speed) == pytest.approx(np.full(COUNT, 15 / 8 * 130 / frames * 100), rel=0.02)
     assert np.degrees(found.axis_deviation).max() < 0.1
-    assert "several-repetitions" in [warning.code for warning in analysis.warnings]
+    # The model goes through every one of them.
+    assert np.abs(analysis.keyframes.frame[1::2] - (starts + TURN)).max() <= 0.1 * FRAMES
+    assert np.nanmax(analysis.interpolated.angle_error) < np.radians(10.0)
+
+
+def test_one_model_of_several_repetitions_is_told_of() -> None:
+    for settings in (Settings(phases="whole"), Settings(inversion=REST + TURN)):
+        recording = simulate_trial(
+            repetitions=COUNT, rest_before_s=1.5, rest_after_s=1.5, frames=FRAMES, inversion=TURN
+        ).recording
+        assert "several-repetitions" in [warning.code for warning in analyze(recording, settings).warnings]
 
 
 def test_onset_and_offset_of_the_movement() -> None:

@@ -248,6 +248,13 @@ METHODS: dict[str, tuple[dict[str, Any], list[str], list[str]]] = {
          "resampled to 50 Hz", "radius of gyration of 40 mm", "direction is 2° or less"],
         ["recorded at", "10°"],
     ),
+    "whole": ({"phases": "whole", "law_peak": 0.4}, ["2 phases between start, inversion and end of the recording",
+              "the cycloidal one, with its highest velocity at 0.4 of the phase"], ["turns and rests", "fewest"]),
+    "inversion": ({"inversion": 55}, ["with the inversion at frame 55"], ["turns and rests"]),
+    "tolerance": ({"tolerance_mm": 2.0}, ["the fewest measured poses", "within 2 mm", "screw linear interpolation",
+                  "the linear one"], ["turns and rests", "DLB", "cycloidal"]),
+    "best": ({"law": "best"}, ["each phase follows the one nearest the measurement", "turns and rests"], ["cycloidal"]),
+    "empirical": ({"law": "empirical"}, ["the recording's own"], ["cycloidal"]),
     "no noise": ({"noise": "none"}, ["screw-hinge"], ["Standard deviations"]),
 }  # fmt: skip
 

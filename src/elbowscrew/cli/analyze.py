@@ -163,9 +163,25 @@ def analyze(
             metavar="FRAME", rich_help_panel=_MODEL, help="Where the motion turns.", show_default="largest angle"
         ),
     ] = None,
+    phases: Annotated[
+        Literal["movement", "whole"] | None,
+        typer.Option(
+            rich_help_panel=_MODEL, help="Between the movement's rests, or the whole take.", show_default="movement"
+        ),
+    ] = None,
+    tolerance: Annotated[
+        str | None,
+        typer.Option(
+            metavar="LENGTH",
+            rich_help_panel=_MODEL,
+            help="Fewest keyframes that keep the RMS displacement below: 2mm.",
+        ),
+    ] = None,
     method: Annotated[
         Literal["dlb", "sclerp", "sdlb", "dib", "catmull-rom"] | None,
-        typer.Option(rich_help_panel=_MODEL, help="Interpolation of poses.", show_default="dlb"),
+        typer.Option(
+            rich_help_panel=_MODEL, help="Interpolation of poses.", show_default="dlb, with a tolerance sclerp"
+        ),
     ] = None,
     blend: Annotated[
         Literal["piecewise", "global"] | None,
@@ -180,9 +196,17 @@ def analyze(
             "polynomial-4567",
             "modified-trapezoid",
             "modified-sine",
+            "empirical",
+            "best",
         ]
         | None,
-        typer.Option(rich_help_panel=_MODEL, help="Law of motion.", show_default="cycloidal"),
+        typer.Option(rich_help_panel=_MODEL, help="Law of motion.", show_default="cycloidal, with a tolerance linear"),
+    ] = None,
+    law_peak: Annotated[
+        float | None,
+        typer.Option(
+            metavar="SHARE", rich_help_panel=_MODEL, help="Time of the highest velocity in a phase.", show_default="0.5"
+        ),
     ] = None,
     knots: Annotated[
         Literal["law", "chord", "uniform", "angle"] | None,
@@ -266,9 +290,12 @@ def analyze(
             "robust": robust,
             "keyframes": options.frame_numbers(keyframes),
             "inversion": inversion,
+            "phases": phases,
+            "tolerance": tolerance,
             "method": method,
             "blend": blend,
             "law": law,
+            "law_peak": law_peak,
             "knots": knots,
             "radius": radius,
             "angle_unit": angle_unit,

@@ -8,7 +8,9 @@ import typer
 
 from elbowscrew._version import __version__
 from elbowscrew.cli.analyze import analyze
+from elbowscrew.cli.compare import compare
 from elbowscrew.cli.info import info
+from elbowscrew.cli.interpolate import interpolate
 from elbowscrew.cli.paper import paper
 from elbowscrew.cli.report import report
 from elbowscrew.cli.simulate import simulate
@@ -37,6 +39,8 @@ def _common(
 
 app.command()(analyze)
 app.command()(report)
+app.command()(compare)
+app.command()(interpolate)
 app.command()(info)
 app.command()(simulate)
 app.command()(paper)

@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from enum import StrEnum
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from elbowscrew.errors import UsageError
 
+if TYPE_CHECKING:
+    from elbowscrew.motion.treatments import ComparisonPlan
+
 Units = Literal["m", "cm", "mm"]
 Rotation = Literal["quaternion", "XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX"]
+ClosedLaw = Literal[
+    "cycloidal", "linear", "harmonic", "polynomial-345", "polynomial-4567", "modified-trapezoid", "modified-sine"
+]
 
 
 class FigureFormat(StrEnum):
@@ -46,3 +53,27 @@ def names(given: list[str] | None) -> tuple[str, ...] | None:
         msg = "the option of markers is empty: expected names or patterns with commas between them, as in 'UA1,UA2,UA3'"
         raise UsageError(msg)
     return found
+
+
+def comparison_plan(words: Mapping[str, str | None], numbers: Mapping[str, str | None]) -> ComparisonPlan:
+    """Make the plan of a comparison of lists with commas; what is not given stays as it is.
+
+    Raises
+    ------
+    UsageError
+        If a list has something that is no number, or no choice.
+    """
+    from elbowscrew.motion.treatments import ComparisonPlan
+
+    given: dict[str, tuple[str, ...] | tuple[int, ...]] = {}
+    for name, text in words.items():
+        if text is not None:
+            given[name] = tuple(dict.fromkeys(part.strip() for part in text.split(",") if part.strip()))
+    for name, text in numbers.items():
+        if text is not None:
+            try:
+                given[name] = tuple(dict.fromkeys(int(part) for part in text.split(",")))
+            except ValueError as error:
+                msg = f"--{name} {text!r}: expected whole numbers with commas between them, as in 2,3,4"
+                raise UsageError(msg) from error
+    return ComparisonPlan(**given)  # type: ignore[arg-type]

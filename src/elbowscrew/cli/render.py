@@ -16,6 +16,7 @@ from elbowscrew.cli.text import NobodyReads, one_line, printable
 from elbowscrew.paper import Comparison
 
 _MARKERS_TOLD = 24
+_FRAMES_TOLD = 12
 
 
 def warnings(found: Iterable[Mapping[str, Any]]) -> None:
@@ -24,6 +25,11 @@ def warnings(found: Iterable[Mapping[str, Any]]) -> None:
         if warning["severity"] != "warning":
             continue
         sys.stderr.write(f"elbowscrew: warning: {one_line(warning['message'])} [{warning['code']}]\n")
+
+
+def note(text: str) -> None:
+    """Write one line of what went wrong beside the result."""
+    sys.stderr.write(f"elbowscrew: {one_line(text)}\n")
 
 
 def json_object(value: Mapping[str, Any]) -> None:
@@ -103,6 +109,47 @@ def info_table(summary: Mapping[str, Any]) -> None:
     notes = [warning for warning in summary["warnings"] if warning["severity"] == "note"]
     if notes:
         _print(Text("Notes", style="bold"), *(Text(one_line(f"{note['message']} [{note['code']}]")) for note in notes))
+
+
+def comparison_table(summary: Mapping[str, Any], folder: Path) -> None:
+    """Write the best models of each number of keyframes, and the fewest keyframes within the tolerance."""
+    several = "trials" in summary
+    table = Table(box=None, pad_edge=False, header_style="bold")
+    for column in ("N", "Method", "Law", "Keyframes from", "RMS, mm", "Max, mm", "ns/frame"):
+        text = column in ("Method", "Law", "Keyframes from")
+        table.add_column(column, justify="left" if text else "right", no_wrap=not several)
+    for best in summary["best_by_keyframes"]:
+        table.add_row(
+            str(best["keyframes_per_phase"]),
+            best["method"] + ("" if best["blend"] == "piecewise" else " global"),
+            best["law"],
+            best["data"],
+            *(_mean_sd(best, name, several) for name in ("rms_displacement", "max_displacement")),
+            f"{best['ns_per_frame_mean' if several else 'ns_per_frame']:.0f}",
+        )
+    refused = summary.get("refused", 0)
+    rows = [("Models", f"{summary['models']} compared" + (f", {refused} of them refused" if refused else ""))]
+    if several:
+        rows.append(("Trials", f"{len(summary['trials'])} compared, {len(summary['failures'])} failed"))
+    else:
+        rows += [(f"Fewest, {method}", _fewest(found)) for method, found in summary["selections"].items()]
+    rows.append(("Results", str(folder)))
+    _print(Text("RMS displacement of the forearm's points, for N keyframes in each phase", style="bold"), table)
+    _print_rows("", rows)
+
+
+def _fewest(found: Mapping[str, Any]) -> str:
+    frames = found["keyframe_frames"]
+    told = ", ".join(map(str, frames[:_FRAMES_TOLD])) + (", ..." if len(frames) > _FRAMES_TOLD else "")
+    count = f"{found['keyframes']} keyframes of {found['frames']} frames (1 : {found['compression_ratio']:.1f})"
+    return f"{count} within {found['tolerance_mm']:g} mm: {told}"
+
+
+def _mean_sd(best: Mapping[str, Any], name: str, several: bool) -> str:
+    if not several:
+        return _number(best[f"{name}_mm"])
+    mean, sd = best[f"{name}_mean_mm"], best[f"{name}_sd_mm"]
+    return _number(mean) + ("" if sd is None else f" ± {sd:.2f}")
 
 
 def _bodies_table(bodies: Iterable[Mapping[str, Any]]) -> None:

@@ -31,9 +31,17 @@ def simulate(
     rest_before: Annotated[
         float, typer.Option(metavar="SECONDS", rich_help_panel=_MOTION, help="Rest before the movement.")
     ] = 0.0,
+    hold: Annotated[float, typer.Option(metavar="SECONDS", rich_help_panel=_MOTION, help="Rest at every top.")] = 0.0,
     rest_after: Annotated[
         float, typer.Option(metavar="SECONDS", rich_help_panel=_MOTION, help="Rest after the movement.")
     ] = 0.0,
+    axis_drift: Annotated[
+        float, typer.Option(metavar="DEG", rich_help_panel=_MOTION, help="Tilt of the axis at the top.")
+    ] = 0.0,
+    tremor: Annotated[
+        float, typer.Option(metavar="DEG", rich_help_panel=_MOTION, help="Amplitude of a tremor of the angle.")
+    ] = 0.0,
+    tremor_hz: Annotated[float, typer.Option(metavar="HZ", rich_help_panel=_MOTION, help="Its frequency.")] = 6.0,
     marker_noise: Annotated[
         float, typer.Option(metavar="MM", rich_help_panel=_RECORDING, help="SD of each marker coordinate.")
     ] = 0.2,
@@ -76,7 +84,11 @@ def simulate(
         arm=arm,
         repetitions=repetitions,
         rest_before_s=rest_before,
+        hold_s=hold,
         rest_after_s=rest_after,
+        axis_drift_deg=axis_drift,
+        tremor_deg=tremor,
+        tremor_hz=tremor_hz,
         seed=seed,
     )
     for path in save_simulation(

@@ -17,6 +17,7 @@ from elbowscrew.io.source import TextSource, first_bytes, open_source
 from elbowscrew.model import Recording
 from elbowscrew.tables import METERS
 
+_ENDINGS: Final = (".csv", ".trc", ".c3d")
 _UNITS: Final = frozenset({"units"})
 _MARKERS: Final = frozenset({"markers"})
 _ALL: Final = _UNITS | _MARKERS | {"rotation"}
@@ -135,3 +136,23 @@ def _refusal(source: TextSource, first_cell: str) -> str:
         f"{source.path}:1: the header is missing (the file begins with a number), so nothing says what the columns "
         "are; export the take again with the header on"
     )
+
+
+def recordings_in(folder: str | os.PathLike[str]) -> tuple[Path, ...]:
+    """Files of a folder that may be recordings, by their endings, in the order of their names.
+
+    Raises
+    ------
+    RecordingError
+        If the folder cannot be read, or has none.
+    """
+    place = Path(folder)
+    try:
+        found = sorted(path for path in place.iterdir() if path.suffix.casefold() in _ENDINGS and path.is_file())
+    except OSError as error:
+        msg = f"{place}: cannot be read: {error.strerror or error}"
+        raise RecordingError(msg) from error
+    if not found:
+        msg = f"{place}: expected recordings ({', '.join(_ENDINGS)}) in the folder, found none"
+        raise RecordingError(msg)
+    return tuple(found)

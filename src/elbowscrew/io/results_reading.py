@@ -14,7 +14,15 @@ from elbowscrew import tables
 from elbowscrew.errors import ResultError
 from elbowscrew.geometry.dual_quaternion import conjugate, dual_quat_from_pose, multiply
 from elbowscrew.io.result_tables import read_columns
-from elbowscrew.model import InterpolatedMotion, JointMotion, Keyframes, MovementPhases, Repetitions, ScrewMotion
+from elbowscrew.model import (
+    InterpolatedMotion,
+    JointMotion,
+    Keyframes,
+    ModelPhases,
+    MovementPhases,
+    Repetitions,
+    ScrewMotion,
+)
 from elbowscrew.model.finished import (
     FinishedBody,
     FinishedClock,
@@ -175,6 +183,8 @@ def _interpolated(columns: Columns) -> InterpolatedMotion:
         angle_error=columns["angle_error"],
         translation_error=columns["translation_error"],
         rms_displacement=columns["rms_displacement"],
+        axis_error=columns["axis_error"],
+        axis_distance=columns["axis_distance"],
     )
 
 
@@ -258,10 +268,14 @@ def _phases(movements: list[dict[str, int]], frame: NDArray[np.int64]) -> Moveme
 
 
 def _keyframes(summary: Mapping[str, Any], frame: NDArray[np.int64]) -> Keyframes:
-    numbers = np.array(summary["interpolation"]["keyframes"], dtype=np.int64)
-    inner = np.flatnonzero(np.isin(numbers[1:-1], summary["motion"]["inversion_frames"])) + 1
-    bounds = np.array([0, *inner, numbers.size - 1], dtype=np.int64)
-    return Keyframes(row=_rows(numbers, frame), frame=numbers, phase_bounds=bounds, knots=())
+    model = summary["interpolation"]
+    row = _rows(model["keyframes"], frame)
+    bounds = [row[:1], _rows(summary["motion"]["inversion_frames"], frame), row[-1:]]
+    laws = [[law["start_frame"], law["end_frame"]] for law in model["phase_laws"]]
+    phases = ModelPhases(
+        bound_rows=np.concatenate(bounds), law_rows=np.stack([_rows(frames, frame) for frames in laws])
+    )
+    return Keyframes(row=row, frame=frame[row], phases=phases, knots=())
 
 
 def _rows(numbers: Any, frame: NDArray[np.int64]) -> NDArray[np.int64]:

@@ -9,7 +9,7 @@ import shutil
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Final
+from typing import Final, NamedTuple
 
 from elbowscrew.errors import OutputError
 
@@ -18,6 +18,7 @@ FIGURE_FORMATS: Final = ("png", "svg", "pdf")
 RESULT_FILES: Final = (
     "screw.csv",
     "interpolation.csv",
+    "keyframes.csv",
     "summary.json",
     "joint.json",
     "instantaneous.csv",
@@ -30,11 +31,24 @@ RESULT_FILES: Final = (
 )
 """All that a result folder may hold."""
 
+
+class ResultKind(NamedTuple):
+    """What a result folder may hold, and the JSON file in it that tells whose it is."""
+
+    files: tuple[str, ...]
+    summary: str
+
+
+ANALYSIS: Final = ResultKind(RESULT_FILES, "summary.json")
+COMPARISON: Final = ResultKind(
+    ("compare.csv", "compare.json", *(f"figures/compare.{kind}" for kind in FIGURE_FORMATS)), "compare.json"
+)
+
 _PREFIX: Final = ".elbowscrew-"
 
 
 @contextmanager
-def result_folder(target: Path, *, force: bool) -> Iterator[Path]:
+def result_folder(target: Path, *, force: bool, kind: ResultKind = ANALYSIS) -> Iterator[Path]:
     """Give a temporary folder to write into, and make it the target when the block ends well.
 
     Parameters
@@ -43,6 +57,7 @@ def result_folder(target: Path, *, force: bool) -> Iterator[Path]:
         The result folder. An empty folder is taken over; its parents are made; a link is followed.
     force : bool
         Replace an earlier result, but never a folder that holds anything else.
+    kind : ResultKind
 
     Raises
     ------
@@ -50,7 +65,7 @@ def result_folder(target: Path, *, force: bool) -> Iterator[Path]:
         If the target exists, or the disk does not take the result. Nothing is left behind then, and an earlier
         result is as it was.
     """
-    check_result_folder(target, force=force)
+    check_result_folder(target, force=force, kind=kind)
     staged, made = None, []
     try:
         place = target.resolve()
@@ -58,8 +73,8 @@ def result_folder(target: Path, *, force: bool) -> Iterator[Path]:
         staged = _temporary(place)
         staged.mkdir()
         yield staged
-        check_result_folder(target, force=force)  # somebody may have put something there meanwhile
-        _move_into_place(staged, place)
+        check_result_folder(target, force=force, kind=kind)  # somebody may have put something there meanwhile
+        _move_into_place(staged, place, kind)
         made = []
     except OSError as error:
         raise _output_error(target, error) from error
@@ -69,7 +84,7 @@ def result_folder(target: Path, *, force: bool) -> Iterator[Path]:
         _remove_empty(made)
 
 
-def check_result_folder(target: Path, *, force: bool) -> None:
+def check_result_folder(target: Path, *, force: bool, kind: ResultKind = ANALYSIS) -> None:
     """Raise `OutputError` if the result may not be put there."""
     try:
         if not os.path.lexists(target):
@@ -83,8 +98,8 @@ def check_result_folder(target: Path, *, force: bool) -> None:
         present = {path.relative_to(target).as_posix() for path in target.rglob("*")} - {"figures"}
         if not present:
             return
-        strangers = sorted(present - set(RESULT_FILES))
-        if strangers or not _is_summary(target / "summary.json"):
+        strangers = sorted(present - set(kind.files))
+        if strangers or not _is_summary(target / kind.summary):
             what = f"holds {strangers[0]!r}, which is not ours" if strangers else "holds files but no elbowscrew result"
             msg = f"{target}: the folder {what}; give another --output"
             raise OutputError(msg)
@@ -181,7 +196,7 @@ def _remove_empty(folders: Iterable[Path]) -> None:
             folder.rmdir()
 
 
-def _move_into_place(staged: Path, place: Path) -> None:
+def _move_into_place(staged: Path, place: Path, kind: ResultKind) -> None:
     """Move the staged folder to its place; an earlier result steps aside, and is removed after or comes back."""
     if not place.is_dir() or not any(place.iterdir()):
         if os.name == "nt" and place.is_dir():
@@ -196,7 +211,7 @@ def _move_into_place(staged: Path, place: Path) -> None:
         with suppress(OSError):
             aside.rename(place)
         raise
-    for name in RESULT_FILES:
+    for name in kind.files:
         (aside / name).unlink(missing_ok=True)
     _remove_empty([aside / "figures", aside])
 

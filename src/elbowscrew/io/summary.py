@@ -15,7 +15,7 @@ from elbowscrew._version import __version__
 from elbowscrew.errors import SettingError
 from elbowscrew.io.options import ASK_FOR_MARKERS
 from elbowscrew.io.statistics import known, rms, statistic
-from elbowscrew.model import Analysis, BodyQuality, JointAxis, QualityWarning, Recording, Spread
+from elbowscrew.model import Analysis, BodyQuality, JointAxis, QualityWarning, Recording, Selection, Spread
 from elbowscrew.motion.quality import body_quality, check_bodies, clock_quality
 from elbowscrew.motion.selection import choose_bodies
 from elbowscrew.settings import Settings
@@ -206,26 +206,70 @@ def _interpolation(analysis: Analysis) -> dict[str, Any]:
     # A theta that was not measured is no measure of the model.
     theta_error = np.degrees(np.where(analysis.screw.valid, modeled.angle - analysis.screw.angle, np.nan))
     return {
-        "method": settings.method,
+        "method": settings.model_method,
         "blend": settings.blend,
-        "law": settings.law,
+        "law": settings.model_law,
         "knots": settings.knots,
         "keyframes": analysis.keyframes.frame.tolist(),
-        "phases": int(analysis.keyframes.phase_bounds.size - 1),
+        "phases": analysis.keyframes.phases.count,
+        "phase_laws": _phase_laws(analysis),
+        "selection": None
+        if analysis.selection is None
+        else selection_summary(analysis.selection, analysis.screw.frame),
         "rmse_theta_deg": statistic(rms, theta_error),
         "max_theta_error_deg": statistic(np.nanmax, np.abs(theta_error)),
         "max_theta_error_frame": _frame_of_max(modeled.frame, np.abs(theta_error)),
         "rms_angle_error_deg": statistic(rms, np.degrees(modeled.angle_error)),
         "max_angle_error_deg": statistic(np.nanmax, np.degrees(modeled.angle_error)),
+        "max_angle_error_frame": _frame_of_max(modeled.frame, modeled.angle_error),
         "rms_translation_error_mm": statistic(rms, 1000.0 * modeled.translation_error),
         "max_translation_error_mm": statistic(np.nanmax, 1000.0 * modeled.translation_error),
+        "max_translation_error_frame": _frame_of_max(modeled.frame, modeled.translation_error),
         "rms_displacement_mm": statistic(rms, 1000.0 * modeled.rms_displacement),
         "max_rms_displacement_mm": statistic(np.nanmax, 1000.0 * modeled.rms_displacement),
+        "max_rms_displacement_frame": _frame_of_max(modeled.frame, modeled.rms_displacement),
+        "rms_axis_error_deg": statistic(rms, np.degrees(modeled.axis_error)),
+        "max_axis_error_deg": statistic(np.nanmax, np.degrees(modeled.axis_error)),
+        "max_axis_error_frame": _frame_of_max(modeled.frame, modeled.axis_error),
+        "rms_axis_distance_mm": statistic(rms, 1000.0 * modeled.axis_distance),
+        "max_axis_distance_mm": statistic(np.nanmax, 1000.0 * modeled.axis_distance),
+        "max_axis_distance_frame": _frame_of_max(modeled.frame, modeled.axis_distance),
         "points": {
             "from": analysis.points.origin,
             "centroid_mm": (1000.0 * analysis.points.centroid).tolist(),
             "radius_of_gyration_mm": 1000.0 * analysis.points.radius_of_gyration,
         },
+    }
+
+
+def _phase_laws(analysis: Analysis) -> list[dict[str, Any]]:
+    """Law of each phase, and between which frames it runs."""
+    frame = analysis.screw.frame
+    return [
+        {
+            "law": law.name,
+            "peak": law.peak,
+            "start_frame": int(frame[first]),
+            "end_frame": int(frame[last]),
+            "rms_displacement_mm": known(1000.0 * law.rms),
+        }
+        for law, (first, last) in zip(analysis.laws, analysis.keyframes.phases.law_rows, strict=True)
+    ]
+
+
+def selection_summary(found: Selection, frame: NDArray[np.int64]) -> dict[str, Any]:
+    """Keyframes that were chosen, and the error over the number of keyframes."""
+    return {
+        "tolerance_mm": 1000.0 * found.tolerance,
+        "frames": found.frames,
+        "keyframes": int(found.row.size),
+        "keyframe_frames": frame[found.row].tolist(),
+        "compression_ratio": found.compression,
+        "complete": found.complete,
+        "curve": [
+            {"keyframes": int(count), "max_rms_displacement_mm": 1000.0 * largest, "rms_displacement_mm": 1000.0 * mean}
+            for count, largest, mean in zip(found.count, found.largest.tolist(), found.rms.tolist(), strict=True)
+        ],
     }
 
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from elbowscrew import tables
 from elbowscrew.model import Analysis
+from elbowscrew.motion.rebuilding import keyframes_of
 
 _BLOCK_ROWS = 4096
 
@@ -21,6 +22,7 @@ def write_tables(folder: Path, analysis: Analysis) -> None:
     for name, result, table in (
         ("screw", analysis.screw, tables.SCREW_COLUMNS),
         ("interpolation", analysis.interpolated, tables.INTERPOLATION_COLUMNS),
+        ("keyframes", keyframes_of(analysis), tables.KEYFRAME_COLUMNS),
         ("instantaneous", analysis.instantaneous, tables.INSTANTANEOUS_COLUMNS),
         ("repetitions", analysis.repetitions, tables.REPETITION_COLUMNS),
         ("repetition_curve", analysis.repeatability if several else None, tables.CURVE_COLUMNS),

@@ -2,7 +2,18 @@
 
 from elbowscrew.model.anatomy import AnatomicalMotion, Landmark, Landmarks
 from elbowscrew.model.axes import HelicalSteps, InstantaneousMotion
+from elbowscrew.model.comparison import ComparedModels, ComparedOverTrials, Comparison, TrialsComparison
 from elbowscrew.model.joint_axis import FittedJoint, JointAxis, LineEstimate, PoseNoise
+from elbowscrew.model.modeled import (
+    BodyPoints,
+    InterpolatedMotion,
+    Keyframes,
+    KeyframeSet,
+    ModelPhases,
+    PhaseLaw,
+    RebuiltMotion,
+    Selection,
+)
 from elbowscrew.model.quality import BodyQuality, ClockQuality, Spread
 from elbowscrew.model.recording import (
     Marker,
@@ -17,15 +28,7 @@ from elbowscrew.model.recording import (
     out_of_reach,
 )
 from elbowscrew.model.repetitions import MovementPhases, Repeatability, Repetitions
-from elbowscrew.model.results import (
-    Analysis,
-    BodyPoints,
-    InterpolatedMotion,
-    JointMotion,
-    Keyframes,
-    MeanAxis,
-    ScrewMotion,
-)
+from elbowscrew.model.results import Analysis, JointMotion, MeanAxis, ScrewMotion
 
 __all__ = [
     "Analysis",
@@ -33,29 +36,38 @@ __all__ = [
     "BodyPoints",
     "BodyQuality",
     "ClockQuality",
+    "ComparedModels",
+    "ComparedOverTrials",
+    "Comparison",
     "FittedJoint",
     "HelicalSteps",
     "InstantaneousMotion",
     "InterpolatedMotion",
     "JointAxis",
     "JointMotion",
+    "KeyframeSet",
     "Keyframes",
     "Landmark",
     "Landmarks",
     "LineEstimate",
     "Marker",
     "MeanAxis",
+    "ModelPhases",
     "MovementPhases",
+    "PhaseLaw",
     "PoseNoise",
     "QualityWarning",
+    "RebuiltMotion",
     "Recording",
     "Repeatability",
     "Repetitions",
     "RigidBody",
     "ScrewMotion",
+    "Selection",
     "Source",
     "Spread",
     "TrackingLoss",
+    "TrialsComparison",
     "invalid_marker_warning",
     "invalid_warning",
     "marker_matches",

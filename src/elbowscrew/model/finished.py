@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowscrew.model.brief import Brief
+from elbowscrew.model.modeled import InterpolatedMotion, Keyframes
 from elbowscrew.model.repetitions import MovementPhases, Repetitions
-from elbowscrew.model.results import InterpolatedMotion, JointMotion, Keyframes, ScrewMotion
+from elbowscrew.model.results import JointMotion, ScrewMotion
 
 if TYPE_CHECKING:
     from elbowscrew.settings import Settings

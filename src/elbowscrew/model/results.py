@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +13,7 @@ from elbowscrew.model.anatomy import AnatomicalMotion
 from elbowscrew.model.axes import HelicalSteps, InstantaneousMotion
 from elbowscrew.model.brief import Brief
 from elbowscrew.model.joint_axis import JointAxis
+from elbowscrew.model.modeled import BodyPoints, InterpolatedMotion, Keyframes, PhaseLaw, Selection
 from elbowscrew.model.quality import BodyQuality
 from elbowscrew.model.recording import QualityWarning, Recording, RigidBody
 from elbowscrew.model.repetitions import MovementPhases, Repeatability, Repetitions
@@ -142,93 +143,6 @@ class MeanAxis(Brief):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class Keyframes(Brief):
-    """The poses the model passes through, and the phases between the inversions.
-
-    Attributes
-    ----------
-    row, frame : ndarray of int, shape (K,)
-        Row in the recording and frame number of each keyframe.
-    phase_bounds : ndarray of int, shape (P + 1,)
-        Indices into the keyframes where the phases begin and end.
-    knots : tuple of ndarray
-        For each phase (one for a global blend) the parameter at its keyframes.
-    """
-
-    row: NDArray[np.int64]
-    frame: NDArray[np.int64]
-    phase_bounds: NDArray[np.int64]
-    knots: tuple[Float, ...]
-
-    @property
-    def inversion_rows(self) -> NDArray[np.int64]:
-        """Rows where one phase ends and the next begins."""
-        return self.row[self.phase_bounds[1:-1]]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class InterpolatedMotion(Brief):
-    """The motion modeled from the keyframes, and its difference from the measured one; NaN outside the keyframes.
-
-    Attributes
-    ----------
-    frame, time_s : ndarray, shape (N,)
-    phase : masked ndarray of int, shape (N,)
-        1, 2, ...; masked outside the keyframes.
-    fraction : ndarray, shape (N,)
-        The time law's t in the phase.
-    angle, slide, euler_parameters, translation : ndarray
-        As in `ScrewMotion`.
-    angle_error : ndarray, shape (N,)
-        Angle of the rotation between modeled and measured orientation, radians.
-    translation_error : ndarray, shape (N,)
-        Distance between modeled and measured origin of the forearm, meters.
-    rms_displacement : ndarray, shape (N,)
-        RMS distance between modeled and measured points of the forearm, meters.
-    """
-
-    frame: NDArray[np.int64]
-    time_s: Float
-    phase: np.ma.MaskedArray[Any, np.dtype[np.int64]]
-    fraction: Float
-    angle: Float
-    slide: Float
-    euler_parameters: Float
-    translation: Float
-    angle_error: Float
-    translation_error: Float
-    rms_displacement: Float
-
-    def to_frame(self, angle_unit: tables.AngleUnit = "deg", length_unit: tables.LengthUnit = "mm") -> pd.DataFrame:
-        """Return the columns of ``interpolation.csv``."""
-        return tables.data_frame(self, tables.INTERPOLATION_COLUMNS, angle_unit, length_unit)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class BodyPoints(Brief):
-    """The points of a body that a displacement is averaged over, in the body's frame.
-
-    Attributes
-    ----------
-    centroid : ndarray, shape (3,)
-        Meters.
-    covariance : ndarray, shape (3, 3)
-        Mean of ``(x - c)(x - c)^T``, square meters.
-    origin : str
-        "markers" or "radius".
-    """
-
-    centroid: Float
-    covariance: Float
-    origin: Literal["markers", "radius"]
-
-    @property
-    def radius_of_gyration(self) -> float:
-        """RMS distance of the points from their centroid, meters."""
-        return float(np.sqrt(np.trace(self.covariance)))
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Analysis(Brief):
     """Everything `elbowscrew.analyze` found in one recording.
 
@@ -240,6 +154,10 @@ class Analysis(Brief):
         None where the file has no arm and it is taken to stand still.
     forearm : RigidBody
     joint : JointMotion
+    elapsed : ndarray, shape (N,)
+        Even clock, seconds since the first frame.
+    displacement : ndarray, shape (N, 8)
+        Since the reference, in the forearm's frame there (P 35), sign-continuous.
     screw : ScrewMotion
     mean_axis : MeanAxis
     joint_axis : JointAxis
@@ -252,6 +170,10 @@ class Analysis(Brief):
     anatomy : AnatomicalMotion or None
         None without landmarks.
     keyframes : Keyframes
+    laws : tuple of PhaseLaw
+        Law of motion of each phase of the model.
+    selection : Selection or None
+        How the keyframes were chosen, if a tolerance was given.
     interpolated : InterpolatedMotion
     points : BodyPoints
         What the RMS displacement is averaged over.
@@ -266,6 +188,8 @@ class Analysis(Brief):
     arm: RigidBody | None
     forearm: RigidBody
     joint: JointMotion
+    elapsed: Float
+    displacement: Float
     screw: ScrewMotion
     mean_axis: MeanAxis
     joint_axis: JointAxis
@@ -276,6 +200,8 @@ class Analysis(Brief):
     repeatability: Repeatability
     anatomy: AnatomicalMotion | None
     keyframes: Keyframes
+    laws: tuple[PhaseLaw, ...]
+    selection: Selection | None
     interpolated: InterpolatedMotion
     points: BodyPoints
     quality: tuple[BodyQuality, ...]

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Literal, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowscrew.model.modeled import InterpolatedMotion, Keyframes
 from elbowscrew.model.repetitions import MovementPhases, Repetitions
-from elbowscrew.model.results import InterpolatedMotion, JointMotion, Keyframes, ScrewMotion
+from elbowscrew.model.results import JointMotion, ScrewMotion
 
 if TYPE_CHECKING:
     from elbowscrew.settings import Settings

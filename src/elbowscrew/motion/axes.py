@@ -17,6 +17,7 @@ from elbowscrew.motion.mean_axis import mean_axis_of
 from elbowscrew.motion.measurement import Measurement
 from elbowscrew.motion.pose_noise import STILL_STRETCH
 from elbowscrew.motion.relative import IDENTITY
+from elbowscrew.motion.smoothing import Smoothing
 from elbowscrew.settings import Settings
 
 Float = NDArray[np.float64]
@@ -40,7 +41,7 @@ class Axes(NamedTuple):
 
 def find_axes(measured: Measurement, settings: Settings) -> Axes:
     """Find the axes of a measured motion, by every way that the settings ask for."""
-    mean = _mean_axis(measured)
+    mean = measured_mean_axis(measured)
     joint = estimate_joint_axis(
         measured.joint,
         measured.screw.angle,
@@ -53,28 +54,23 @@ def find_axes(measured: Measurement, settings: Settings) -> Axes:
     return Axes(
         mean=mean,
         joint=joint,
-        instantaneous=_instantaneous(measured, mean, settings),
+        instantaneous=instantaneous_of(measured, mean, settings),
         steps=_steps(measured, mean, settings),
         warnings=_axis_warnings(joint, measured),
     )
 
 
-def _mean_axis(measured: Measurement) -> MeanAxis:
+def measured_mean_axis(measured: Measurement) -> MeanAxis:
     """Take the mean over measured frames: a pose filled in says nothing that its neighbors do not."""
     lines = np.where(measured.joint.measured[:, None], measured.line, np.nan)
     return mean_axis_of(measured.screw.angle, lines, pose_from_dual_quat(measured.change)[1])
 
 
-def _instantaneous(measured: Measurement, mean: MeanAxis, settings: Settings) -> InstantaneousMotion:
+def instantaneous_of(measured: Measurement, mean: MeanAxis, settings: Settings) -> InstantaneousMotion:
     """Take the twist of filtered poses: of those at hand if they are, else of poses filtered for this alone."""
     D, smoothing = measured.displacement, measured.smoothing
     if smoothing.cutoff_hz is None:
-        try:
-            found = smoothing.automatic(measured.arm, measured.forearm, settings).cutoff_hz or _TWIST_HZ
-        except SettingError:  # too few frames to tell motion from noise
-            found = _TWIST_HZ
-        low, high = (share * smoothing.rate_hz for share in _POSSIBLE_SHARES)
-        smoothing = smoothing._replace(cutoff_hz=float(np.clip(min(found, _TWIST_HZ), low, high)))
+        smoothing = twist_smoothing(measured, settings)
         arm, forearm = smoothing.apply(measured.arm, measured.forearm)
         arm_pose = IDENTITY if arm is None else arm.dual_quat_lab_body
         D = multiply(conjugate(measured.joint.reference), multiply(conjugate(arm_pose), forearm.dual_quat_lab_body))
@@ -90,6 +86,17 @@ def _instantaneous(measured: Measurement, mean: MeanAxis, settings: Settings) ->
         margin=smoothing.margin,
         lowpass_hz=smoothing.cutoff_hz or np.inf,
     )
+
+
+def twist_smoothing(measured: Measurement, settings: Settings) -> Smoothing:
+    """Filter that a twist needs: at the cut-off of residual analysis, and 6 Hz at most."""
+    smoothing = measured.smoothing
+    try:
+        found = smoothing.automatic(measured.arm, measured.forearm, settings).cutoff_hz or _TWIST_HZ
+    except SettingError:  # too few frames to tell motion from noise
+        found = _TWIST_HZ
+    low, high = (share * smoothing.rate_hz for share in _POSSIBLE_SHARES)
+    return smoothing._replace(cutoff_hz=float(np.clip(min(found, _TWIST_HZ), low, high)))
 
 
 def _steps(measured: Measurement, mean: MeanAxis, settings: Settings) -> HelicalSteps | None:

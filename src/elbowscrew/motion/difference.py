@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowscrew.geometry._small_angle import length
+from elbowscrew.geometry._small_angle import divide, length
 from elbowscrew.geometry.dual_quaternion import conjugate, multiply, pose_from_dual_quat
 from elbowscrew.geometry.quaternion import rotation_matrix_from_quat
 from elbowscrew.model import BodyPoints
@@ -29,6 +29,23 @@ def origin_distance(pose_a: Float, pose_b: Float) -> Float:
     return length(pose_from_dual_quat(pose_a)[1] - pose_from_dual_quat(pose_b)[1])
 
 
+def direction_between(line_a: Float, line_b: Float) -> Float:
+    """Angle between the directions of two lines (..., 6), radians in [0, pi], shape (...)."""
+    a, b = line_a[..., :3], line_b[..., :3]
+    angle: Float = np.arctan2(length(np.cross(a, b)), np.sum(a * b, axis=-1))
+    return angle
+
+
+def distance_across(line: Float, other: Float, near: Float) -> Float:
+    """Distance (..., ) of a line from another, across the former where it passes a point (3,); lines (..., 6)."""
+    direction = line[..., :3]
+    foot = np.cross(direction, line[..., 3:])
+    center = foot + np.sum((near - foot) * direction, axis=-1, keepdims=True) * direction
+    start = np.cross(other[..., :3], other[..., 3:]) - center
+    along = np.sum(other[..., :3] * direction, axis=-1)
+    return length(start - divide(np.sum(start * direction, axis=-1), along)[..., None] * other[..., :3])
+
+
 def rms_displacement(pose_a: Float, pose_b: Float, points: BodyPoints) -> Float:
     """RMS distance of the body's points between two poses: ``E^2 = |dR c + dd|^2 + tr(dR S dR^T)``.
 
@@ -44,12 +61,38 @@ def rms_displacement(pose_a: Float, pose_b: Float, points: BodyPoints) -> Float:
     ndarray, shape (...)
         Exactly the RMS over the points. It is a metric, and does not change with the laboratory frame.
     """
-    (quat_a, d_a), (quat_b, d_b) = pose_from_dual_quat(pose_a), pose_from_dual_quat(pose_b)
-    dR = rotation_matrix_from_quat(quat_a) - rotation_matrix_from_quat(quat_b)
-    centroid_shift = dR @ points.centroid + (d_a - d_b)
-    about_centroid = np.sum((dR @ points.covariance) * dR, axis=(-1, -2))
-    square: Float = np.sum(centroid_shift**2, axis=-1) + about_centroid
-    return np.sqrt(np.maximum(square, 0.0))
+    return length(point_coordinates(pose_a, points) - point_coordinates(pose_b, points))
+
+
+def point_coordinates(pose: Float, points: BodyPoints) -> Float:
+    """Twelve coordinates of a pose between which the Euclidean distance is the RMS displacement of the points.
+
+    ``[R L, R c + d]`` with ``S = L L^T``: the places of the centroid and of three spokes that spread as the points do.
+
+    Parameters
+    ----------
+    pose : ndarray, shape (..., 8)
+        Unit dual quaternions.
+    points : BodyPoints
+
+    Returns
+    -------
+    ndarray, shape (..., 12)
+        Meters: three for each spoke, as seen from the centroid, and the centroid.
+    """
+    quat, position = pose_from_dual_quat(pose)
+    # One 3x4 product for spokes and centroid.
+    frame = np.concatenate([spokes(points), points.centroid[:, None]], axis=1)
+    placed = rotation_matrix_from_quat(quat) @ frame
+    placed[..., 3] += position
+    coordinates: Float = np.swapaxes(placed, -1, -2).reshape(*placed.shape[:-2], 12)
+    return coordinates
+
+
+def spokes(points: BodyPoints) -> Float:
+    """Three vectors whose outer products add up to the points' covariance, as columns, shape (3, 3), meters."""
+    spread, directions = np.linalg.eigh(points.covariance)
+    return np.asarray(directions * np.sqrt(np.maximum(spread, 0.0)))
 
 
 def points_from_markers(offsets: Float) -> BodyPoints:

@@ -1,20 +1,19 @@
-"""Keyframes, phases and knots of the model."""
+"""Keyframes of the model and their knots."""
 
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Final, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowscrew.errors import AnalysisError, SettingError
+from elbowscrew.errors import SettingError
 from elbowscrew.geometry._small_angle import length
 from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat
-from elbowscrew.model import Keyframes
+from elbowscrew.model import Keyframes, ModelPhases
 from elbowscrew.motion.difference import angle_between
-from elbowscrew.motion.laws import Law
 
 Float = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -39,60 +38,59 @@ def row_of_frame(frame: Index, wanted: int, option: str) -> int:
     raise SettingError(msg)
 
 
-def choose_rows(
-    angle: Float, frame: Index, wanted: tuple[int, ...] | None, inversion: int | None
+def rows_of_frames(
+    angle: Float, frame: Index, wanted: tuple[int, ...], inversion: int | None
 ) -> tuple[Index, int | None]:
-    """Rows of the keyframes, and the row where the motion turns back.
-
-    Without a wish: the first and the last known pose and, between them, the one with the largest angle. Among
-    keyframes asked for, the inversion is the one given or else the one with the largest angle.
+    """Rows of keyframes that were asked for, and of the inversion among them, None if it was not.
 
     Parameters
     ----------
     angle : ndarray, shape (N,)
-        Screw angle of the measured motion; NaN where there is no pose.
+        NaN where there is no pose.
     frame : ndarray, shape (N,)
-    wanted : tuple of int or None
+    wanted : tuple of int
         Frame numbers.
     inversion : int or None
         Frame number.
 
+    Raises
+    ------
+    SettingError
+        If a frame is not in the recording, has no pose, or they are not in its order.
+    """
+    rows = np.array([row_of_frame(frame, number, "keyframes") for number in wanted], dtype=np.int64)
+    _check_known(angle, rows, frame, "keyframes")
+    if (np.diff(rows) <= 0).any():
+        msg = f"--keyframes {','.join(map(str, wanted))}: the file does not have these frames in this order"
+        raise SettingError(msg)
+    return rows, None if inversion is None else row_of_frame(frame, inversion, "inversion")
+
+
+def spread_rows(phases: ModelPhases, known: NDArray[np.bool_], elapsed: Float, count: int) -> Index:
+    """Rows of so many keyframes a phase, evenly in time while its law runs, at the nearest known poses.
+
+    Parameters
+    ----------
+    phases : ModelPhases
+    known : ndarray of bool, shape (N,)
+        Frames that may be keyframes.
+    elapsed : ndarray, shape (N,)
+    count : int
+        Two at least: the phase's ends, which are keyframes in any case.
+
     Returns
     -------
-    rows : ndarray of int, shape (K,)
-    inversion_row : int or None
-        None if the largest angle is at an end: the motion does not turn back.
+    ndarray of int64
+        Increasing; fewer where a phase has no more known poses.
     """
-    known = np.flatnonzero(np.isfinite(angle))
-    if wanted is not None:
-        rows = np.array([row_of_frame(frame, number, "keyframes") for number in wanted], dtype=np.int64)
-        _check_known(angle, rows, frame, "keyframes")
-        if (np.diff(rows) <= 0).any():
-            msg = f"--keyframes {','.join(map(str, wanted))}: the file does not have these frames in this order"
-            raise SettingError(msg)
-        turn = (
-            int(rows[np.argmax(np.abs(angle[rows]))])
-            if inversion is None
-            else row_of_frame(frame, inversion, "inversion")
-        )
-    else:
-        turn = (
-            int(known[np.argmax(np.abs(angle[known]))])
-            if inversion is None
-            else row_of_frame(frame, inversion, "inversion")
-        )
-        _check_known(angle, np.array([turn]), frame, "inversion")
-        if inversion is not None and not known[0] < turn < known[-1]:
-            msg = (
-                f"--inversion {inversion}: not between the first and the last known pose "
-                f"(frames {frame[known[0]]} and {frame[known[-1]]})"
-            )
-            raise SettingError(msg)
-        rows = np.unique([known[0], turn, known[-1]]).astype(np.int64)
-    if rows.size < 2:
-        msg = "the recording has one single frame with a pose: there is no motion to model"
-        raise AnalysisError(msg)
-    return rows, None if turn in (rows[0], rows[-1]) else turn
+    rows = [phases.bound_rows]
+    for first, last in phases.law_rows:
+        inner = np.arange(first + 1, last)
+        inner = inner[known[inner]]
+        if inner.size:
+            wanted = np.linspace(elapsed[first], elapsed[last], count)[1:-1]
+            rows.append(inner[np.abs(elapsed[inner] - wanted[:, None]).argmin(axis=1)])
+    return np.unique(np.concatenate(rows)).astype(np.int64)
 
 
 def _check_known(angle: Float, rows: Index, frame: Index, option: str) -> None:
@@ -104,13 +102,13 @@ def _check_known(angle: Float, rows: Index, frame: Index, option: str) -> None:
 
 def keyframes_at(
     rows: Index,
-    inversion_row: int | None,
+    phases: ModelPhases,
     frame: Index,
     elapsed: Float,
     pose: Float,
     *,
     choice: KnotChoice,
-    law: Law,
+    laws: Sequence[Callable[[Float], Float]],
     piecewise: bool,
 ) -> Keyframes:
     """Keyframes with their phases and knots.
@@ -118,13 +116,13 @@ def keyframes_at(
     Parameters
     ----------
     rows : ndarray of int, shape (K,)
-    inversion_row : int or None
-        One of the rows, where the first phase ends and the second begins.
+        The bounds of the phases among them.
+    phases : ModelPhases
     frame, elapsed : ndarray, shape (N,)
         Frame numbers and seconds.
     pose : ndarray, shape (N, 8)
     choice : {"law", "chord", "uniform", "angle"}
-    law : callable
+    laws : sequence of callable
         Law of motion of each phase.
     piecewise : bool
         Knots from 0 to 1 in each phase, or from 0 to 1 over all phases.
@@ -132,27 +130,47 @@ def keyframes_at(
     Raises
     ------
     SettingError
-        If two neighboring knots fall together.
+        If two neighboring knots fall together, or do not increase.
     """
-    ends = [0, rows.size - 1]
-    if inversion_row is not None:
-        ends.insert(1, int(np.flatnonzero(rows == inversion_row)[0]))
-    bounds = np.array(ends, dtype=np.int64)
-    phases = list(itertools.pairwise(bounds))
+    bounds = np.searchsorted(rows, phases.bound_rows)
+    members = [rows[start : stop + 1] for start, stop in itertools.pairwise(bounds)]
+    count = phases.count
     if choice == "law":
-        in_phase = [law(_scaled(elapsed[rows[start : stop + 1]])) for start, stop in phases]
+        knots = [law(phase_time(phases, p, elapsed, members[p])) for p, law in enumerate(laws)]
+        for knot, row in zip(knots, members, strict=True):
+            _check_increasing(knot, frame[row])
         if not piecewise:
-            count = len(in_phase)
-            joined = [(p + knots[: None if p == count - 1 else -1]) / count for p, knots in enumerate(in_phase)]
-            in_phase = [np.concatenate(joined)]
+            joined = [(p + knot[: None if p == count - 1 else -1]) / count for p, knot in enumerate(knots)]
+            knots = [np.concatenate(joined)]
     else:
-        parts = phases if piecewise else [(0, rows.size - 1)]
         step_of = _STEPS[choice]
-        in_phase = [
-            _scaled(_accumulated(step_of(pose[rows[start : stop + 1]]), rows[start : stop + 1], frame, choice))
-            for start, stop in parts
+        knots = [
+            _scaled(_accumulated(step_of(pose[part]), part, frame, choice))
+            for part in (members if piecewise else [rows])
         ]
-    return Keyframes(row=rows, frame=frame[rows], phase_bounds=bounds, knots=tuple(in_phase))
+    return Keyframes(row=rows, frame=frame[rows], phases=phases, knots=tuple(knots))
+
+
+def phase_time(phases: ModelPhases, p: int, elapsed: Float, rows: Index) -> Float:
+    """Time of rows as a share of that in which the law of phase p runs: 0 before, 1 after, shape (n,)."""
+    first, last = elapsed[phases.law_rows[p]]
+    return phase_time_share(elapsed[rows], first, last)
+
+
+def phase_time_share(time_s: Float, start_s: float, end_s: float) -> Float:
+    """Time (n,) as a share of that between a start and an end: 0 before, 1 after."""
+    share: Float = np.clip((time_s - start_s) / (end_s - start_s), 0.0, 1.0)
+    return share
+
+
+def _check_increasing(knots: Float, frame: Index) -> None:
+    if (np.diff(knots) <= 0.0).any():
+        k = int(np.flatnonzero(np.diff(knots) <= 0.0)[0])
+        msg = (
+            f"--knots law: under the law the motion does not advance between keyframes {frame[k]} and {frame[k + 1]}; "
+            "choose other keyframes, another --law, or another of --knots chord, uniform, angle"
+        )
+        raise SettingError(msg)
 
 
 def _scaled(values: Float) -> Float:

@@ -9,6 +9,8 @@ import numpy as np
 from numpy.polynomial import Polynomial
 from numpy.typing import ArrayLike, NDArray
 
+from elbowscrew.errors import SettingError
+
 Float = NDArray[np.float64]
 _Function = Callable[[Float], Float]
 
@@ -176,3 +178,17 @@ LAWS: Final[dict[str, Law]] = {
 }
 """The polynomial 3-4-5 is the minimum-jerk law. A new law is one function above and one entry here (and its name in
 `Settings.law` and the option)."""
+
+
+def named_law(name: str, peak: float | None = None) -> Law:
+    """Give a law by its name, with the time of its highest velocity as a share of the phase if that is not the middle.
+
+    Raises
+    ------
+    SettingError
+        If there is no such law in closed form.
+    """
+    if name not in LAWS:
+        msg = f"--law {name}: not a law in closed form; expected one of {', '.join(LAWS)}"
+        raise SettingError(msg)
+    return LAWS[name] if peak is None else asymmetric(LAWS[name], peak)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, Final, NamedTuple
 
 import numpy as np
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from elbowscrew.errors import SettingError
 from elbowscrew.geometry import catmull_rom, dib, dlb, lagrange_weights, sclerp, sdlb
 from elbowscrew.model import Keyframes
-from elbowscrew.motion.laws import Law
+from elbowscrew.motion.keyframes import phase_time
 
 Float = NDArray[np.float64]
 Method = Callable[[Float, Float, Float], Float]
@@ -83,10 +83,12 @@ class ModeledPoses(NamedTuple):
     dual_quat: Float
 
 
-def model_motion(pose: Float, elapsed: Float, keyframes: Keyframes, method: Method, law: Law) -> ModeledPoses:
+def model_motion(
+    pose: Float, elapsed: Float, keyframes: Keyframes, method: Method, laws: Sequence[Callable[[Float], Float]]
+) -> ModeledPoses:
     """Interpolate the keyframes' poses under a time law (P 33-36).
 
-    In each phase tau runs from 0 to 1 over the phase's time and the law gives t. The frame of an inversion belongs to
+    In each phase tau runs from 0 to 1 while its law runs, and the law gives t. The frame of an inversion belongs to
     the phase it begins, as P 36 prints it. A global blend takes all poses at once, with the parameter
     ``(phase + t) / phases``.
 
@@ -97,24 +99,24 @@ def model_motion(pose: Float, elapsed: Float, keyframes: Keyframes, method: Meth
     elapsed : ndarray, shape (N,)
         Seconds.
     keyframes : Keyframes
-    method, law : callable
-        From `METHODS` and `elbowscrew.motion.laws.LAWS`.
+    method : callable
+        From `METHODS`.
+    laws : sequence of callable
+        One for each phase.
     """
     phase = np.ma.array(np.zeros(elapsed.size, dtype=np.int64), mask=True)
     fraction = np.full(elapsed.size, np.nan)
     modeled = np.full((elapsed.size, 8), np.nan)
-    bounds = keyframes.phase_bounds
-    count = bounds.size - 1
-    piecewise = len(keyframes.knots) == count
-    for p in range(count):
+    phases, bounds = keyframes.phases, keyframes.phase_bounds
+    piecewise = len(keyframes.knots) == phases.count
+    for p, law in enumerate(laws):
         members = keyframes.row[bounds[p] : bounds[p + 1] + 1]
-        rows = np.arange(members[0], members[-1] + (1 if p == count - 1 else 0))
-        span = elapsed[members[-1]] - elapsed[members[0]]
-        t = law((elapsed[rows] - elapsed[members[0]]) / span)
+        rows = np.arange(members[0], members[-1] + (1 if p == phases.count - 1 else 0))
+        t = law(phase_time(phases, p, elapsed, rows))
         phase[rows] = p + 1
         fraction[rows] = t
         if piecewise:
             modeled[rows] = method(pose[members], keyframes.knots[p], t)
         else:
-            modeled[rows] = method(pose[keyframes.row], keyframes.knots[0], (p + t) / count)
+            modeled[rows] = method(pose[keyframes.row], keyframes.knots[0], (p + t) / phases.count)
     return ModeledPoses(phase, fraction, modeled)

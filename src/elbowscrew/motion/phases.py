@@ -19,6 +19,8 @@ _SPEED_SHARE: Final = 0.05
 _TRAVEL_SHARE: Final = 0.01
 _SHORTEST_REST_S: Final = 0.25
 _SHORTEST_MOVE_S: Final = 0.1
+_SLOPE_REACH_S: Final = 0.1
+_CLOCK_ROUNDING_S: Final = 1e-6
 # A cycle rises and falls by this share of the whole range, and by so many degrees at least.
 _PROMINENCE_SHARE: Final = 0.3
 _LEAST_PROMINENCE: Final = float(np.radians(5.0))
@@ -60,6 +62,40 @@ def movement_phases(angular_velocity: Float, elapsed: Float) -> MovementPhases:
     for begin, end in zip(first[~real], last[~real], strict=True):
         moving[begin : end + 1] = False
     return MovementPhases(onset_rows=first[real], offset_rows=last[real], moving=moving, threshold=threshold)
+
+
+def velocity_everywhere(angular_velocity: Float, angle: Float, elapsed: Float) -> Float:
+    """Angular velocity, where that of the filtered poses is not known by the angle's slope over a fifth of a second.
+
+    Near gaps and ends, where a filter leaves most of the noise, the joint need not rest.
+
+    Parameters
+    ----------
+    angular_velocity : ndarray, shape (N,)
+        Of filtered poses, rad/s; NaN where it is not known.
+    angle : ndarray, shape (N,)
+        Screw angle, continuous, radians; NaN where there is no pose.
+    elapsed : ndarray, shape (N,)
+        Seconds.
+
+    Returns
+    -------
+    ndarray, shape (N,)
+        NaN where the angle is not known, or not for long enough.
+    """
+    known = np.flatnonzero(np.isfinite(angle))
+    wanted = known[~np.isfinite(angular_velocity[known])]
+    if not wanted.size:
+        return angular_velocity
+    # A window's ends may lie a little beside a frame's own time.
+    early = np.searchsorted(elapsed[known], elapsed[wanted] - _SLOPE_REACH_S - _CLOCK_ROUNDING_S)
+    late = np.searchsorted(elapsed[known], elapsed[wanted] + _SLOPE_REACH_S + _CLOCK_ROUNDING_S, side="right") - 1
+    early, late = known[early], known[late]
+    span = elapsed[late] - elapsed[early]
+    enough = span >= 0.5 * _SLOPE_REACH_S
+    velocity = angular_velocity.copy()
+    velocity[wanted[enough]] = (angle[late] - angle[early])[enough] / span[enough]
+    return velocity
 
 
 def find_cycles(angle: Float, phases: MovementPhases) -> NDArray[np.int64]:

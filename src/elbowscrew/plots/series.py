@@ -124,6 +124,5 @@ def over_time(ax: Axes, time_s: Float) -> Axes:
 
 
 def _model_label(analysis: Shown) -> str:
-    names = {"dlb": "DLB", "sclerp": "ScLERP", "sdlb": "sDLB", "dib": "DIB", "catmull-rom": "Catmull-Rom"}
-    method = analysis.settings.method
-    return f"{names.get(method, method)} through {analysis.keyframes.row.size} poses"
+    method = style.METHOD_NAMES[analysis.settings.model_method]
+    return f"{method} through {analysis.keyframes.row.size} poses"

@@ -25,6 +25,7 @@ _KNOTS: Final = {
     "uniform": "its number, in equal steps",
     "angle": "the accumulated angle",
 }
+_KEYFRAMES_TOLD: Final = 12
 PAPER: Final = (
     "Pennestrì E, Valentini PP. Dual quaternions as a tool for rigid body motion analysis: a tutorial with an "
     "application to biomechanics. The Archive of Mechanical Engineering 57 (2010). doi:10.2478/v10180-010-0010-2"
@@ -146,14 +147,21 @@ def _joint_axis(trial: FinishedTrial) -> Iterator[str]:
 
 def _model(trial: FinishedTrial) -> Iterator[str]:
     settings, model = trial.settings, trial.summary["interpolation"]
-    frames = ", ".join(map(str, model["keyframes"]))
-    phases = model["phases"]
+    keyframes = model["keyframes"]
+    listed = f"frames {', '.join(map(str, keyframes))}" if len(keyframes) <= _KEYFRAMES_TOLD else "keyframes.csv"
     pieces = "phase by phase" if settings.blend == "piecewise" else "all poses at once"
     yield (
-        f"The motion was modeled by {_METHODS[settings.method]} of {len(model['keyframes'])} keyframe poses (frames "
-        f"{frames}), {pieces}, with the {settings.law} law of motion in {phases} phase{'s' if phases > 1 else ''}; the "
-        f"parameter of each keyframe is {_KNOTS[settings.knots]}."
+        f"The motion was modeled by {_METHODS[settings.model_method]} of {len(keyframes)} keyframe poses ({listed}), "
+        f"{pieces}."
     )
+    if settings.tolerance_mm is not None:
+        yield (
+            "The keyframes are the fewest measured poses between which the RMS displacement stays within "
+            f"{settings.tolerance_mm:g} mm in every frame, found by dynamic programming."
+        )
+    elif len(keyframes) > model["phases"] + 1:
+        yield f"The parameter of each keyframe is {_KNOTS[settings.knots]}."
+    yield from _laws(trial, model)
     points = model["points"]
     over = (
         "the forearm's markers"
@@ -163,3 +171,27 @@ def _model(trial: FinishedTrial) -> Iterator[str]:
     yield (
         f"The model's error is the angle between modeled and measured orientation, and the RMS displacement of {over}."
     )
+
+
+def _laws(trial: FinishedTrial, model: Mapping[str, Any]) -> Iterator[str]:
+    """Tell phases and laws; which law a best fit chose stands in the summary."""
+    settings, phases = trial.settings, model["phases"]
+    count = f"{phases} phase{'s' if phases > 1 else ''}"
+    if settings.tolerance_mm is not None or settings.keyframes is not None:
+        between = count
+    elif settings.inversion is not None:
+        between = f"{count}, with the inversion at frame {settings.inversion}"
+    elif settings.phases == "whole" or not trial.summary["motion"]["movements"]:
+        between = f"{count} between start, inversion and end of the recording"
+    else:
+        between = f"{count} between turns and rests of the joint"
+    match settings.model_law:
+        case "best":
+            found = ", ".join(dict.fromkeys(law["law"] for law in model["phase_laws"]))
+            law = f"of the known laws of motion each phase follows the one nearest the measurement ({found})"
+        case "empirical":
+            law = "the time course in each phase is the recording's own"
+        case name:
+            law = f"the law of motion is the {name} one"
+    peak = "" if settings.law_peak is None else f", with its highest velocity at {settings.law_peak:g} of the phase"
+    yield f"There {'is' if phases == 1 else 'are'} {between}; {law}{peak}."

@@ -192,8 +192,7 @@ def repetition_chart(curve: Mapping[str, NDArray[Any]], count: int) -> Markup:
 
 def model_name(trial: FinishedTrial) -> str:
     """Name the model in a few words."""
-    method = trial.settings.method
-    return f"{_METHODS.get(method, method)} through {trial.keyframes.row.size} poses"
+    return f"{_METHODS[trial.settings.model_method]} through {trial.keyframes.row.size} poses"
 
 
 def _over_time(

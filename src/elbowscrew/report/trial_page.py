@@ -28,6 +28,7 @@ _HARDLY_DEG: Final = 30.0  # a cone wider than this tells of no direction
 _FILES: Final = (
     ("screw.csv", "measured motion and screw axis, frame by frame"),
     ("interpolation.csv", "modeled motion and its error, frame by frame"),
+    ("keyframes.csv", "the poses of the model, with all that rebuilds it"),
     ("instantaneous.csv", "instantaneous axis, frame by frame"),
     ("repetitions.csv", "flexion-extension cycles"),
     ("repetition_curve.csv", "mean and standard deviation over the cycles"),
@@ -85,6 +86,7 @@ def trial_page(trial: FinishedTrial) -> str:
         "warnings": [warning for warning in warnings if warning["severity"] == "warning"],
         "notes": [warning for warning in warnings if warning["severity"] != "warning"],
         "model_name": model_name(trial),
+        "laws": " and ".join(dict.fromkeys(law["law"] for law in summary["interpolation"]["phase_laws"])),
         "hardly_deg": _HARDLY_DEG,
         "widest_deg": float(np.degrees(WIDEST)),
         "theta_chart": theta_chart(trial),

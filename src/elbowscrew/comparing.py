@@ -1,0 +1,99 @@
+"""Models compared over several trials: mean and standard deviation of their errors."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowscrew.errors import AnalysisError, ElbowscrewError
+from elbowscrew.io.reading import read_recording
+from elbowscrew.model import ComparedModels, ComparedOverTrials, Comparison, TrialsComparison
+from elbowscrew.motion.comparison import compare
+from elbowscrew.motion.treatments import ComparisonPlan
+from elbowscrew.settings import Settings
+
+_MODEL: Final = ("data", "method", "blend", "law", "knots", "keyframes_per_phase")
+_VALUES: Final = ("rms_displacement", "max_displacement", "rms_angle_error", "max_angle_error", "ns_per_frame")
+
+
+def compare_trials(
+    paths: Iterable[str | os.PathLike[str]], settings: Settings | None = None, plan: ComparisonPlan | None = None
+) -> TrialsComparison:
+    """Compare models over several recordings.
+
+    Parameters
+    ----------
+    paths : iterable of path-like
+        Recordings, each compared by itself as `elbowscrew.compare` does.
+    settings : Settings, optional
+    plan : ComparisonPlan, optional
+
+    Returns
+    -------
+    TrialsComparison
+        Filtered keyframes count as one choice, whatever cut-off each trial has. A model that fails in a trial counts
+        over the others.
+
+    Raises
+    ------
+    AnalysisError
+        If no recording can be compared; it says why of the first.
+
+    Examples
+    --------
+    >>> import elbowscrew, tempfile
+    >>> plan = ComparisonPlan(laws=("linear",), counts=(2,), data=("raw",))
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     paths = [Path(folder, f"{seed}.csv") for seed in range(2)]
+    ...     for seed, path in enumerate(paths):
+    ...         trial = elbowscrew.simulate_trial(frames=60, inversion=30, seed=seed)
+    ...         _ = elbowscrew.save_simulation(trial, path)
+    ...     compare_trials(paths, plan=plan).models.trials.tolist()
+    [2, 2, 2, 2]
+    """
+    wanted = settings or Settings()
+    found: list[Comparison] = []
+    failures: list[tuple[str, ElbowscrewError]] = []
+    for path in paths:
+        try:
+            recording = read_recording(path, units=wanted.units, rotation=wanted.rotation, markers=wanted.markers)
+            found.append(compare(recording, wanted, plan))
+        except ElbowscrewError as error:
+            failures.append((str(path), error))
+    if not found:
+        why = f"; the first, {Path(failures[0][0]).name}: {failures[0][1]}" if failures else ": there is none"
+        msg = f"none of the {len(failures)} recordings can be compared{why}"
+        raise AnalysisError(msg)
+    return TrialsComparison(
+        settings=wanted,
+        models=_over_trials([one.models for one in found]),
+        trials=tuple(found),
+        failures=tuple(failures),
+    )
+
+
+def _over_trials(tables: list[ComparedModels]) -> ComparedOverTrials:
+    gathered: dict[tuple[Any, ...], list[list[float]]] = {}
+    for table in tables:
+        data = np.array(["lowpass" if name.startswith("lowpass") else name for name in table.data.tolist()])
+        keys = zip(data.tolist(), *(getattr(table, name).tolist() for name in _MODEL[1:]), strict=True)
+        values = zip(*(getattr(table, name).tolist() for name in _VALUES), strict=True)
+        for key, value in zip(keys, values, strict=True):
+            if np.isfinite(value[0]):
+                gathered.setdefault(key, []).append(list(value))
+    models = sorted(gathered, key=lambda key: (float(np.mean([value[0] for value in gathered[key]])), key))
+    columns: dict[str, NDArray[Any]] = {name: np.array([model[k] for model in models]) for k, name in enumerate(_MODEL)}
+    for k, name in enumerate(_VALUES):
+        series = [np.array([value[k] for value in gathered[model]]) for model in models]
+        columns[f"{name}_mean"] = np.array([values.mean() for values in series])
+        columns[f"{name}_sd"] = np.array([values.std(ddof=1) if values.size > 1 else np.nan for values in series])
+    return ComparedOverTrials(
+        rank=np.arange(1, len(models) + 1),
+        trials=np.array([len(gathered[model]) for model in models], dtype=np.int64),
+        **columns,
+    )

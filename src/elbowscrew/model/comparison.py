@@ -1,0 +1,179 @@
+"""Models of one motion beside each other; frozen, in SI units and radians."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowscrew import tables
+from elbowscrew.model.brief import Brief
+from elbowscrew.model.modeled import ModelPhases, PhaseLaw, Selection
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from elbowscrew.errors import ElbowscrewError
+    from elbowscrew.model.modeled import BodyPoints
+    from elbowscrew.model.recording import QualityWarning, Recording
+    from elbowscrew.settings import Settings
+
+Float = NDArray[np.float64]
+Index = NDArray[np.int64]
+MaskedIndex = np.ma.MaskedArray[Any, np.dtype[np.int64]]
+Label = NDArray[np.str_]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class ComparedModels(Brief):
+    """Models and their errors, the best first; those that could not be made last, with the reason.
+
+    Errors are those of the model against the measured motion, unfiltered and at the recording's own rate, over the
+    measured frames from the first keyframe to the last.
+
+    Attributes
+    ----------
+    rank : ndarray of int, shape (M,)
+        1, 2, ...
+    data : ndarray of str, shape (M,)
+        What the keyframes are taken from: "raw", "lowpass 6 Hz", "every 2nd", ...
+    method, blend, law, knots : ndarray of str, shape (M,)
+    keyframes_per_phase, keyframes : ndarray of int, shape (M,)
+    rms_displacement, max_displacement : ndarray, shape (M,)
+        RMS and largest RMS displacement of the forearm's points, meters; NaN where there is no model.
+    max_displacement_frame : masked ndarray of int, shape (M,)
+        Frame of the largest one.
+    rms_angle_error, max_angle_error : ndarray, shape (M,)
+        Angle between modeled and measured orientation, radians.
+    rms_translation_error, max_translation_error : ndarray, shape (M,)
+        Of the forearm's origin, meters.
+    rms_axis_error, max_axis_error : ndarray, shape (M,)
+        Angle between modeled and measured screw axis, radians.
+    rms_axis_distance, max_axis_distance : ndarray, shape (M,)
+        Distance between the two at the forearm, meters.
+    ns_per_frame : ndarray, shape (M,)
+        Time it takes to make the modeled poses.
+    note : ndarray of str, shape (M,)
+        Why there is no model; empty where there is one.
+    """
+
+    rank: Index
+    data: Label
+    method: Label
+    blend: Label
+    law: Label
+    knots: Label
+    keyframes_per_phase: Index
+    keyframes: Index
+    rms_displacement: Float
+    max_displacement: Float
+    max_displacement_frame: MaskedIndex
+    rms_angle_error: Float
+    max_angle_error: Float
+    rms_translation_error: Float
+    max_translation_error: Float
+    rms_axis_error: Float
+    max_axis_error: Float
+    rms_axis_distance: Float
+    max_axis_distance: Float
+    ns_per_frame: Float
+    note: Label
+
+    def to_frame(self, angle_unit: tables.AngleUnit = "deg", length_unit: tables.LengthUnit = "mm") -> pd.DataFrame:
+        """Return the columns of ``compare.csv``."""
+        return tables.data_frame(self, tables.COMPARISON_COLUMNS, angle_unit, length_unit)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Comparison(Brief):
+    """Everything `elbowscrew.compare` found of one recording.
+
+    Attributes
+    ----------
+    recording : Recording
+    settings : Settings
+    models : ComparedModels
+    phases : ModelPhases
+    frame : ndarray of int, shape (N,)
+        Frame numbers.
+    laws : mapping of str to tuple of PhaseLaw
+        Law of each phase, under every name that was compared; of the recording as it is.
+    selections : mapping of str to Selection
+        Fewest keyframes within the tolerance, by method.
+    points : BodyPoints
+    warnings : tuple of QualityWarning
+    """
+
+    recording: Recording
+    settings: Settings
+    models: ComparedModels
+    phases: ModelPhases
+    frame: Index
+    laws: dict[str, tuple[PhaseLaw, ...]]
+    selections: dict[str, Selection]
+    points: BodyPoints
+    warnings: tuple[QualityWarning, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class ComparedOverTrials(Brief):
+    """The same models over several trials: mean and standard deviation of each error; the best mean first.
+
+    Attributes
+    ----------
+    rank : ndarray of int, shape (M,)
+    data, method, blend, law, knots : ndarray of str, shape (M,)
+    keyframes_per_phase : ndarray of int, shape (M,)
+    trials : ndarray of int, shape (M,)
+        Trials that have this model.
+    rms_displacement_mean, rms_displacement_sd, max_displacement_mean, max_displacement_sd : ndarray, shape (M,)
+        Meters; the standard deviation (N - 1) is NaN for a single trial.
+    rms_angle_error_mean, rms_angle_error_sd, max_angle_error_mean, max_angle_error_sd : ndarray, shape (M,)
+        Radians.
+    ns_per_frame_mean, ns_per_frame_sd : ndarray, shape (M,)
+    """
+
+    rank: Index
+    data: Label
+    method: Label
+    blend: Label
+    law: Label
+    knots: Label
+    keyframes_per_phase: Index
+    trials: Index
+    rms_displacement_mean: Float
+    rms_displacement_sd: Float
+    max_displacement_mean: Float
+    max_displacement_sd: Float
+    rms_angle_error_mean: Float
+    rms_angle_error_sd: Float
+    max_angle_error_mean: Float
+    max_angle_error_sd: Float
+    ns_per_frame_mean: Float
+    ns_per_frame_sd: Float
+
+    def to_frame(self, angle_unit: tables.AngleUnit = "deg", length_unit: tables.LengthUnit = "mm") -> pd.DataFrame:
+        """Return the columns of ``compare.csv`` of a folder."""
+        return tables.data_frame(self, tables.TRIALS_COMPARISON_COLUMNS, angle_unit, length_unit)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class TrialsComparison(Brief):
+    """Everything `elbowscrew.compare_trials` found.
+
+    Attributes
+    ----------
+    settings : Settings
+    models : ComparedOverTrials
+    trials : tuple of Comparison
+        Those that could be compared.
+    failures : tuple of (str, ElbowscrewError)
+        Paths of the others, and why.
+    """
+
+    settings: Settings
+    models: ComparedOverTrials
+    trials: tuple[Comparison, ...]
+    failures: tuple[tuple[str, ElbowscrewError], ...]

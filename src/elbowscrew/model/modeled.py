@@ -1,0 +1,303 @@
+"""The model of a motion: keyframes, phases, laws and the motion between; frozen, in SI units and radians."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowscrew import tables
+from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat
+from elbowscrew.model.brief import Brief
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+Float = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class ModelPhases(Brief):
+    """The phases of the model, from one turn of the motion to the next.
+
+    Attributes
+    ----------
+    bound_rows : ndarray of int, shape (P + 1,)
+        Rows where the phases begin and end: start, inversions, end.
+    law_rows : ndarray of int, shape (P, 2)
+        Rows between which the law of motion runs in each phase; before and after it, within the phase, the model rests.
+    """
+
+    bound_rows: NDArray[np.int64]
+    law_rows: NDArray[np.int64]
+
+    @property
+    def count(self) -> int:
+        """How many there are."""
+        return len(self.law_rows)
+
+
+class PhaseLaw(NamedTuple):
+    """The law of motion of a phase.
+
+    Attributes
+    ----------
+    name : str
+    peak : float or None
+        Time of the highest velocity as a share of the phase; None where the law has no such parameter.
+    rms : float
+        RMS displacement (m) between the measured motion and the ScLERP from the phase's first pose to its last under
+        this law.
+    """
+
+    name: str
+    peak: float | None
+    rms: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Keyframes(Brief):
+    """The poses the model passes through.
+
+    Attributes
+    ----------
+    row, frame : ndarray of int, shape (K,)
+        Row in the recording and frame number of each keyframe.
+    phases : ModelPhases
+        Their bounds are among the keyframes.
+    knots : tuple of ndarray
+        For each phase (one for a global blend) the parameter at its keyframes.
+    """
+
+    row: NDArray[np.int64]
+    frame: NDArray[np.int64]
+    phases: ModelPhases
+    knots: tuple[Float, ...]
+
+    @property
+    def phase_bounds(self) -> NDArray[np.int64]:
+        """Indices into the keyframes where the phases begin and end, shape (P + 1,)."""
+        return np.searchsorted(self.row, self.phases.bound_rows).astype(np.int64)
+
+    @property
+    def inversion_rows(self) -> NDArray[np.int64]:
+        """Rows where one phase ends and the next begins."""
+        return self.phases.bound_rows[1:-1]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class KeyframeSet(Brief):
+    """Keyframes with all that rebuilds the motion from them.
+
+    Attributes
+    ----------
+    frame : ndarray of int, shape (K,)
+        Frame numbers in the recording they are from.
+    time_s : ndarray, shape (K,)
+        On the even clock of the model, increasing.
+    phase : ndarray of int, shape (K,)
+        1, 2, ...; that which a keyframe begins, or at the end the last.
+    knot : ndarray, shape (K,)
+        Phases that are over, and the law's t in the phase: from 0 to the number of phases.
+    angle : ndarray, shape (K,)
+        Screw angle, radians.
+    dual_quat : ndarray, shape (K, 8)
+        Displacements since the reference, in the frame they are expressed in; signs as the motion goes.
+    method : str
+    blend : {"piecewise", "global"}
+    law : tuple of PhaseLaw
+    law_start_s, law_end_s : ndarray, shape (P,)
+        When the law of each phase runs.
+    """
+
+    frame: NDArray[np.int64]
+    time_s: Float
+    phase: NDArray[np.int64]
+    knot: Float
+    angle: Float
+    dual_quat: Float
+    method: str
+    blend: Literal["piecewise", "global"]
+    law: tuple[PhaseLaw, ...]
+    law_start_s: Float
+    law_end_s: Float
+
+    @property
+    def euler_parameters(self) -> Float:
+        """Shape (K, 4)."""
+        return self.dual_quat[:, :4]
+
+    @property
+    def translation(self) -> Float:
+        """Shape (K, 3), meters."""
+        return pose_from_dual_quat(self.dual_quat)[1]
+
+    @property
+    def method_of_each(self) -> NDArray[np.str_]:
+        """The method, as a column."""
+        return np.full(self.frame.size, self.method)
+
+    @property
+    def blend_of_each(self) -> NDArray[np.str_]:
+        """The blend, as a column."""
+        return np.full(self.frame.size, self.blend)
+
+    @property
+    def law_of_each(self) -> NDArray[np.str_]:
+        """Law of the phase of each keyframe."""
+        return np.array([law.name for law in self.law])[self.phase - 1]
+
+    @property
+    def peak_of_each(self) -> Float:
+        """Time of the highest velocity in that phase; NaN for the middle."""
+        peaks = np.array([np.nan if law.peak is None else law.peak for law in self.law])
+        return peaks[self.phase - 1]
+
+    @property
+    def law_start_of_each(self) -> Float:
+        """When the law of the phase begins to run, seconds."""
+        return self.law_start_s[self.phase - 1]
+
+    @property
+    def law_end_of_each(self) -> Float:
+        """When it ends, seconds."""
+        return self.law_end_s[self.phase - 1]
+
+    def to_frame(self, angle_unit: tables.AngleUnit = "deg", length_unit: tables.LengthUnit = "mm") -> pd.DataFrame:
+        """Return the columns of ``keyframes.csv``."""
+        return tables.data_frame(self, tables.KEYFRAME_COLUMNS, angle_unit, length_unit)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class RebuiltMotion(Brief):
+    """The motion that keyframes tell of, frame by frame.
+
+    Attributes
+    ----------
+    frame : ndarray of int, shape (N,)
+        0, 1, ...
+    time_s : ndarray, shape (N,)
+    phase : masked ndarray of int, shape (N,)
+    fraction, angle, slide, euler_parameters, translation : ndarray
+        As in `InterpolatedMotion`.
+    """
+
+    frame: NDArray[np.int64]
+    time_s: Float
+    phase: np.ma.MaskedArray[Any, np.dtype[np.int64]]
+    fraction: Float
+    angle: Float
+    slide: Float
+    euler_parameters: Float
+    translation: Float
+
+    def to_frame(self, angle_unit: tables.AngleUnit = "deg", length_unit: tables.LengthUnit = "mm") -> pd.DataFrame:
+        """Return the columns that ``elbowscrew interpolate`` writes."""
+        return tables.data_frame(self, tables.MOTION_COLUMNS, angle_unit, length_unit)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Selection(Brief):
+    """The smallest set of measured poses between which a model stays within a tolerance, and what others reach.
+
+    Attributes
+    ----------
+    row : ndarray of int, shape (K,)
+        The chosen poses.
+    tolerance : float
+        Largest RMS displacement allowed, meters.
+    frames : int
+        Measured frames from the first to the last.
+    count : ndarray of int, shape (C,)
+        Numbers of keyframes, increasing.
+    largest, rms : ndarray, shape (C,)
+        Largest RMS displacement over the frames (m) that the best set of so many keyframes has, and its RMS.
+    complete : bool
+        Whether all of them are the best there are; of a long recording only the last one is proved.
+    """
+
+    row: NDArray[np.int64]
+    tolerance: float
+    frames: int
+    count: NDArray[np.int64]
+    largest: Float
+    rms: Float
+    complete: bool
+
+    @property
+    def compression(self) -> float:
+        """Frames for each keyframe."""
+        return self.frames / self.row.size
+
+    def of_rows(self, rows: NDArray[np.int64]) -> Selection:
+        """Give the same selection by rows of the recording that it was made from."""
+        return replace(self, row=rows[self.row])
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class InterpolatedMotion(Brief):
+    """The motion modeled from the keyframes, and its difference from the measured one; NaN outside the keyframes.
+
+    Attributes
+    ----------
+    frame, time_s : ndarray, shape (N,)
+    phase : masked ndarray of int, shape (N,)
+        1, 2, ...; masked outside the keyframes.
+    fraction : ndarray, shape (N,)
+        The time law's t in the phase.
+    angle, slide, euler_parameters, translation : ndarray
+        As in `ScrewMotion`.
+    angle_error : ndarray, shape (N,)
+        Angle of the rotation between modeled and measured orientation, radians.
+    translation_error : ndarray, shape (N,)
+        Distance between modeled and measured origin of the forearm, meters.
+    rms_displacement : ndarray, shape (N,)
+        RMS distance between modeled and measured points of the forearm, meters.
+    axis_error, axis_distance : ndarray, shape (N,)
+        Angle (rad) between modeled and measured screw axis, and distance (m) between them, across the measured one
+        where it passes the forearm at the reference; NaN where one of the two is not known.
+    """
+
+    frame: NDArray[np.int64]
+    time_s: Float
+    phase: np.ma.MaskedArray[Any, np.dtype[np.int64]]
+    fraction: Float
+    angle: Float
+    slide: Float
+    euler_parameters: Float
+    translation: Float
+    angle_error: Float
+    translation_error: Float
+    rms_displacement: Float
+    axis_error: Float
+    axis_distance: Float
+
+    def to_frame(self, angle_unit: tables.AngleUnit = "deg", length_unit: tables.LengthUnit = "mm") -> pd.DataFrame:
+        """Return the columns of ``interpolation.csv``."""
+        return tables.data_frame(self, tables.INTERPOLATION_COLUMNS, angle_unit, length_unit)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class BodyPoints(Brief):
+    """The points of a body that a displacement is averaged over, in the body's frame.
+
+    Attributes
+    ----------
+    centroid : ndarray, shape (3,)
+        Meters.
+    covariance : ndarray, shape (3, 3)
+        Mean of ``(x - c)(x - c)^T``, square meters.
+    origin : str
+        "markers" or "radius".
+    """
+
+    centroid: Float
+    covariance: Float
+    origin: Literal["markers", "radius"]
+
+    @property
+    def radius_of_gyration(self) -> float:
+        """RMS distance of the points from their centroid, meters."""
+        return float(np.sqrt(np.trace(self.covariance)))

@@ -1,0 +1,223 @@
+"""Models beside each other: error over the number of keyframes, by method, law and data."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter, StrMethodFormatter
+from numpy.typing import NDArray
+
+from elbowscrew.model import ComparedModels, ComparedOverTrials, Comparison, Selection, TrialsComparison
+from elbowscrew.plots import style
+from elbowscrew.tables import LengthUnit, length_in
+
+Float = NDArray[np.float64]
+
+_WIDTH_MM: Final = 170.0
+_BETWEEN_TWO: Final = {"dlb": "blend", "sclerp": "screw", "sdlb": "blend", "dib": "screw", "catmull-rom": "screw"}
+# Room for the legend, as a share of the logarithmic axis.
+_LEGEND_ROOM: Final = 0.45
+_MARKERS: Final = ("o", "s", "^", "D", "v", "P", "X", "*", "h")
+_DASHES: Final = ("-", (0, (5, 2)), (0, (1, 1.5)), (0, (5, 1.5, 1, 1.5)), (0, (2, 2)))
+# Okabe and Ito, apart in grey by lightness as well; markers and dashes tell them apart without either.
+_COLORS: Final = ("#000000", "#D55E00", "#0072B2", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#666666", "#882255")
+
+
+class _Errors(NamedTuple):
+    """What is drawn of a comparison: a value for each model, and its spread over trials (NaN for one)."""
+
+    data: NDArray[np.str_]
+    method: NDArray[np.str_]
+    blend: NDArray[np.str_]
+    law: NDArray[np.str_]
+    keyframes: NDArray[np.int64]
+    value: Float
+    spread: Float
+
+    @classmethod
+    def of(cls, models: ComparedModels | ComparedOverTrials, unit: LengthUnit) -> _Errors:
+        if isinstance(models, ComparedModels):
+            value, spread = models.rms_displacement, np.full(models.rank.size, np.nan)
+        else:
+            value, spread = models.rms_displacement_mean, models.rms_displacement_sd
+        known = np.isfinite(value)
+        return cls(
+            models.data[known],
+            models.method[known],
+            models.blend[known],
+            models.law[known],
+            models.keyframes_per_phase[known],
+            length_in(value[known], unit),
+            length_in(spread[known], unit),
+        )
+
+    def where(self, mask: NDArray[np.bool_]) -> _Errors:
+        return _Errors(
+            self.data[mask],
+            self.method[mask],
+            self.blend[mask],
+            self.law[mask],
+            self.keyframes[mask],
+            self.value[mask],
+            self.spread[mask],
+        )
+
+    def best_by_count(self) -> tuple[NDArray[np.int64], Float, Float]:
+        """Least value of each number of keyframes, and its spread."""
+        counts = np.unique(self.keyframes)
+        chosen = [np.flatnonzero(self.keyframes == count) for count in counts]
+        rows = np.array([rows[np.argmin(self.value[rows])] for rows in chosen], dtype=np.int64)
+        return counts, self.value[rows], self.spread[rows]
+
+
+def comparison_figure(found: Comparison | TrialsComparison) -> Figure:
+    """Make the figure of a comparison, of one trial or of several."""
+    unit = found.settings.length_unit
+    errors = _Errors.of(found.models, unit)
+    figure = style.new_figure(_WIDTH_MM, 150.0)
+    panels = figure.subplots(2, 2).ravel()
+    plot_methods(panels[0], errors, unit)
+    plot_laws(panels[1], errors, unit)
+    plot_treatments(panels[2], errors, unit)
+    trials = [found.selections] if isinstance(found, Comparison) else [one.selections for one in found.trials]
+    plot_selections(panels[3], trials, unit)
+    for ax, letter in zip(panels, "abcd", strict=True):
+        ax.set_title(letter, loc="left")
+    return figure
+
+
+def plot_methods(ax: Axes, errors: _Errors, unit: LengthUnit) -> Axes:
+    """Draw the error over the number of keyframes in each phase, for each method under its best law, piecewise."""
+    raw = _as_recorded(errors)
+    piecewise = raw.where(raw.blend == "piecewise")
+    for k, name in enumerate(style.METHOD_NAMES):
+        # What is the same model between two poses stands in the comparison once.
+        same = [other for other, kind in _BETWEEN_TWO.items() if kind == _BETWEEN_TWO[name]]
+        mine = (piecewise.method == name) | ((piecewise.keyframes == 2) & np.isin(piecewise.method, same))
+        if name in piecewise.method:
+            _curve(ax, piecewise.where(mine), k, style.METHOD_NAMES[name])
+    ax.set_title("each method, best law", loc="center", fontweight="normal")
+    return _over_count(ax, unit)
+
+
+def _as_recorded(errors: _Errors) -> _Errors:
+    """Models whose keyframes are from the recording as it is, or else from the first that was compared."""
+    return errors.where(errors.data == ("raw" if "raw" in errors.data else errors.data[0]))
+
+
+def plot_laws(ax: Axes, errors: _Errors, unit: LengthUnit) -> Axes:
+    """Draw the error of each law, for each number of keyframes in a phase, under its best method."""
+    raw = _as_recorded(errors)
+    counts = np.unique(raw.keyframes)
+    fewest = raw.where(raw.keyframes == counts[0])
+    laws = sorted(set(raw.law.tolist()), key=lambda law: float(np.min(fewest.value[fewest.law == law], initial=np.inf)))
+    for k, count in enumerate(counts[:4]):
+        of_count = raw.where(raw.keyframes == count)
+        for row, law in enumerate(laws):
+            mine = of_count.where(of_count.law == law)
+            if mine.value.size:
+                best = int(np.argmin(mine.value))
+                label = f"{count} keyframes" if row == 0 else None
+                spread = None if np.isnan(mine.spread[best]) else mine.spread[best]
+                ax.errorbar(mine.value[best], row, xerr=spread, label=label, capsize=2.0, **_look(k, line=False))
+    ax.set_yticks(range(len(laws)), laws)
+    ax.invert_yaxis()
+    ax.set_xscale("log")
+    _plain_ticks(ax.xaxis)
+    values = raw.value[np.isin(raw.keyframes, counts[:4])]
+    ax.set_xlim(left=max(ax.get_xlim()[0], 0.4 * float(values.min())))
+    ax.set_xlabel(f"RMS displacement ({unit})")
+    ax.set_title("each law, best method", loc="center", fontweight="normal")
+    ax.grid(axis="y", linewidth=0.4, color="#DDDDDD")
+    ax.legend(loc="best", title="in each phase", title_fontsize=7.5, frameon=True, edgecolor="none", framealpha=0.9)
+    return ax
+
+
+def plot_treatments(ax: Axes, errors: _Errors, unit: LengthUnit) -> Axes:
+    """Draw the error over the number of keyframes, taken from the recording as it is, filtered, and thinned."""
+    for k, name in enumerate(dict.fromkeys(sorted(errors.data.tolist(), key=_treatment_order))):
+        _curve(ax, errors.where(errors.data == name), k, f"{name} frame" if name.startswith("every") else name)
+    ax.set_title("keyframes from, best model", loc="center", fontweight="normal")
+    return _over_count(ax, unit)
+
+
+def plot_selections(ax: Axes, trials: Sequence[dict[str, Selection]], unit: LengthUnit) -> Axes:
+    """Draw the largest error over the number of keyframes, where these are chosen best."""
+    drawn: set[str] = set()
+    for selections in trials:
+        for k, (method, selection) in enumerate(selections.items()):
+            label = None if method in drawn else f"{style.METHOD_NAMES[method]}, constant speed between"
+            drawn.add(method)
+            look = {**_look(k, line=True), "linewidth": 1.0 if len(trials) > 1 else 1.3, "markersize": 3.0}
+            ax.plot(selection.count, length_in(selection.largest, unit), label=label, **look)
+    if trials and trials[0]:
+        tolerance = float(length_in(np.array(next(iter(trials[0].values())).tolerance), unit))
+        ax.axhline(tolerance, **style.LEVEL)
+        ax.annotate(
+            f"tolerance {tolerance:.3g} {unit}",
+            (0.0, tolerance),
+            xycoords=ax.get_yaxis_transform(),
+            xytext=(3.0, 2.0),
+            textcoords="offset points",
+        )
+        ax.legend(loc="upper right")
+    ax.set_yscale("log")
+    _plain_ticks(ax.yaxis)
+    ax.xaxis.set_major_locator(MaxNLocator(integer=True))
+    ax.set_xlabel("Keyframes in all, chosen best (–)")
+    ax.set_ylabel(f"Largest RMS displacement ({unit})")
+    ax.set_title("fewest keyframes", loc="center", fontweight="normal")
+    return ax
+
+
+def _treatment_order(name: str) -> tuple[int, int]:
+    if name.startswith("every"):
+        return 2, int("".join(character for character in name if character.isdigit()))
+    return (0 if name == "raw" else 1), 0
+
+
+def _curve(ax: Axes, errors: _Errors, k: int, label: str) -> None:
+    if errors.value.size:
+        counts, value, spread = errors.best_by_count()
+        yerr = None if np.isnan(spread).all() else np.nan_to_num(spread)
+        ax.errorbar(counts, value, yerr=yerr, label=label, capsize=2.0, **_look(k, line=True))
+
+
+def _look(k: int, *, line: bool) -> dict[str, Any]:
+    return {
+        "color": _COLORS[k % len(_COLORS)],
+        "marker": _MARKERS[k % len(_MARKERS)],
+        "markersize": 4.5,
+        "markerfacecolor": "white",
+        "linewidth": 1.2,
+        "linestyle": _DASHES[k % len(_DASHES)] if line else "none",
+    }
+
+
+def _over_count(ax: Axes, unit: LengthUnit) -> Axes:
+    ax.set_yscale("log")
+    _plain_ticks(ax.yaxis)
+    ax.xaxis.set_major_locator(MaxNLocator(integer=True))
+    ax.set_xlabel("Keyframes in each phase (–)")
+    ax.set_ylabel(f"RMS displacement ({unit})")
+    _leave_room(ax, *ax.get_ylim())
+    ax.legend(loc="upper right", ncols=2, columnspacing=1.2, handlelength=2.2)
+    return ax
+
+
+def _leave_room(ax: Axes, low: float, high: float) -> None:
+    """Set the limits so that the legend stands above the curves; bars that reach 0 or less end at the lower one."""
+    values = np.concatenate([line.get_ydata() for line in ax.lines if line.get_marker() in _MARKERS] or [[low, high]])
+    low, high = max(low, 0.4 * float(np.min(values))), max(high, float(np.max(values)))
+    ax.set_ylim(low, high * (high / low) ** _LEGEND_ROOM)
+
+
+def _plain_ticks(axis: Any) -> None:
+    """Write numbers of a logarithmic axis as they are."""
+    axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    axis.set_major_formatter(StrMethodFormatter("{x:g}"))
+    axis.set_minor_formatter(NullFormatter())

@@ -1,0 +1,86 @@
+"""How far two poses are apart: the markers themselves, and what makes it a metric."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from elbowscrew.geometry import dual_quaternion as dq
+from elbowscrew.geometry import line_through
+from elbowscrew.geometry import quaternion as qn
+from elbowscrew.motion.difference import (
+    angle_between,
+    direction_between,
+    distance_across,
+    points_from_markers,
+    points_from_radius,
+    rms_displacement,
+)
+
+Float = NDArray[np.float64]
+SEEDS = st.integers(0, 1_000_000)
+
+
+def poses(rng: np.random.Generator, count: int) -> Float:
+    return dq.dual_quat_from_pose(
+        qn.quat_from_rotation_vector(rng.normal(size=(count, 3)) * 1.5), rng.normal(scale=0.3, size=(count, 3))
+    )
+
+
+@given(seed=SEEDS, markers=st.integers(1, 12))
+def test_it_is_exactly_the_rms_over_the_markers(seed: int, markers: int) -> None:
+    rng = np.random.default_rng(seed)
+    offsets = rng.normal(scale=0.08, size=(markers, 3)) + rng.normal(scale=0.1, size=3)
+    a, b = poses(rng, 2)
+    apart = dq.transform_points(a, offsets) - dq.transform_points(b, offsets)
+    direct = np.sqrt(np.mean(np.sum(apart**2, axis=1)))
+    assert rms_displacement(a, b, points_from_markers(offsets)) == pytest.approx(direct, abs=1e-12)
+
+
+@given(seed=SEEDS, radius=st.floats(1e-3, 0.5))
+def test_for_a_round_body_it_is_the_closed_form(seed: int, radius: float) -> None:
+    """With the origin at the centroid: ``E^2 = dd^2 + (8/3) rho^2 sin^2(delta/2)``."""
+    a, b = poses(np.random.default_rng(seed), 2)
+    shift = dq.pose_from_dual_quat(a)[1] - dq.pose_from_dual_quat(b)[1]
+    square = shift @ shift + 8.0 / 3.0 * radius**2 * np.sin(0.5 * angle_between(a, b)) ** 2
+    assert rms_displacement(a, b, points_from_radius(radius)) == pytest.approx(np.sqrt(square), abs=1e-12)
+
+
+@given(seed=SEEDS)
+def test_it_is_a_metric_and_knows_no_laboratory(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    points = points_from_markers(rng.normal(scale=0.1, size=(4, 3)))
+    a, b, c, moved = poses(rng, 4)
+    distance = rms_displacement(a, b, points)
+    assert rms_displacement(b, a, points) == pytest.approx(distance, abs=1e-15)
+    assert rms_displacement(a, -a, points) == pytest.approx(0.0, abs=1e-15)
+    assert distance <= rms_displacement(a, c, points) + rms_displacement(c, b, points) + 1e-15
+    assert rms_displacement(dq.multiply(moved, a), dq.multiply(moved, b), points) == pytest.approx(distance, abs=1e-12)
+
+
+@given(seed=SEEDS, tilt=st.floats(0.0, 1.2), shift=st.floats(0.0, 0.2))
+def test_axes_are_apart_by_their_tilt_and_their_shift(seed: int, tilt: float, shift: float) -> None:
+    """A line, and the same tilted in the plane through a point of it and shifted across, anywhere in space."""
+    near = np.array([0.0, 0.0, 0.3])
+    line = line_through([0.0, 0.0, 0.0], [0.0, 0.0, 1.0])
+    other = line_through([shift, 0.0, 0.3], [0.0, np.sin(tilt), np.cos(tilt)])
+    moved = poses(np.random.default_rng(seed), 1)[0]
+    line, other, near = (
+        dq.transform_lines(moved, line),
+        dq.transform_lines(moved, other),
+        dq.transform_points(moved, near),
+    )
+    assert direction_between(line, other) == pytest.approx(tilt, abs=1e-12)
+    assert distance_across(line, other, near) == pytest.approx(shift, abs=1e-12)
+
+
+def test_an_axis_that_is_not_known_is_at_no_distance() -> None:
+    line = line_through([0.0, 0, 0], [0.0, 0, 1])
+    unknown = np.full(6, np.nan)
+    assert np.isnan(direction_between(line, unknown))
+    assert np.isnan(distance_across(line, unknown, np.zeros(3)))
+    # Nor is one that never meets the plane across the other.
+    assert np.isnan(distance_across(line, line_through([0.0, 0, 0], [1.0, 0, 0]), np.zeros(3)))
