@@ -179,10 +179,13 @@ def test_parts_of_the_view_can_be_left_out(open_page: Any, result: Path) -> None
     assert ink(page) < whole
 
 
+@pytest.mark.parametrize("width", [380, 1280])
 @pytest.mark.parametrize("which", ["trial", "hostile trial", "study"])
-def test_axe_finds_nothing_serious(open_page: Any, result: Path, hostile: Path, study: Path, which: str) -> None:
+def test_axe_finds_nothing_serious(
+    open_page: Any, result: Path, hostile: Path, study: Path, which: str, width: int
+) -> None:
     path = {"trial": result / "report.html", "hostile trial": hostile / "report.html", "study": study / "index.html"}
-    page = open_page(path[which])
+    page = open_page(path[which], viewport={"width": width, "height": 900})
     found = axe.Axe().run(page).response
     assert len(found["passes"]) > 15
     serious = [fault for fault in found["violations"] if fault["impact"] in ("serious", "critical")]

@@ -174,7 +174,7 @@ def _table_of_groups(rows: list[dict[str, Any]], groups: Mapping[str, list[int]]
     return table
 
 
-def _charts(rows: list[dict[str, Any]], groups: Mapping[str, list[int]]) -> list[Markup]:
+def _charts(rows: list[dict[str, Any]], groups: Mapping[str, list[int]]) -> list[tuple[str, Markup]]:
     shown = groups if len(groups) <= _MOST_STRIPS else {_ALL: list(range(len(rows)))}
     charts = []
     for measure in MEASURES:
@@ -186,7 +186,7 @@ def _charts(rows: list[dict[str, Any]], groups: Mapping[str, list[int]]) -> list
             for name, members in shown.items()
         }
         if any(np.isfinite(values).any() for values, _ in strips.values()):
-            charts.append(strip_chart(measure.key, measure.title, measure.unit, strips))
+            charts.append((measure.title, strip_chart(measure.key, measure.title, measure.unit, strips)))
     return charts
 
 
