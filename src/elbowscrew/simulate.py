@@ -118,7 +118,7 @@ class Simulation:
             "rest-after": 0.0 <= self.rest_after_s * self.rate_hz < _MOST_FRAMES,
             "axis-drift": abs(self.axis_drift_deg) <= 90.0,
             "tremor": 0.0 <= self.tremor_deg <= 90.0,
-            "tremor-hz": 0.0 < self.tremor_hz <= 0.5 * self.rate_hz,
+            "tremor-hz": self.tremor_deg == 0.0 or 0.0 < self.tremor_hz <= 0.5 * self.rate_hz,
             "seed": self.seed >= 0,
         }
         bad = [name for name, good in checks.items() if not good]

@@ -144,6 +144,20 @@ def test_errors_of_segments_are_those_of_the_poses_blended(method: str, seed: in
         assert displacement_along(seen[[m]], one, share[m, [k]], BASES[method]) == pytest.approx([direct], abs=1e-12)
 
 
+@pytest.mark.parametrize("method", BASES)
+@given(seed=st.integers(0, 10_000), tolerance=st.floats(1e-3, 0.08), step=st.floats(0.02, 0.6))
+def test_the_screen_leaves_every_segment_that_holds(method: str, seed: int, tolerance: float, step: float) -> None:
+    pose = wandering(10, seed, step)
+    parameter = np.cumsum(np.random.default_rng(seed).uniform(0.3, 1.0, 10))
+    track = selection_module._Track(PoseTrack.of(pose, POINTS), parameter, POINTS, method, np.array([0, 9]))
+    screen = selection_module._Screen.of(track, tolerance)
+    for first, last in itertools.combinations(range(10), 2):
+        rows = np.arange(first, last + 1)
+        inner = marker_errors(pose[rows], parameter[rows], (0, rows.size - 1), method)
+        if inner.max() <= tolerance:
+            assert screen.may_hold(track, first, np.array([last])).all()
+
+
 @pytest.mark.parametrize(
     ("options", "says"),
     [

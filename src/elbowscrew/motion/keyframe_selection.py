@@ -200,7 +200,7 @@ def _fewest(track: _Track, tolerance: float) -> Index:
     before = np.full(count, -1, dtype=np.int64)
     before[0] = 0
     frontier: Index = np.zeros(1, dtype=np.int64)
-    screen = _Screen.of(track)
+    screen = _Screen.of(track, tolerance)
     while before[-1] < 0:
         reached = []
         for first in frontier[::-1].tolist():  # the farthest first: it reaches most of what there is to reach
@@ -219,7 +219,7 @@ def _fewest(track: _Track, tolerance: float) -> Index:
 
 def _reached_from(track: _Track, screen: _Screen, first: int, ends: Index, tolerance: float) -> Index:
     """Those of the rows (increasing) to which a segment from a row stays within the tolerance."""
-    ends = ends[screen.may_hold(track, first, ends, tolerance)]
+    ends = ends[screen.may_hold(track, first, ends)]
     if not ends.size:
         return ends
     poses, basis = track.poses, BASES[track.method]
@@ -266,33 +266,50 @@ def _row_at(track: _Track, first: int, ends: Index, share: float) -> Index:
 class _Screen(NamedTuple):
     """What no segment can hold, told without making it.
 
-    Half way both methods turn the body as the normalized sum of the two poses' quaternions does. The pose that is
-    measured there may be turned from it by no more than the tolerance allows the points.
+    About half way, at a fraction u, sDLB turns the body as the quaternions' sum ``(1 - u) q1 + u q2`` does. ScLERP is
+    there to the angle: both turn about one axis, are at one place half way, and go at most ``2 tan(theta/4)`` and
+    exactly ``theta/2`` in half-angle per u. The pose that is measured there may be turned from it by no more than the
+    tolerance allows the points.
 
     Attributes
     ----------
     quat : ndarray, shape (N, 4)
-    arm : float
-        Least RMS distance (m) of the points from an axis through their centroid.
+    half_turn : float
+        Half the largest turn (rad) that the tolerance allows the points about whatever axis.
+    lags : bool
+        Whether the method is not the quaternions' sum.
     """
 
     quat: Float
-    arm: float
+    half_turn: float
+    lags: bool
 
     @classmethod
-    def of(cls, track: _Track) -> _Screen:
+    def of(cls, track: _Track, tolerance: float) -> _Screen:
         spread = np.linalg.eigvalsh(track.points.covariance)
-        return cls(np.ascontiguousarray(track.poses.pose[:, :4]), float(np.sqrt(max(spread[0] + spread[1], 0.0))))
+        # E^2 >= 4 sin^2(delta/2) a^2, a the least RMS distance of the points from an axis through their centroid.
+        arm = float(np.sqrt(max(spread[0] + spread[1], 0.0)))
+        sine = (tolerance + _ROUND_OFF) / max(2.0 * arm, _ROUND_OFF)
+        half_turn = float(np.arcsin(sine)) if sine < 1.0 else np.pi
+        return cls(np.ascontiguousarray(track.poses.pose[:, :4]), half_turn, track.method == "sclerp")
 
-    def may_hold(self, track: _Track, first: int, ends: Index, tolerance: float) -> Bool:
+    def may_hold(self, track: _Track, first: int, ends: Index) -> Bool:
         """Whether the middle allows a segment to each of the rows, shape (J,); never False where one holds."""
+        if self.half_turn >= 0.5 * np.pi:
+            return np.ones(ends.size, dtype=np.bool_)
         middle = _row_at(track, first, ends, 0.5)
-        even = np.abs(track.fraction(first, ends, middle) - 0.5) < _ROUND_OFF
+        u = track.fraction(first, ends, middle)
         along = self.quat @ self.quat[first]
+        c = along[ends]
         across = np.einsum("ij,ij->i", self.quat[middle], self.quat[ends])
-        # cos^2 of half the turn from the middle of the two poses to the pose measured there.
-        square = (along[middle] + across) ** 2 / np.maximum(2.0 + 2.0 * along[ends], _ROUND_OFF)
-        least_square = 4.0 * self.arm**2 * (1.0 - square)
-        allowed: Bool = least_square <= (tolerance + _ROUND_OFF) ** 2
-        allowed |= ~even | (along[ends] < _ROUND_OFF - 1.0)
-        return allowed
+        mixed = (1.0 - u) * along[middle] + u * across
+        square = (1.0 - u) ** 2 + u**2 + 2.0 * u * (1.0 - u) * c
+        allowed = np.full(ends.size, self.half_turn)
+        if self.lags:
+            half_angle = np.arccos(c.clip(-1.0, 1.0))
+            speed = 2.0 * np.sqrt((1.0 - c).clip(0.0) / (1.0 + c).clip(_ROUND_OFF))
+            allowed += np.abs(u - 0.5) * (speed - half_angle).clip(0.0)
+        bound = np.cos(np.minimum(allowed, 0.5 * np.pi))
+        holds: Bool = mixed**2 >= bound**2 * square - _ROUND_OFF
+        holds |= c < _ROUND_OFF - 1.0
+        return holds

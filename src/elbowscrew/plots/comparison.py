@@ -123,11 +123,11 @@ def plot_laws(ax: Axes, errors: _Errors, unit: LengthUnit) -> Axes:
                 best = int(np.argmin(mine.value))
                 label = f"{count} keyframes" if row == 0 else None
                 spread = None if np.isnan(mine.spread[best]) else mine.spread[best]
-                ax.errorbar(mine.value[best], row, xerr=spread, label=label, capsize=2.0, **_look(k, line=False))
+                ax.errorbar(mine.value[best], row, xerr=spread, label=label, capsize=2.0, **series_look(k, line=False))
     ax.set_yticks(range(len(laws)), laws)
     ax.invert_yaxis()
     ax.set_xscale("log")
-    _plain_ticks(ax.xaxis)
+    plain_ticks(ax.xaxis)
     values = raw.value[np.isin(raw.keyframes, counts[:4])]
     ax.set_xlim(left=max(ax.get_xlim()[0], 0.4 * float(values.min())))
     ax.set_xlabel(f"RMS displacement ({unit})")
@@ -152,7 +152,7 @@ def plot_selections(ax: Axes, trials: Sequence[dict[str, Selection]], unit: Leng
         for k, (method, selection) in enumerate(selections.items()):
             label = None if method in drawn else f"{style.METHOD_NAMES[method]}, constant speed between"
             drawn.add(method)
-            look = {**_look(k, line=True), "linewidth": 1.0 if len(trials) > 1 else 1.3, "markersize": 3.0}
+            look = {**series_look(k, line=True), "linewidth": 1.0 if len(trials) > 1 else 1.3, "markersize": 3.0}
             ax.plot(selection.count, length_in(selection.largest, unit), label=label, **look)
     if trials and trials[0]:
         tolerance = float(length_in(np.array(next(iter(trials[0].values())).tolerance), unit))
@@ -166,7 +166,7 @@ def plot_selections(ax: Axes, trials: Sequence[dict[str, Selection]], unit: Leng
         )
         ax.legend(loc="upper right")
     ax.set_yscale("log")
-    _plain_ticks(ax.yaxis)
+    plain_ticks(ax.yaxis)
     ax.xaxis.set_major_locator(MaxNLocator(integer=True))
     ax.set_xlabel("Keyframes in all, chosen best (–)")
     ax.set_ylabel(f"Largest RMS displacement ({unit})")
@@ -184,10 +184,11 @@ def _curve(ax: Axes, errors: _Errors, k: int, label: str) -> None:
     if errors.value.size:
         counts, value, spread = errors.best_by_count()
         yerr = None if np.isnan(spread).all() else np.nan_to_num(spread)
-        ax.errorbar(counts, value, yerr=yerr, label=label, capsize=2.0, **_look(k, line=True))
+        ax.errorbar(counts, value, yerr=yerr, label=label, capsize=2.0, **series_look(k, line=True))
 
 
-def _look(k: int, *, line: bool) -> dict[str, Any]:
+def series_look(k: int, *, line: bool) -> dict[str, Any]:
+    """Look of the k-th of several series: color, marker and dashes, each of which alone tells them apart."""
     return {
         "color": _COLORS[k % len(_COLORS)],
         "marker": _MARKERS[k % len(_MARKERS)],
@@ -200,7 +201,7 @@ def _look(k: int, *, line: bool) -> dict[str, Any]:
 
 def _over_count(ax: Axes, unit: LengthUnit) -> Axes:
     ax.set_yscale("log")
-    _plain_ticks(ax.yaxis)
+    plain_ticks(ax.yaxis)
     ax.xaxis.set_major_locator(MaxNLocator(integer=True))
     ax.set_xlabel("Keyframes in each phase (–)")
     ax.set_ylabel(f"RMS displacement ({unit})")
@@ -216,7 +217,7 @@ def _leave_room(ax: Axes, low: float, high: float) -> None:
     ax.set_ylim(low, high * (high / low) ** _LEGEND_ROOM)
 
 
-def _plain_ticks(axis: Any) -> None:
+def plain_ticks(axis: Any) -> None:
     """Write numbers of a logarithmic axis as they are."""
     axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
     axis.set_major_formatter(StrMethodFormatter("{x:g}"))
