@@ -145,7 +145,7 @@ def test_the_selection_is_that_of_the_movement() -> None:
         keyframes = tuple(TRIAL.frame[selection.row].tolist())
         # The law of time itself, over one phase: keyframes by their own times.
         again = analyze(TRIAL, Settings(keyframes=keyframes, method=method, law="linear")).interpolated
-        bends = set(analyze(TRIAL, Settings(keyframes=keyframes)).keyframes.inversion_rows.tolist())
+        bends = set(analyze(TRIAL, Settings(keyframes=keyframes)).inversion_rows.tolist())
         assert bends <= set(selection.row.tolist())
         assert np.nanmax(again.rms_displacement) == pytest.approx(selection.largest[-1], abs=1e-9)
         assert selection.largest[-1] <= 5e-3

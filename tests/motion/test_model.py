@@ -55,7 +55,7 @@ def test_the_cycloidal_law_has_no_speed_and_no_acceleration_at_its_ends() -> Non
 def test_default_keyframes_are_start_inversion_and_end() -> None:
     keyframes = modeled().keyframes
     assert keyframes.frame.tolist() == [0, TURN, FRAMES - 1]
-    assert keyframes.inversion_rows.tolist() == [TURN]
+    assert modeled().inversion_rows.tolist() == [TURN]
     assert keyframes.phase_bounds.tolist() == [0, 1, 2]
 
 
@@ -134,8 +134,8 @@ def test_a_motion_that_does_not_turn_back_is_one_phase_with_a_warning() -> None:
 
 
 def test_the_inversion_among_given_keyframes_is_the_largest_angle() -> None:
-    assert modeled(keyframes=(0, 30, 50, 100)).keyframes.inversion_rows.tolist() == [50]
-    assert modeled(keyframes=(0, 30, 50, 100), inversion=30).keyframes.inversion_rows.tolist() == [30]
+    assert modeled(keyframes=(0, 30, 50, 100)).inversion_rows.tolist() == [50]
+    assert modeled(keyframes=(0, 30, 50, 100), inversion=30).inversion_rows.tolist() == [30]
     assert modeled(inversion=60).keyframes.frame.tolist() == [0, 60, 100]
 
 

@@ -9,8 +9,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from elbowscrew import Settings, analyze, simulate_trial
+from elbowscrew import Recording, RigidBody, Settings, analyze, simulate_trial
 from elbowscrew.errors import SettingError
+from elbowscrew.geometry import dual_quat_from_screw
+from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.motion.phases import velocity_everywhere
 
 FRAMES, TURN = 450, 211
@@ -75,7 +77,7 @@ def test_phases_over_the_whole_take_run_from_bound_to_bound() -> None:
 def test_an_inversion_that_is_given_is_the_only_one() -> None:
     trial = simulate_trial(repetitions=2, rest_before_s=1.0).recording
     analysis = analyze(trial, Settings(inversion=400))
-    assert analysis.keyframes.inversion_rows.tolist() == [400]
+    assert analysis.inversion_rows.tolist() == [400]
     with pytest.raises(SettingError, match="not between"):
         analyze(trial, Settings(inversion=0))
 
@@ -99,3 +101,22 @@ def test_the_slope_of_the_angle_stands_in_for_a_velocity_that_is_not_known() -> 
     assert filled[known] == pytest.approx(np.full(known.sum(), 1.5))
     assert np.isnan(filled[~known]).all()
     assert np.isnan(velocity[80:120]).all()
+
+
+def test_a_rest_on_the_way_parts_phases_and_is_no_inversion() -> None:
+    """A hinge that flexes by 60 deg, rests, flexes by 60 more, and returns."""
+    time = np.arange(900) / 100.0
+    angle = np.zeros(time.size)
+    for turn, begin, end in ((60.0, 0.0, 2.0), (60.0, 3.0, 5.0), (-120.0, 5.0, 8.99)):
+        tau = np.clip((time - begin) / (end - begin), 0.0, 1.0)
+        angle += np.radians(turn) * tau**3 * (10.0 - 15.0 * tau + 6.0 * tau**2)
+    pose = dual_quat_from_screw(angle, 0.0, [0.0, 0.0, 1.0], [0.0, 0.1, 0.0])
+    jitter = np.random.default_rng(0).normal(scale=1e-5, size=(time.size, 3))
+    pose = dq.multiply(pose, dq.dual_quat_from_pose([1.0, 0.0, 0.0, 0.0], jitter))
+    body = RigidBody(name="b", dual_quat_lab_body=pose, loss=np.zeros(time.size, dtype=np.uint8))
+    analysis = analyze(Recording.from_bodies([body], rate_hz=100))
+    bounds, laws = analysis.keyframes.phases.bound_rows, analysis.keyframes.phases.law_rows
+    assert laws[:, 0] == pytest.approx([0, 300, 500], abs=8)
+    assert laws[:, 1] == pytest.approx([200, 500, 899], abs=8)
+    assert 200 < bounds[1] < 300
+    assert analysis.inversion_rows.tolist() == [bounds[2]]

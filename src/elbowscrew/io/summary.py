@@ -166,7 +166,7 @@ def _motion(analysis: Analysis) -> dict[str, Any]:
         "theta_max_deg": statistic(np.nanmax, angle),
         "theta_min_deg": statistic(np.nanmin, angle),
         "theta_max_frame": int(screw.frame[int(np.nanargmax(angle))]),
-        "inversion_frames": screw.frame[analysis.keyframes.inversion_rows].tolist(),
+        "inversion_frames": screw.frame[analysis.inversion_rows].tolist(),
         "slide_median_mm": statistic(np.nanmedian, slide),
         "slide_min_mm": statistic(np.nanmin, slide),
         "slide_max_mm": statistic(np.nanmax, slide),

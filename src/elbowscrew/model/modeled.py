@@ -81,11 +81,6 @@ class Keyframes(Brief):
         """Indices into the keyframes where the phases begin and end, shape (P + 1,)."""
         return np.searchsorted(self.row, self.phases.bound_rows).astype(np.int64)
 
-    @property
-    def inversion_rows(self) -> NDArray[np.int64]:
-        """Rows where one phase ends and the next begins."""
-        return self.phases.bound_rows[1:-1]
-
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class KeyframeSet(Brief):

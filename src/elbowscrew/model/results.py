@@ -170,6 +170,8 @@ class Analysis(Brief):
     anatomy : AnatomicalMotion or None
         None without landmarks.
     keyframes : Keyframes
+    inversion_rows : ndarray of int, shape (I,)
+        Where the motion turns back.
     laws : tuple of PhaseLaw
         Law of motion of each phase of the model.
     selection : Selection or None
@@ -200,6 +202,7 @@ class Analysis(Brief):
     repeatability: Repeatability
     anatomy: AnatomicalMotion | None
     keyframes: Keyframes
+    inversion_rows: NDArray[np.int64]
     laws: tuple[PhaseLaw, ...]
     selection: Selection | None
     interpolated: InterpolatedMotion

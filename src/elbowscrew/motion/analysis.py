@@ -76,8 +76,12 @@ def analyze(recording: Recording, settings: Settings | None = None, *, landmarks
     warnings = measured.warnings + model.warnings + axes.warnings
     cycles = find_cycles(screw.angle, phases)
     repetitions = repetitions_of(cycles, screw, measured.line, velocity, elapsed, near)
-    turns = model.keyframes.inversion_rows.size
-    if len(cycles) > 1 and turns < len(cycles) and wanted.keyframes is None and wanted.tolerance_mm is None:
+    if (
+        len(cycles) > 1
+        and model.inversion_rows.size < len(cycles)
+        and wanted.keyframes is None
+        and wanted.tolerance_mm is None
+    ):
         message = (
             f"the motion repeats {len(cycles)} times, and one model through start, inversion and end describes none of "
             "them; leave --phases and --inversion out, or give --keyframes of one repetition (repetitions.csv has them)"
@@ -113,6 +117,7 @@ def analyze(recording: Recording, settings: Settings | None = None, *, landmarks
         repeatability=repeatability_of(cycles, repetitions, screw.angle, elapsed, near),
         anatomy=anatomy,
         keyframes=model.keyframes,
+        inversion_rows=model.inversion_rows,
         laws=model.laws,
         selection=model.selection,
         interpolated=_compared(model, measured, wanted),

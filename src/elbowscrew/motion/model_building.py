@@ -36,6 +36,7 @@ class JointModel(NamedTuple):
     """Result of `build_model`; the selection is None if no tolerance was given."""
 
     keyframes: Keyframes
+    inversion_rows: NDArray[np.int64]
     laws: tuple[PhaseLaw, ...]
     selection: Selection | None
     poses: ModeledPoses
@@ -68,10 +69,11 @@ def build_model(measured: Measurement, movements: MovementPhases, velocity: Floa
         angle = measured.screw.angle
         rows, inversion_row = rows_of_frames(angle, frame, settings.keyframes, settings.inversion)
         phases = phases_of_keyframes(rows, angle, inversion_row)
-    elif settings.tolerance_mm is not None and settings.model_law == "linear":
-        phases = one_phase(_measured_rows(measured))  # time itself needs no turns
     else:
         phases = phases_of(measured, movements, velocity, settings)
+    inversions = _inversion_rows(phases, measured.screw.angle, settings)
+    if settings.tolerance_mm is not None and settings.model_law == "linear":
+        phases = one_phase(_measured_rows(measured))  # time itself needs no turns
     laws = model_laws(measured, phases, points, settings.model_law, settings.law_peak)
     selection = None
     if settings.tolerance_mm is not None:
@@ -90,11 +92,12 @@ def build_model(measured: Measurement, movements: MovementPhases, velocity: Floa
     poses = model_motion(pose, elapsed, keyframes, METHODS[settings.model_method], [law.function for law in laws])
     return JointModel(
         keyframes=keyframes,
+        inversion_rows=inversions,
         laws=tuple(law.law for law in laws),
         selection=selection,
         poses=poses,
         points=points,
-        warnings=_warnings(keyframes, measured, poses, settings),
+        warnings=_warnings(keyframes, inversions, measured, poses),
     )
 
 
@@ -177,12 +180,21 @@ def _selected(
     return found.of_rows(rows)
 
 
+def _inversion_rows(phases: ModelPhases, angle: Float, settings: Settings) -> NDArray[np.int64]:
+    """Rows where the motion turns back; a rest on the way is none, what was asked for is."""
+    inner = phases.bound_rows[1:-1]
+    if settings.inversion is not None or settings.keyframes is not None:
+        return inner
+    step = np.diff(angle[phases.bound_rows])
+    return inner[step[1:] * step[:-1] < 0.0]
+
+
 def _warnings(
-    keyframes: Keyframes, measured: Measurement, modeled: ModeledPoses, settings: Settings
+    keyframes: Keyframes, inversion_rows: NDArray[np.int64], measured: Measurement, modeled: ModeledPoses
 ) -> tuple[QualityWarning, ...]:
     warnings = []
-    if not keyframes.inversion_rows.size and settings.tolerance_mm is None:
-        message = "the angle is largest at an end of the motion, so it has no inversion: modeled in one phase"
+    if not inversion_rows.size:
+        message = "the angle is largest at an end of the motion, so it has no inversion"
         warnings.append(QualityWarning(code="no-inversion", message=message))
     filled = keyframes.frame[measured.joint.filled[keyframes.row]]
     if filled.size:

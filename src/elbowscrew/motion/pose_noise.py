@@ -25,6 +25,8 @@ _FEWEST_STILL_FRAMES: Final = 20
 _LARGEST_DRIFT: Final = 3.0
 _STILL_NOISE_M: Final = 0.001
 _LARGEST_ERROR_M: Final = 1.0
+# Exports have six decimals: where some coordinate repeats in all of them its noise is that of the rounding, not none.
+_ROUNDING_SD: Final = np.array([2.0, 2.0, 2.0, 1.0, 1.0, 1.0]) * 1e-6 / np.sqrt(12.0)
 
 
 def pose_noise(body: RigidBody, rate_hz: float, settings: Settings) -> PoseNoise | None:
@@ -166,7 +168,7 @@ def _from_still_stretch(body: RigidBody, rate_hz: float, settings: Settings) -> 
     # The stillest of many is stiller than the noise: the median of those within its double says what is usual.
     like = still & (size <= 2.0 * size[still].min())
     rest = rest[like].reshape(-1, 6)
-    covariance = rest.T @ rest / (len(rest) * (1.0 - 2.0 / frames))
+    covariance = rest.T @ rest / (len(rest) * (1.0 - 2.0 / frames)) + np.diag(_ROUNDING_SD**2)
     return PoseNoise(covariance=covariance, source=STILL_STRETCH, marker_noise=None)
 
 
