@@ -79,6 +79,7 @@ def test_poses_keyframes_and_movements_come_back(pair: Pair) -> None:
     assert finished.joint.reference_row == analysis.joint.reference_row
     assert finished.keyframes.row.tolist() == analysis.keyframes.row.tolist()
     assert finished.keyframes.phase_bounds.tolist() == analysis.keyframes.phase_bounds.tolist()
+    assert finished.summary["motion"]["inversion_frames"] == analysis.screw.frame[analysis.inversion_rows].tolist()
     assert finished.keyframes.phases.law_rows.tolist() == analysis.keyframes.phases.law_rows.tolist()
     assert finished.phases.moving.tolist() == analysis.phases.moving.tolist()
     assert finished.joint_axis.preferred == analysis.joint_axis.preferred

@@ -114,7 +114,7 @@ def _finished(folder: Path, summary: Mapping[str, Any], joint_summary: dict[str,
         )
     }
     curve = folder / "repetition_curve.csv"
-    screw = _screw(read["screw"])
+    screw, interpolated = _screw(read["screw"]), _interpolated(read["interpolation"])
     bodies, trial = joint_summary["bodies"], summary["trial"]
     return FinishedTrial(
         folder=folder,
@@ -131,8 +131,8 @@ def _finished(folder: Path, summary: Mapping[str, Any], joint_summary: dict[str,
         phases=_phases(summary["motion"]["movements"], screw.frame),
         repetitions=_repetitions(read["repetitions"]),
         repetition_curve=read_columns(curve, tables.CURVE_COLUMNS, *units) if curve.exists() else None,
-        keyframes=_keyframes(summary, screw.frame),
-        interpolated=_interpolated(read["interpolation"]),
+        keyframes=_keyframes(summary["interpolation"], interpolated),
+        interpolated=interpolated,
     )
 
 
@@ -267,15 +267,14 @@ def _phases(movements: list[dict[str, int]], frame: NDArray[np.int64]) -> Moveme
     return MovementPhases(onset_rows=onset, offset_rows=offset, moving=moving, threshold=float("nan"))
 
 
-def _keyframes(summary: Mapping[str, Any], frame: NDArray[np.int64]) -> Keyframes:
-    model = summary["interpolation"]
-    row = _rows(model["keyframes"], frame)
-    bounds = [row[:1], _rows(summary["motion"]["inversion_frames"], frame), row[-1:]]
-    laws = [[law["start_frame"], law["end_frame"]] for law in model["phase_laws"]]
-    phases = ModelPhases(
-        bound_rows=np.concatenate(bounds), law_rows=np.stack([_rows(frames, frame) for frames in laws])
-    )
-    return Keyframes(row=row, frame=frame[row], phases=phases, knots=())
+def _keyframes(model: Mapping[str, Any], interpolated: InterpolatedMotion) -> Keyframes:
+    """Read the keyframes; a phase begins where its number first stands, and the last one ends at the last keyframe."""
+    row = _rows(model["keyframes"], interpolated.frame)
+    begins = np.unique(interpolated.phase.compressed(), return_index=True)[1]
+    bounds = np.append(np.flatnonzero(~np.ma.getmaskarray(interpolated.phase))[begins], row[-1])
+    laws = [_rows([law["start_frame"], law["end_frame"]], interpolated.frame) for law in model["phase_laws"]]
+    phases = ModelPhases(bound_rows=bounds.astype(np.int64), law_rows=np.stack(laws))
+    return Keyframes(row=row, frame=interpolated.frame[row], phases=phases, knots=())
 
 
 def _rows(numbers: Any, frame: NDArray[np.int64]) -> NDArray[np.int64]:
