@@ -127,7 +127,7 @@ def test_iterative_blending_solves_its_fixed_point_equation() -> None:
             guess = dq.multiply(keys[0], dq.exp(x))
             return np.asarray(weights @ dq.log(dq.canonical(dq.multiply(dq.conjugate(guess), keys))))
 
-        solved = dq.multiply(keys[0], dq.exp(fsolve(equation, np.zeros(6), xtol=1e-14)))
+        solved = dq.multiply(keys[0], dq.exp(fsolve(equation, np.zeros(6), xtol=1e-13)))
         assert dq.align_signs(found.dual_quat, solved) == pytest.approx(solved, abs=1e-10)
 
 

@@ -12,6 +12,7 @@ from oracles import known_trial, quaternion_xyzw
 
 from elbowscrew import read_recording
 from elbowscrew.errors import RecordingError
+from elbowscrew.io import source
 
 ROWS, MARKERS = 40_000, 40
 
@@ -119,3 +120,34 @@ def test_an_endless_line_is_refused_without_reading_it_all(tmp_path: Path) -> No
         assert tracemalloc.get_traced_memory()[1] < 100 << 20
     finally:
         tracemalloc.stop()
+
+
+@pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
+@pytest.mark.parametrize("last", ["", "end"])
+def test_lines_are_the_same_one_by_one_and_many_at_a_time(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, end: str, last: str
+) -> None:
+    lines = [f"{k},{'é' * (k % 50)}" if k % 9 else "" for k in range(1000)]
+    path = tmp_path / "t.csv"
+    path.write_bytes(b"\xef\xbb\xbf" + end.join([*lines, last]).encode())
+    opened = source.open_source(path)
+    expected = [*lines, last] if last else lines
+    assert list(opened.lines()) == expected
+    for size in (1, 2, 100, 1 << 20):
+        monkeypatch.setattr(source, "_BLOCK_CHARACTERS", size)
+        assert [line for block in opened.blocks(3) for line in block] == expected[3:]
+    assert list(opened.blocks(2000)) == []
+
+
+def test_a_line_between_two_blocks_is_told_if_it_is_too_long(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(source, "_MAX_LINE", 100)
+    path = tmp_path / "t.csv"
+    path.write_text("1,2\n" + "x" * 99 + "\n" + "1,2\n" * 50)
+    for size in (2, 30, 90, 150, 1000):
+        monkeypatch.setattr(source, "_BLOCK_CHARACTERS", size)
+        assert sum(len(block) for block in source.open_source(path).blocks(0)) == 52
+    path.write_text("1,2\n" * 7 + "x" * 100 + "\n" + "1,2\n" * 50)
+    for size in (2, 30, 90, 150, 1000):
+        monkeypatch.setattr(source, "_BLOCK_CHARACTERS", size)
+        with pytest.raises(RecordingError, match=r"t\.csv:8: a line of over 100 characters"):
+            list(source.open_source(path).blocks(0))

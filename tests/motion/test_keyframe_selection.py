@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 import elbowscrew.motion.keyframe_selection as selection_module
 from elbowscrew import Settings, analyze, simulate_trial
-from elbowscrew.errors import UsageError
+from elbowscrew.errors import SettingError, UsageError
 from elbowscrew.geometry import dual_quat_from_screw, sclerp, sdlb
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry import quaternion as qn
@@ -56,7 +56,7 @@ def brute_force(pose: Float, parameter: Float, method: str, required: tuple[int,
     best: dict[int, float] = {}
     for count in range(len(pose) - 1):
         for inner in itertools.combinations(range(1, last), count):
-            if set(required) <= set(inner):
+            if set(required) <= set(inner) and (np.diff(parameter[[0, *inner, last]]) > 0.0).all():
                 worst = float(marker_errors(pose, parameter, (0, *inner, last), method).max())
                 best[count + 2] = min(best.get(count + 2, np.inf), worst)
     return best
@@ -73,7 +73,7 @@ def test_no_smaller_set_and_no_better_one_of_that_size(
     if tied:
         parameter[1] = parameter[0]
     truth = brute_force(pose, parameter, method)
-    tolerance = share * truth[2] + 1e-6
+    tolerance = max(share * truth[2], min(truth.values())) + 1e-6
     found = select_keyframes(pose, parameter, POINTS, tolerance, method=method)
     fewest = min(number for number, error in truth.items() if error <= tolerance)
     assert found.row.size == fewest
@@ -106,6 +106,21 @@ def test_both_ways_agree_on_a_whole_trial(limit: int, monkeypatch: pytest.Monkey
     sizes = [analyze(trial, Settings(tolerance_mm=size)).keyframes.row.size for size in (1.0, 4.0, 30.0)]
     monkeypatch.setattr(selection_module, "MOST_FRAMES_COMPLETE", limit)
     assert [analyze(trial, Settings(tolerance_mm=size)).keyframes.row.size for size in (1.0, 4.0, 30.0)] == sizes
+
+
+def test_where_the_parameter_rests_the_motion_must() -> None:
+    """A hold of five frames that wander by up to 30 mm: one keyframe at most stands there."""
+    pose = wandering(9, 3)
+    parameter = np.array([0.0, 1.0, 2.0, 2.0, 2.0, 2.0, 2.0, 3.0, 4.0])
+    truth = brute_force(pose, parameter, "sclerp")
+    least = min(truth.values())
+    for limit in (1, 600):
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(selection_module, "MOST_FRAMES_COMPLETE", limit)
+            found = select_keyframes(pose, parameter, POINTS, 1.001 * least)
+            assert found.row.size == min(number for number, error in truth.items() if error <= 1.001 * least)
+            with pytest.raises(SettingError, match="where the law rests"):
+                select_keyframes(pose, parameter, POINTS, 0.99 * least)
 
 
 def test_rows_that_must_be_keyframes_are() -> None:

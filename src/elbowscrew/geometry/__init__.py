@@ -6,18 +6,10 @@ Nothing here knows of time, files, units or names of bodies. The modules `quater
 
 from elbowscrew.geometry import dual_matrix, dual_number, dual_quaternion, dual_vector, general, quaternion, twist
 from elbowscrew.geometry._ways import WayRound
+from elbowscrew.geometry.blending import IterativeBlend, dib, dlb, lagrange_weights
 from elbowscrew.geometry.dual_matrix import DualMatrix
 from elbowscrew.geometry.dual_number import DualNumber
-from elbowscrew.geometry.interpolation import (
-    IterativeBlend,
-    chain,
-    dib,
-    dlb,
-    lagrange_weights,
-    nlerp,
-    sclerp,
-    sdlb,
-)
+from elbowscrew.geometry.interpolation import chain, nlerp, sclerp, sdlb
 from elbowscrew.geometry.registration import FittedPose, fit_poses, fit_poses_dual_qr, pose_from_points
 from elbowscrew.geometry.screw import (
     Screw,

@@ -10,8 +10,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from elbowscrew.geometry import quaternion
-from elbowscrew.geometry._small_angle import divide, length, sinc, sinc_slope
+from elbowscrew.geometry import _rows, quaternion
+from elbowscrew.geometry._blocks import in_blocks, is_single
+from elbowscrew.geometry._small_angle import divide_rows, row_length
 from elbowscrew.geometry.dual_number import DualNumber
 
 _QUATERNION_CONJUGATE = np.array([1.0, -1.0, -1.0, -1.0, 1.0, -1.0, -1.0, -1.0])
@@ -42,10 +43,19 @@ def multiply(left: ArrayLike, right: ArrayLike) -> NDArray[np.float64]:
     """
     a = np.asarray(left, dtype=np.float64)
     b = np.asarray(right, dtype=np.float64)
-    product = np.empty((*np.broadcast_shapes(a.shape[:-1], b.shape[:-1]), 8))
-    product[..., :4] = quaternion.multiply(a[..., :4], b[..., :4])
-    product[..., 4:] = quaternion.multiply(a[..., :4], b[..., 4:]) + quaternion.multiply(a[..., 4:], b[..., :4])
-    return product
+    if is_single(a):
+        return _linear(_rows.left_maps(a.ravel()), a, b)
+    if is_single(b):
+        return _linear(_rows.right_maps(b.ravel()), b, a)
+    return in_blocks(_rows.dual_product, a, b, width=8)
+
+
+def _linear(
+    maps: tuple[NDArray[np.float64], NDArray[np.float64]], factor: NDArray[np.float64], other: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Multiply by one dual quaternion, whose maps these are."""
+    shape = np.broadcast_shapes(factor.shape, other.shape)
+    return in_blocks(lambda Q: _rows.mapped(maps, Q), other, width=8, contiguous=False).reshape(shape)
 
 
 def conjugate(dual_quat: ArrayLike) -> NDArray[np.float64]:
@@ -148,9 +158,13 @@ def norm(dual_quat: ArrayLike) -> DualNumber:
     >>> norm([[3, 4, 0, 0, 5, 0, 0, 0]])
     DualNumber(real=array([5.]), dual=array([3.]))
     """
-    Q = np.asarray(dual_quat, dtype=np.float64)
-    real = length(Q[..., :4])
-    return DualNumber(real, divide(np.sum(Q[..., :4] * Q[..., 4:], axis=-1), real))
+    parts = in_blocks(_norm, dual_quat, width=2)
+    return DualNumber(parts[..., 0], parts[..., 1])
+
+
+def _norm(Q: _rows.Rows) -> list[NDArray[np.float64]]:
+    real = row_length(Q[:4])
+    return [real, *divide_rows([_rows.dot(Q[:4], Q[4:])], real)]
 
 
 def normalize(dual_quat: ArrayLike) -> NDArray[np.float64]:
@@ -175,11 +189,7 @@ def normalize(dual_quat: ArrayLike) -> NDArray[np.float64]:
     >>> normalize([2, 0, 0, 0, 6, 0, 0, 8])
     array([1., 0., 0., 0., 0., 0., 0., 4.])
     """
-    Q = np.asarray(dual_quat, dtype=np.float64)
-    real_norm = length(Q[..., :4])[..., None]
-    real = divide(Q[..., :4], real_norm)
-    dual = divide(Q[..., 4:], real_norm)
-    return np.concatenate([real, dual - np.sum(real * dual, axis=-1, keepdims=True) * real], axis=-1)
+    return in_blocks(_rows.normalized, dual_quat, width=8)
 
 
 def inverse(dual_quat: ArrayLike) -> NDArray[np.float64]:
@@ -204,12 +214,14 @@ def inverse(dual_quat: ArrayLike) -> NDArray[np.float64]:
     >>> inverse([2, 0, 0, 0, 0, 0, 0, 4]) + 0.0
     array([ 0.5,  0. ,  0. ,  0. ,  0. ,  0. ,  0. , -1. ])
     """
-    Q = np.asarray(dual_quat, dtype=np.float64)
-    real, dual = (part[..., None] for part in norm(Q))
-    Qc = conjugate(Q)
-    inv_real = divide(divide(Qc[..., :4], real), real)
-    inv_dual = divide(divide(Qc[..., 4:], real), real) - 2.0 * inv_real * divide(dual, real)
-    return np.concatenate([inv_real, inv_dual], axis=-1)
+    return in_blocks(_inverse, dual_quat, width=8)
+
+
+def _inverse(Q: _rows.Rows) -> list[NDArray[np.float64]]:
+    size, dual_size = _norm(Q)
+    inverted = divide_rows(divide_rows(_rows.conjugate(Q), size), size)
+    slope = 2.0 * divide_rows([dual_size], size)[0]
+    return [*inverted[:4], *(dual - slope * real for real, dual in zip(inverted[:4], inverted[4:], strict=True))]
 
 
 def dual_quat_from_pose(quat: ArrayLike, position: ArrayLike) -> NDArray[np.float64]:
@@ -238,15 +250,13 @@ def dual_quat_from_pose(quat: ArrayLike, position: ArrayLike) -> NDArray[np.floa
     array([ 1.4142,  0.    ,  0.    ,  1.4142, -0.7071,  2.8284,  0.    ,
             0.7071])
     """
-    q = np.asarray(quat, dtype=np.float64)
-    d = np.asarray(position, dtype=np.float64)
-    shape = np.broadcast_shapes(q.shape[:-1], d.shape[:-1])
-    half = np.zeros((*d.shape[:-1], 4))
-    half[..., 1:] = 0.5 * d
-    dual_quat = np.empty((*shape, 8))
-    dual_quat[..., :4] = q
-    dual_quat[..., 4:] = quaternion.multiply(half, q)
-    return dual_quat
+    return in_blocks(_from_pose, quat, position, width=8)
+
+
+def _from_pose(quat: _rows.Rows, position: _rows.Rows) -> list[NDArray[np.float64]]:
+    w, x, y, z = quat
+    a, b, c = (0.5 * row for row in position)
+    return [*quat, 0.0 - (a * x + b * y + c * z), a * w + b * z - c * y, b * w + c * x - a * z, c * w + a * y - b * x]
 
 
 def pose_from_dual_quat(dual_quat: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -274,7 +284,7 @@ def pose_from_dual_quat(dual_quat: ArrayLike) -> tuple[NDArray[np.float64], NDAr
     (array([0., 0., 0., 1.]), array([2., 2., 0.]))
     """
     Q = np.asarray(dual_quat, dtype=np.float64)
-    return Q[..., :4].copy(), 2.0 * quaternion.multiply(Q[..., 4:], quaternion.conjugate(Q[..., :4]))[..., 1:]
+    return Q[..., :4].copy("K"), in_blocks(_rows.position, Q, width=3)
 
 
 def matrix_from_dual_quat(dual_quat: ArrayLike) -> NDArray[np.float64]:
@@ -361,15 +371,7 @@ def exp(half_twist: ArrayLike) -> NDArray[np.float64]:
     >>> exp([0, 0, np.pi / 2, 0, 0, 1]).round(12) + 0.0
     array([ 0.,  0.,  0.,  1., -1.,  0.,  0.,  0.])
     """
-    u = np.asarray(half_twist, dtype=np.float64)
-    a, b = u[..., :3], u[..., 3:]
-    half_angle = length(a)[..., None]
-    ratio = sinc(half_angle)
-    projection = np.sum(a * b, axis=-1, keepdims=True)
-    return np.concatenate(
-        [np.cos(half_angle), ratio * a, -ratio * projection, ratio * b + sinc_slope(half_angle) * projection * a],
-        axis=-1,
-    )
+    return in_blocks(_rows.exponential, half_twist, width=8)
 
 
 def log(dual_quat: ArrayLike) -> NDArray[np.float64]:
@@ -398,15 +400,7 @@ def log(dual_quat: ArrayLike) -> NDArray[np.float64]:
     >>> log([0, 0, 0, 1, -1, 0, 0, 0]).round(6) + 0.0
     array([0.      , 0.      , 1.570796, 0.      , 0.      , 1.      ])
     """
-    Q = np.asarray(dual_quat, dtype=np.float64)
-    w, v, w0, v0 = Q[..., :1], Q[..., 1:4], Q[..., 4:5], Q[..., 5:]
-    sine = length(v)[..., None]
-    half_angle = np.arctan2(sine, w)
-    undefined = (sine == 0.0) & (w < 0.0)
-    ratio = np.where(sine == 0.0, 1.0, half_angle / np.where(sine == 0.0, 1.0, sine))
-    ratio = np.where(undefined, np.nan, ratio)
-    # d(half_angle/sine) = w0 sinc_slope(half_angle) ratio^3 for a unit Q, where <v, v0> = -w w0.
-    return np.concatenate([ratio * v, ratio * v0 + w0 * sinc_slope(half_angle) * ratio**3 * v], axis=-1)
+    return in_blocks(lambda Q: _rows.logarithm(Q)[0], dual_quat, width=6)
 
 
 def power(dual_quat: ArrayLike, exponent: ArrayLike) -> NDArray[np.float64]:
@@ -434,7 +428,8 @@ def power(dual_quat: ArrayLike, exponent: ArrayLike) -> NDArray[np.float64]:
     array([[ 0.,  0.,  0.,  1., -1.,  0.,  0.,  0.],
            [-1.,  0.,  0.,  0.,  0.,  0.,  0., -2.]])
     """
-    return exp(np.asarray(exponent, dtype=np.float64)[..., None] * log(dual_quat))
+    t = np.asarray(exponent, dtype=np.float64)[..., None]
+    return in_blocks(lambda Q, t: _rows.power(Q, t[0]), dual_quat, t, width=8)
 
 
 def canonical(dual_quat: ArrayLike) -> NDArray[np.float64]:
@@ -458,8 +453,7 @@ def canonical(dual_quat: ArrayLike) -> NDArray[np.float64]:
     >>> canonical([[-0.6, 0, 0, 0.8, 1, 1, 1, 1]]) + 0.0
     array([[ 0.6,  0. ,  0. , -0.8, -1. , -1. , -1. , -1. ]])
     """
-    Q = np.asarray(dual_quat, dtype=np.float64)
-    return np.where(Q[..., :1] < 0.0, -Q, Q)
+    return in_blocks(lambda Q: np.where(Q[0] < 0.0, -1.0, 1.0) * Q, dual_quat, width=8)
 
 
 def align_signs(dual_quat: ArrayLike, reference: ArrayLike) -> NDArray[np.float64]:
@@ -483,9 +477,7 @@ def align_signs(dual_quat: ArrayLike, reference: ArrayLike) -> NDArray[np.float6
     >>> align_signs([-0.6, 0, 0, 0.8, 0, 0, 0, 0], [1, 0, 0, 0, 0, 0, 0, 0]) + 0.0
     array([ 0.6,  0. ,  0. , -0.8,  0. ,  0. ,  0. ,  0. ])
     """
-    Q = np.asarray(dual_quat, dtype=np.float64)
-    R = np.asarray(reference, dtype=np.float64)
-    return np.where(np.sum(Q[..., :4] * R[..., :4], axis=-1, keepdims=True) < 0.0, -Q, Q)
+    return in_blocks(lambda Q, R: _rows.sign_towards(Q, R) * Q, dual_quat, reference, width=8)
 
 
 def continuous_signs(series: ArrayLike) -> NDArray[np.float64]:
@@ -512,12 +504,25 @@ def continuous_signs(series: ArrayLike) -> NDArray[np.float64]:
     >>> continuous_signs(series)[:, 3]
     array([0.8, 0.8, nan, 0.8])
     """
-    Q = np.array(series, dtype=np.float64)
-    known = np.flatnonzero(np.isfinite(Q).all(axis=-1))
-    if known.size > 1:
-        dots = np.sum(Q[known[1:], :4] * Q[known[:-1], :4], axis=-1)
-        Q[known[1:]] *= np.cumprod(np.where(dots < 0.0, -1.0, 1.0))[:, None]
-    return Q
+    last = np.empty((8, 0))  # the last row of the blocks before that is no gap, with its new sign
+
+    def kernel(block: NDArray[np.float64]) -> NDArray[np.float64]:
+        nonlocal last
+        known = np.isfinite(block).all(axis=0)
+        whole = bool(known.all())
+        Q = np.concatenate([last, block if whole else block[:, known]], axis=1)
+        if Q.shape[1] == 0:
+            return block
+        Q[:, 1:] *= np.cumprod(_rows.sign_towards(Q[:, 1:], Q[:, :-1]))
+        found = Q[:, last.shape[1] :]
+        last = Q[:, -1:]
+        if whole:
+            return found
+        signed = block.copy()
+        signed[:, known] = found
+        return signed
+
+    return in_blocks(kernel, series, width=8)
 
 
 def transform_points(dual_quat: ArrayLike, points: ArrayLike) -> NDArray[np.float64]:
@@ -547,8 +552,11 @@ def transform_points(dual_quat: ArrayLike, points: ArrayLike) -> NDArray[np.floa
     array([[2., 3., 1.],
            [0., 3., 1.]])
     """
-    quat, position = pose_from_dual_quat(dual_quat)
-    return quaternion.rotate(quat, points) + position
+    return in_blocks(_moved_points, dual_quat, points, width=3)
+
+
+def _moved_points(Q: _rows.Rows, points: _rows.Rows) -> list[NDArray[np.float64]]:
+    return [x + d for x, d in zip(_rows.rotated(Q[:4], points), _rows.position(Q), strict=True)]
 
 
 def transform_lines(dual_quat: ArrayLike, lines: ArrayLike) -> NDArray[np.float64]:
@@ -574,8 +582,9 @@ def transform_lines(dual_quat: ArrayLike, lines: ArrayLike) -> NDArray[np.float6
     >>> transform_lines(dual_quat_from_pose([1, 0, 0, 0], [2, 0, 0]), [0, 0, 1, 0, 0, 0])
     array([ 0.,  0.,  1.,  0., -2.,  0.])
     """
-    quat, position = pose_from_dual_quat(dual_quat)
-    line = np.asarray(lines, dtype=np.float64)
-    direction = quaternion.rotate(quat, line[..., :3])
-    moment = quaternion.rotate(quat, line[..., 3:]) + np.cross(position, direction)
-    return np.concatenate([direction, moment], axis=-1)
+    return in_blocks(_moved_lines, dual_quat, lines, width=6)
+
+
+def _moved_lines(Q: _rows.Rows, lines: _rows.Rows) -> list[NDArray[np.float64]]:
+    direction, moment = _rows.rotated(Q[:4], lines[:3]), _rows.rotated(Q[:4], lines[3:])
+    return [*direction, *(m + u for m, u in zip(moment, _rows.cross(_rows.position(Q), direction), strict=True))]

@@ -1,4 +1,4 @@
-"""Interpolation and blending of poses: ScLERP, sDLB, DLB.
+"""Interpolation between two poses: ScLERP, sDLB, and NLERP of rotations; chains of poses.
 
 `Q` and `-Q` are one pose, but the blends of `Q1` with the one and with the other go round different ways. By default
 it is the shorter way (``way="shortest"``); ``"longest"`` is the other one. A caller that knows which of the two signs
@@ -7,23 +7,23 @@ belongs to the motion, as in a measured series made continuous, says ``"as given
 
 from __future__ import annotations
 
-from typing import NamedTuple
+import math
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from elbowscrew.geometry import dual_quaternion, quaternion
-from elbowscrew.geometry._small_angle import VANISHING_NORM, length
-from elbowscrew.geometry._ways import WayRound, check_way
+from elbowscrew.geometry import _rows, dual_quaternion
+from elbowscrew.geometry._blocks import in_blocks, is_single
+from elbowscrew.geometry._small_angle import (
+    NEGLIGIBLE_ANGLE,
+    VANISHING_NORM,
+    cosine_and_sine,
+    divide_rows,
+    row_length,
+)
+from elbowscrew.geometry._ways import WayRound, check_way, choose_signs
 
-
-def _choose_signs(quats: NDArray[np.float64], reference: NDArray[np.float64], way: WayRound) -> NDArray[np.float64]:
-    """Quaternions or dual quaternions (..., k) with the sign that goes that way round from the reference."""
-    check_way(way)
-    if way == "as given":
-        return quats
-    near = np.sum(quats[..., :4] * reference[..., :4], axis=-1, keepdims=True) >= 0.0
-    return np.where(near == (way == "shortest"), quats, -quats)
+Float = NDArray[np.float64]
 
 
 def sclerp(start: ArrayLike, end: ArrayLike, fraction: ArrayLike, *, way: WayRound = "shortest") -> NDArray[np.float64]:
@@ -61,10 +61,54 @@ def sclerp(start: ArrayLike, end: ArrayLike, fraction: ArrayLike, *, way: WayRou
     >>> pose_from_dual_quat(sclerp(start, end, 0.2))[1].round(6) + 0.0
     array([0., 0., 2.])
     """
-    first = np.asarray(start, dtype=np.float64)
-    last = _choose_signs(np.asarray(end, dtype=np.float64), first, way)
-    step = dual_quaternion.multiply(dual_quaternion.conjugate(first), last)
-    return dual_quaternion.multiply(first, dual_quaternion.power(step, fraction))
+    check_way(way)
+    first, last = np.asarray(start, dtype=np.float64), np.asarray(end, dtype=np.float64)
+    t = np.asarray(fraction, dtype=np.float64)[..., None]
+    if is_single(first) and is_single(last):
+        half_angle, path = _screw_path(first.ravel(), last.ravel(), way)
+        shape = np.broadcast_shapes(first.shape, last.shape, (*t.shape[:-1], 8))
+        return in_blocks(lambda t: _along(path, half_angle, t[0]), t, width=8).reshape(shape)
+
+    def kernel(first: _rows.Rows, last: _rows.Rows, t: _rows.Rows) -> list[Float]:
+        step = _rows.dual_product(_rows.conjugate(first), choose_signs(last, first, way))
+        return _rows.dual_product(first, _rows.power(step, t[0]))
+
+    return in_blocks(kernel, first, last, t, width=8)
+
+
+def _screw_path(start: Float, end: Float, way: WayRound) -> tuple[float, Float]:
+    """Half the angle between two poses, and the map from `_along`'s base to the poses on the screw between them."""
+    step = dual_quaternion.multiply(dual_quaternion.conjugate(start), end)
+    if way != "as given" and (step[0] < 0.0) == (way == "shortest"):
+        step = -step
+    logarithm = dual_quaternion.log(step).tolist()
+    a, b = logarithm[:3], logarithm[3:]
+    half = math.hypot(*a)
+    h = [value / half for value in a] if half > 0.0 else a
+    slide = sum(one * other for one, other in zip(h, b, strict=True))
+    with_t = [slide * value for value in h]
+    if half < NEGLIGIBLE_ANGLE:  # there the sine is the angle, and what goes across the axis goes with t, too
+        with_t, with_sine = b, [0.0, 0.0, 0.0]
+    else:
+        with_sine = [(one - other) / half for one, other in zip(b, with_t, strict=True)]
+    base = [
+        [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+        [0.0, *h, 0.0, *with_sine],
+        [0.0, 0.0, 0.0, 0.0, -slide, 0.0, 0.0, 0.0],
+        [0.0, 0.0, 0.0, 0.0, 0.0, *with_t],
+    ]
+    return half, dual_quaternion.multiply(start, base).T
+
+
+def _along(path: Float, half_angle: float, t: Float) -> Float:
+    """Poses at t, linear in cos, sin, t sin and t cos of t theta/2."""
+    cosine, sine = cosine_and_sine(half_angle * t)
+    base = np.empty((4, t.size))
+    base[0], base[1] = cosine, sine
+    np.multiply(t, sine, out=base[2])
+    np.multiply(t, cosine, out=base[3])
+    moved: Float = path @ base
+    return moved
 
 
 def sdlb(start: ArrayLike, end: ArrayLike, fraction: ArrayLike, *, way: WayRound = "shortest") -> NDArray[np.float64]:
@@ -102,182 +146,13 @@ def sdlb(start: ArrayLike, end: ArrayLike, fraction: ArrayLike, *, way: WayRound
     >>> dual_quaternion.pose_from_dual_quat(sdlb(start, end, 0.2))[1].round(6) + 0.0
     array([0.    , 0.    , 1.9251])
     """
-    t = np.asarray(fraction, dtype=np.float64)
-    poses = np.stack(np.broadcast_arrays(start, end), axis=-2)
-    return dlb(poses, np.stack([1.0 - t, t], axis=-1), way=way)
+    check_way(way)
 
+    def kernel(first: _rows.Rows, last: _rows.Rows, t: _rows.Rows) -> list[Float]:
+        blend = _rows.weighted([1.0 - t[0], t[0]], [first, choose_signs(last, first, way)])
+        return _rows.normalized(blend, VANISHING_NORM)
 
-def lagrange_weights(fraction: ArrayLike, knots: ArrayLike) -> NDArray[np.float64]:
-    """Lagrange polynomials on the knots: weight j is 1 at knot j, 0 at the others, and the weights add up to 1.
-
-    Parameters
-    ----------
-    fraction : array_like, shape (...)
-        Where to evaluate.
-    knots : array_like, shape (n,)
-        Different from each other.
-
-    Returns
-    -------
-    ndarray, shape (..., n)
-
-    Raises
-    ------
-    ValueError
-        If two knots are the same.
-
-    References
-    ----------
-    P 34.
-
-    Examples
-    --------
-    >>> lagrange_weights(0.25, [0.0, 0.5, 1.0])
-    array([ 0.375,  0.75 , -0.125])
-    """
-    t = np.asarray(fraction, dtype=np.float64)[..., None]
-    knot = np.asarray(knots, dtype=np.float64)
-    if np.unique(knot).size != knot.size:
-        msg = f"knots must differ from each other, found {knot.tolist()}"
-        raise ValueError(msg)
-    weights = np.ones(np.broadcast_shapes(t.shape, knot.shape))
-    for j in range(knot.size):
-        for k in range(knot.size):
-            if k != j:
-                weights[..., j] *= (t[..., 0] - knot[k]) / (knot[j] - knot[k])
-    return weights
-
-
-def dlb(poses: ArrayLike, weights: ArrayLike, *, way: WayRound = "shortest") -> NDArray[np.float64]:
-    """Blend poses: weighted sum, normalized by the dual norm.
-
-    Parameters
-    ----------
-    poses : array_like, shape (..., n, 8)
-        Unit dual quaternions.
-    weights : array_like, shape (..., n)
-        One for each pose, adding up to 1; they may be negative (`lagrange_weights`).
-    way : {"shortest", "longest", "as given"}
-        Signs of all poses nearer the first one's, farther from it, or as they stand.
-
-    Returns
-    -------
-    ndarray, shape (..., 8)
-        NaN where the weighted sum vanishes, so that its direction would be noise.
-
-    Raises
-    ------
-    ValueError
-        If `way` is none of the three.
-
-    References
-    ----------
-    P 33, algorithm 2.
-
-    Examples
-    --------
-    A number of P table 1.
-
-    >>> from elbowscrew.geometry import dual_quat_from_screw
-    >>> poses = dual_quat_from_screw([0, np.pi / 8, np.pi / 4], [0, 5, 10], [0, 0, 1], [0, 0, 0])
-    >>> blend = dlb(poses, lagrange_weights(0.2, [0, 0.5, 1]))
-    >>> dual_quaternion.pose_from_dual_quat(blend)[1].round(6) + 0.0
-    array([0.     , 0.     , 2.03664])
-    """
-    Q = _signs_from_first(poses, way)
-    w = np.asarray(weights, dtype=np.float64)
-    blend = (w[..., None, :] @ Q)[..., 0, :]
-    vanishing = length(blend[..., :4]) < VANISHING_NORM
-    return np.where(vanishing[..., None], np.nan, dual_quaternion.normalize(blend))
-
-
-def _signs_from_first(poses: ArrayLike, way: WayRound) -> NDArray[np.float64]:
-    Q = np.asarray(poses, dtype=np.float64)
-    chosen = _choose_signs(Q, Q[..., :1, :], way)
-    return np.concatenate([Q[..., :1, :], chosen[..., 1:, :]], axis=-2)
-
-
-class IterativeBlend(NamedTuple):
-    """Result of `dib`.
-
-    Attributes
-    ----------
-    dual_quat : ndarray, shape (..., 8)
-        The blended poses, unit dual quaternions.
-    iterations : int
-        Steps taken, for all poses together.
-    residual : ndarray, shape (...)
-        Length of the last step: of its rotation (rad) and of its translation relative to the size of the poses.
-    """
-
-    dual_quat: NDArray[np.float64]
-    iterations: int
-    residual: NDArray[np.float64]
-
-
-def dib(
-    poses: ArrayLike,
-    weights: ArrayLike,
-    *,
-    tolerance: float = 1e-12,
-    max_iterations: int = 100,
-    way: WayRound = "shortest",
-) -> IterativeBlend:
-    """Dual quaternion iterative blending: from DLB on, ``B <- B exp(sum_i w_i log(B* Q_i))`` until the step is small.
-
-    The result is the weighted mean on the group itself: it does not depend on the frame, and between two poses it is
-    ScLERP.
-
-    Parameters
-    ----------
-    poses : array_like, shape (..., n, 8)
-        Unit dual quaternions.
-    weights : array_like, shape (..., n)
-        One for each pose, adding up to 1; as in `dlb`.
-    tolerance : float
-        Largest step at which to stop.
-    max_iterations : int
-        Stop here in any case; look at the residual then.
-    way : {"shortest", "longest", "as given"}
-        As in `dlb`.
-
-    Returns
-    -------
-    IterativeBlend
-        NaN where the first blend vanishes.
-
-    Raises
-    ------
-    ValueError
-        If `way` is none of the three.
-
-    References
-    ----------
-    P algorithm 3.
-
-    Examples
-    --------
-    A number of P table 1.
-
-    >>> from elbowscrew.geometry import dual_quat_from_screw
-    >>> poses = dual_quat_from_screw([0, np.pi / 8, np.pi / 4], [0, 5, 10], [0, 0, 1], [0, 0, 0])
-    >>> blend = dib(poses, lagrange_weights(0.2, [0, 0.5, 1]))
-    >>> dual_quaternion.pose_from_dual_quat(blend.dual_quat)[1].round(6) + 0.0
-    array([0., 0., 2.])
-    """
-    Q = _signs_from_first(poses, way)
-    w = np.asarray(weights, dtype=np.float64)
-    blend = dlb(Q, w, way="as given")
-    scale = 1.0 + np.max(length(dual_quaternion.pose_from_dual_quat(Q)[1]), axis=-1, initial=0.0)
-    residual = np.full(blend.shape[:-1], np.inf)
-    done = 0
-    while done < max_iterations and np.any(residual > tolerance):
-        steps = dual_quaternion.multiply(dual_quaternion.conjugate(blend)[..., None, :], Q)
-        step = (w[..., None, :] @ dual_quaternion.log(steps))[..., 0, :]
-        blend = dual_quaternion.normalize(dual_quaternion.multiply(blend, dual_quaternion.exp(step)))
-        residual = np.maximum(length(step[..., :3]), length(step[..., 3:]) / scale)
-        done += 1
-    return IterativeBlend(blend, done, residual)
+    return in_blocks(kernel, start, end, np.asarray(fraction, dtype=np.float64)[..., None], width=8)
 
 
 def nlerp(start: ArrayLike, end: ArrayLike, fraction: ArrayLike, *, way: WayRound = "shortest") -> NDArray[np.float64]:
@@ -311,12 +186,13 @@ def nlerp(start: ArrayLike, end: ArrayLike, fraction: ArrayLike, *, way: WayRoun
     >>> nlerp([1, 0, 0, 0], [0, 0, 0, 1], 0.5).round(6)
     array([0.707107, 0.      , 0.      , 0.707107])
     """
-    first, last = np.asarray(start, dtype=np.float64), np.asarray(end, dtype=np.float64)
-    last = _choose_signs(last, first, way)
-    t = np.asarray(fraction, dtype=np.float64)[..., None]
-    blend = (1.0 - t) * first + t * last
-    vanishing = length(blend)[..., None] < VANISHING_NORM
-    return np.where(vanishing, np.nan, quaternion.normalize(blend))
+    check_way(way)
+
+    def kernel(first: _rows.Rows, last: _rows.Rows, t: _rows.Rows) -> list[Float]:
+        blend = _rows.weighted([1.0 - t[0], t[0]], [first, choose_signs(last, first, way)])
+        return divide_rows(blend, row_length(blend), VANISHING_NORM)
+
+    return in_blocks(kernel, start, end, np.asarray(fraction, dtype=np.float64)[..., None], width=4)
 
 
 def chain(poses: ArrayLike) -> NDArray[np.float64]:

@@ -8,7 +8,9 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from elbowscrew.geometry._small_angle import divide, length, sinc
+from elbowscrew.geometry import _rows
+from elbowscrew.geometry._blocks import in_blocks
+from elbowscrew.geometry._small_angle import cosine_and_sine, divide_rows, length, ratio_of_equals, row_length
 
 EULER_ORDERS: Final = tuple("".join(order) for order in permutations("XYZ"))
 
@@ -36,16 +38,7 @@ def multiply(left: ArrayLike, right: ArrayLike) -> NDArray[np.float64]:
     >>> multiply([0, 1, 0, 0], [0, 0, 1, 0])
     array([0., 0., 0., 1.])
     """
-    a = np.asarray(left, dtype=np.float64)
-    b = np.asarray(right, dtype=np.float64)
-    aw, ax, ay, az = (a[..., k] for k in range(4))
-    bw, bx, by, bz = (b[..., k] for k in range(4))
-    product = np.empty((*np.broadcast_shapes(a.shape[:-1], b.shape[:-1]), 4))
-    product[..., 0] = aw * bw - ax * bx - ay * by - az * bz
-    product[..., 1] = aw * bx + ax * bw + ay * bz - az * by
-    product[..., 2] = aw * by - ax * bz + ay * bw + az * bx
-    product[..., 3] = aw * bz + ax * by - ay * bx + az * bw
-    return product
+    return in_blocks(_rows.product, left, right, width=4)
 
 
 def conjugate(quat: ArrayLike) -> NDArray[np.float64]:
@@ -119,8 +112,7 @@ def normalize(quat: ArrayLike) -> NDArray[np.float64]:
     >>> normalize([3, 0, 0, 4])
     array([0.6, 0. , 0. , 0.8])
     """
-    q = np.asarray(quat, dtype=np.float64)
-    return divide(q, norm(q)[..., None])
+    return in_blocks(lambda q: divide_rows(q, row_length(q)), quat, width=4)
 
 
 def rotate(quat: ArrayLike, vector: ArrayLike) -> NDArray[np.float64]:
@@ -146,11 +138,7 @@ def rotate(quat: ArrayLike, vector: ArrayLike) -> NDArray[np.float64]:
     >>> rotate([0.5**0.5, 0, 0, 0.5**0.5], [1, 0, 0]).round(12) + 0.0
     array([0., 1., 0.])
     """
-    q = np.asarray(quat, dtype=np.float64)
-    v = np.asarray(vector, dtype=np.float64)
-    twice_cross = 2.0 * np.cross(q[..., 1:], v)
-    rotated: NDArray[np.float64] = v + q[..., :1] * twice_cross + np.cross(q[..., 1:], twice_cross)
-    return rotated
+    return in_blocks(_rows.rotated, quat, vector, width=3)
 
 
 def rotation_matrix_from_quat(quat: ArrayLike) -> NDArray[np.float64]:
@@ -176,19 +164,7 @@ def rotation_matrix_from_quat(quat: ArrayLike) -> NDArray[np.float64]:
            [1., 0., 0.],
            [0., 1., 0.]])
     """
-    q = np.asarray(quat, dtype=np.float64)
-    w, x, y, z = (q[..., k] for k in range(4))
-    matrix = np.empty((*q.shape[:-1], 3, 3))
-    matrix[..., 0, 0] = w * w + x * x - y * y - z * z
-    matrix[..., 0, 1] = 2.0 * (x * y - w * z)
-    matrix[..., 0, 2] = 2.0 * (x * z + w * y)
-    matrix[..., 1, 0] = 2.0 * (x * y + w * z)
-    matrix[..., 1, 1] = w * w - x * x + y * y - z * z
-    matrix[..., 1, 2] = 2.0 * (y * z - w * x)
-    matrix[..., 2, 0] = 2.0 * (x * z - w * y)
-    matrix[..., 2, 1] = 2.0 * (y * z + w * x)
-    matrix[..., 2, 2] = w * w - x * x - y * y + z * z
-    return matrix
+    return in_blocks(_rows.rotation_matrix, quat, width=9).reshape(*np.shape(quat)[:-1], 3, 3)
 
 
 def quat_from_rotation_matrix(matrix: ArrayLike) -> NDArray[np.float64]:
@@ -256,9 +232,15 @@ def quat_from_rotation_vector(vector: ArrayLike) -> NDArray[np.float64]:
     >>> quat_from_rotation_vector([0.0, 0.0, np.pi]).round(12)
     array([0., 0., 0., 1.])
     """
-    half = 0.5 * np.asarray(vector, dtype=np.float64)
-    half_angle = length(half)
-    return np.concatenate([np.cos(half_angle)[..., None], sinc(half_angle)[..., None] * half], axis=-1)
+    return in_blocks(_from_rotation_vector, vector, width=4)
+
+
+def _from_rotation_vector(vector: _rows.Rows) -> list[NDArray[np.float64]]:
+    half = [0.5 * row for row in vector]
+    half_angle = row_length(half)
+    cosine, sine = cosine_and_sine(half_angle)
+    ratio = ratio_of_equals(sine, half_angle)
+    return [cosine, *(ratio * row for row in half)]
 
 
 def quat_from_euler_angles(angles: ArrayLike, order: str) -> NDArray[np.float64]:

@@ -7,8 +7,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from elbowscrew.geometry import dual_number, dual_quaternion, dual_vector, quaternion
-from elbowscrew.geometry._small_angle import divide, length
+from elbowscrew.geometry import _rows, dual_number, dual_quaternion, dual_vector, quaternion
+from elbowscrew.geometry._blocks import in_blocks
+from elbowscrew.geometry._small_angle import cosine_and_sine, divide, divide_rows, length, row_length
 from elbowscrew.geometry.dual_matrix import DualMatrix
 from elbowscrew.geometry.dual_number import DualNumber
 
@@ -68,16 +69,25 @@ def screw_from_dual_quat(dual_quat: ArrayLike) -> Screw:
     >>> round(float(screw.angle), 6), round(float(screw.slide), 6), screw.point.round(6) + 0.0
     (1.570796, 1.0, array([0., 2., 0.]))
     """
-    Q = np.asarray(dual_quat, dtype=np.float64)
-    w, v, w0, v0 = Q[..., 0], Q[..., 1:4], Q[..., 4], Q[..., 5:]
-    sine = length(v)
-    turning = sine > 0.0
-    position = 2.0 * quaternion.multiply(Q[..., 4:], quaternion.conjugate(Q[..., :4]))[..., 1:]
-    distance = length(position)
-    direction = np.where(turning[..., None], divide(v, sine[..., None]), divide(position, distance[..., None]))
-    slide = np.where(turning, divide(-2.0 * w0, sine), distance)
-    moment = divide(v0 - direction * (0.5 * slide * w)[..., None], sine[..., None])
-    return Screw(2.0 * np.arctan2(sine, w), slide, direction, moment)
+    screw = in_blocks(_screw, dual_quat, width=8)
+    return Screw(screw[..., 0], screw[..., 1], screw[..., 2:5], screw[..., 5:])
+
+
+def _screw(Q: NDArray[np.float64]) -> list[NDArray[np.float64]]:
+    w, v, w0, v0 = Q[0], Q[1:4], Q[4], Q[5:]
+    sine = row_length(v)
+    *direction, half_slide = divide_rows([*v, -w0], sine)
+    across = half_slide * w
+    moment = divide_rows([y - across * x for x, y in zip(direction, v0, strict=True)], sine)
+    still = sine == 0.0
+    half_angle = np.arctan2(sine, w)
+    screw = [half_angle + half_angle, half_slide + half_slide, *direction, *moment]
+    if still.any():
+        position = _rows.position(Q[:, still])
+        distance = row_length(position)
+        for row, found in zip(screw[1:5], (distance, *divide_rows(position, distance)), strict=True):
+            row[still] = found
+    return screw
 
 
 def dual_quat_from_screw(
@@ -108,14 +118,22 @@ def dual_quat_from_screw(
     array([ 1.4142,  0.    ,  0.    ,  1.4142, -0.7071,  2.8284,  0.    ,
             0.7071])
     """
-    half = 0.5 * np.asarray(angle, dtype=np.float64)[..., None]
-    half_slide = 0.5 * np.asarray(slide, dtype=np.float64)[..., None]
-    h = np.asarray(direction, dtype=np.float64)
-    m = np.asarray(moment, dtype=np.float64)
-    cosine, sine = np.cos(half), np.sin(half)
-    parts = [cosine, sine * h, -half_slide * sine, sine * m + half_slide * cosine * h]
-    shape = np.broadcast_shapes(*(part.shape[:-1] for part in parts))
-    return np.concatenate([np.broadcast_to(part, (*shape, part.shape[-1])) for part in parts], axis=-1)
+    scalars = (np.asarray(value, dtype=np.float64)[..., None] for value in (angle, slide))
+    return in_blocks(_from_screw, *scalars, direction, moment, width=8)
+
+
+def _from_screw(
+    angle: _rows.Rows, slide: _rows.Rows, direction: _rows.Rows, moment: _rows.Rows
+) -> list[NDArray[np.float64]]:
+    cosine, sine = cosine_and_sine(0.5 * angle[0])
+    half_slide = 0.5 * slide[0]
+    along = half_slide * cosine
+    return [
+        cosine,
+        *(sine * x for x in direction),
+        -half_slide * sine,
+        *(sine * y + along * x for x, y in zip(direction, moment, strict=True)),
+    ]
 
 
 def line_through(point: ArrayLike, direction: ArrayLike) -> NDArray[np.float64]:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import csv
 import re
 from collections.abc import Iterator, Sequence
-from itertools import islice
 from typing import Final
 
 import numpy as np
@@ -14,8 +13,6 @@ from numpy.typing import NDArray
 from elbowscrew.errors import RecordingError
 from elbowscrew.io.source import TextSource
 
-_BLOCK_LINES: Final = 4096
-_BLOCK_CHARACTERS: Final = 1 << 22
 _NUMBER: Final = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
 
 
@@ -41,7 +38,7 @@ def parse_number(text: str) -> float:
 def read_blocks(
     source: TextSource, first_line: int, columns: Sequence[int], width: int, *, exact: bool = False
 ) -> Iterator[NDArray[np.float64]]:
-    """Read some columns of the lines from `first_line` on, some thousand lines at a time.
+    """Read some columns of the lines from `first_line` on, many lines at a time.
 
     Parameters
     ----------
@@ -65,23 +62,12 @@ def read_blocks(
     RecordingError
         For a cell that is neither blank nor a number, or a line that has been cut; with line and column.
     """
-    lines = islice(source.lines(), first_line, None)
     number = first_line + 1
-    while block := _take(lines):
+    for block in source.blocks(first_line):
         width, values = _parse_block(source, block, number, columns, width, exact=exact)
         exact = exact or len(values) > 0
         yield values
         number += len(block)
-
-
-def _take(lines: Iterator[str]) -> list[str]:
-    block, characters = [], 0
-    for line in lines:
-        block.append(line)
-        characters += len(line)
-        if len(block) == _BLOCK_LINES or characters > _BLOCK_CHARACTERS:
-            break
-    return block
 
 
 def _parse_block(

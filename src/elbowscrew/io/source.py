@@ -7,12 +7,13 @@ import hashlib
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final
+from typing import Final, TextIO
 
 from elbowscrew.errors import RecordingError
 
 _HEAD_BYTES: Final = 65536
 _MAX_LINE: Final = 1 << 24
+_BLOCK_CHARACTERS: Final = 1 << 20
 csv.field_size_limit(_MAX_LINE)
 
 # Signatures of files that are taken for a CSV export by mistake.
@@ -70,7 +71,7 @@ class TextSource:
         """
         number = 0
         try:
-            with self.path.open(encoding="utf-8-sig", newline=None) as stream:
+            with self._open() as stream:
                 while line := stream.readline(_MAX_LINE):
                     number += 1
                     if len(line) >= _MAX_LINE:
@@ -86,6 +87,36 @@ class TextSource:
         except OSError as error:
             msg = f"{self.path}: cannot be read: {error.strerror}"
             raise RecordingError(msg) from error
+
+    def blocks(self, first_line: int) -> Iterator[list[str]]:
+        """Yield the lines from `first_line` on, counted from 0, many at a time: the same as `lines`, but faster.
+
+        Raises
+        ------
+        RecordingError
+            As `lines`.
+        """
+        try:
+            with self._open() as stream:
+                for _ in range(first_line):
+                    stream.readline(_MAX_LINE)
+                while text := stream.read(_BLOCK_CHARACTERS):
+                    text += stream.readline(_MAX_LINE)
+                    block = text.removesuffix("\n").split("\n")
+                    if len(text) >= _MAX_LINE and max(map(len, block)) >= _MAX_LINE:
+                        break
+                    yield block
+                else:
+                    return
+        except (UnicodeDecodeError, OSError):
+            pass
+        for _ in self.lines():  # which tells what is wrong, and where
+            pass
+        msg = f"{self.path}: the file changes while it is read; wait until it is written"
+        raise RecordingError(msg)
+
+    def _open(self) -> TextIO:
+        return self.path.open(encoding="utf-8-sig", newline=None)
 
 
 def first_bytes(path: Path, count: int) -> bytes:

@@ -16,7 +16,7 @@ from elbowscrew.motion.joint_axis import estimate_joint_axis, forearm_line
 from elbowscrew.motion.mean_axis import mean_axis_of
 from elbowscrew.motion.measurement import Measurement
 from elbowscrew.motion.pose_noise import STILL_STRETCH
-from elbowscrew.motion.relative import IDENTITY
+from elbowscrew.motion.relative import IDENTITY, expressed
 from elbowscrew.motion.smoothing import Smoothing
 from elbowscrew.settings import Settings
 
@@ -71,11 +71,9 @@ def instantaneous_of(measured: Measurement, mean: MeanAxis, settings: Settings) 
     D, smoothing = measured.displacement, measured.smoothing
     if smoothing.cutoff_hz is None:
         smoothing = twist_smoothing(measured, settings)
-        arm, forearm = smoothing.apply(measured.arm, measured.forearm)
-        arm_pose = IDENTITY if arm is None else arm.dual_quat_lab_body
-        D = multiply(conjugate(measured.joint.reference), multiply(conjugate(arm_pose), forearm.dual_quat_lab_body))
+        D = smoothed_displacement(measured, smoothing)
     return instantaneous_motion(
-        multiply(multiply(measured.change, D), conjugate(measured.change)),
+        expressed(D, measured.joint, settings.express_in),
         measured.joint.measured,
         measured.screw.frame,
         measured.screw.time_s,
@@ -97,6 +95,13 @@ def twist_smoothing(measured: Measurement, settings: Settings) -> Smoothing:
         found = _TWIST_HZ
     low, high = (share * smoothing.rate_hz for share in _POSSIBLE_SHARES)
     return smoothing._replace(cutoff_hz=float(np.clip(min(found, _TWIST_HZ), low, high)))
+
+
+def smoothed_displacement(measured: Measurement, smoothing: Smoothing) -> Float:
+    """Displacements (N, 8) since the reference, of the bodies as a filter leaves them."""
+    arm, forearm = smoothing.apply(measured.arm, measured.forearm)
+    arm_pose = IDENTITY if arm is None else arm.dual_quat_lab_body
+    return multiply(conjugate(measured.joint.reference), multiply(conjugate(arm_pose), forearm.dual_quat_lab_body))
 
 
 def _steps(measured: Measurement, mean: MeanAxis, settings: Settings) -> HelicalSteps | None:

@@ -7,8 +7,10 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowscrew.geometry._small_angle import divide, length
-from elbowscrew.geometry.dual_quaternion import conjugate, multiply, pose_from_dual_quat
+from elbowscrew.geometry import _rows
+from elbowscrew.geometry._blocks import in_blocks
+from elbowscrew.geometry._small_angle import divide, length, row_length
+from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat
 from elbowscrew.geometry.quaternion import rotation_matrix_from_quat
 from elbowscrew.model import BodyPoints
 
@@ -20,13 +22,21 @@ DEFAULT_RADIUS: Final = 0.05
 
 def angle_between(pose_a: Float, pose_b: Float) -> Float:
     """Angle of the rotation from one orientation to the other, radians in [0, pi], shape (...)."""
-    step = multiply(conjugate(pose_a), pose_b)
-    return 2.0 * np.arctan2(length(step[..., 1:4]), np.abs(step[..., 0]))
+    return in_blocks(_angle_between, pose_a, pose_b, width=1)[..., 0]
+
+
+def _angle_between(a: _rows.Rows, b: _rows.Rows) -> list[Float]:
+    step = _rows.product(_rows.conjugate(a[:4]), b[:4])
+    return [2.0 * np.arctan2(row_length(step[1:]), np.abs(step[0]))]
 
 
 def origin_distance(pose_a: Float, pose_b: Float) -> Float:
     """Distance between the body's origins in the two poses, shape (...)."""
-    return length(pose_from_dual_quat(pose_a)[1] - pose_from_dual_quat(pose_b)[1])
+    return in_blocks(lambda a, b: [row_length(_shift(a, b))], pose_a, pose_b, width=1)[..., 0]
+
+
+def _shift(a: _rows.Rows, b: _rows.Rows) -> list[Float]:
+    return [one - other for one, other in zip(_rows.position(a), _rows.position(b), strict=True)]
 
 
 def direction_between(line_a: Float, line_b: Float) -> Float:
@@ -61,7 +71,21 @@ def rms_displacement(pose_a: Float, pose_b: Float, points: BodyPoints) -> Float:
     ndarray, shape (...)
         Exactly the RMS over the points. It is a metric, and does not change with the laboratory frame.
     """
-    return length(point_coordinates(pose_a, points) - point_coordinates(pose_b, points))
+    # Its coordinates' distance, without the coordinates.
+    c, L = points.centroid.tolist(), spokes(points).T.tolist()
+
+    def kernel(a: _rows.Rows, b: _rows.Rows) -> list[Float]:
+        rotations = zip(_rows.rotation_matrix(a[:4]), _rows.rotation_matrix(b[:4]), strict=True)
+        dR = [one - other for one, other in rotations]
+        square = 0.0
+        for k, shift in enumerate(_shift(a, b)):
+            x, y, z = dR[3 * k : 3 * k + 3]
+            square = square + (x * c[0] + y * c[1] + z * c[2] + shift) ** 2
+            for spoke in L:
+                square += (x * spoke[0] + y * spoke[1] + z * spoke[2]) ** 2
+        return [np.sqrt(square)]
+
+    return in_blocks(kernel, pose_a, pose_b, width=1)[..., 0]
 
 
 def point_coordinates(pose: Float, points: BodyPoints) -> Float:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -12,6 +14,8 @@ from elbowscrew.model import InstantaneousMotion
 from elbowscrew.motion.smoothing import inside
 
 Float = NDArray[np.float64]
+
+_BLOCK: Final = 16384
 
 
 def instantaneous_motion(
@@ -57,9 +61,10 @@ def instantaneous_motion(
     twist = np.full((count, 6), np.nan)
     usable = np.isfinite(displacement[:, 0]) & measured
     inner = np.flatnonzero(inside(usable, elapsed, rate_hz, margin))
-    span = elapsed[inner + 1] - elapsed[inner - 1]
-    step = dq.multiply(displacement[inner + 1], dq.conjugate(displacement[inner - 1]))
-    twist[inner] = 2.0 * dq.log(dq.canonical(step)) / span[:, None]
+    for rows in np.array_split(inner, -(-inner.size // _BLOCK) or 1):
+        span = elapsed[rows + 1] - elapsed[rows - 1]
+        step = dq.multiply(displacement[rows + 1], dq.conjugate(displacement[rows - 1]))
+        twist[rows] = 2.0 * dq.log(dq.canonical(step)) / span[:, None]
     screw = instantaneous_screw(twist)
     turned = np.where(np.nan_to_num(screw.line[:, :3]) @ sense < 0.0, -1.0, 1.0)
     gated = ~(screw.rate >= min_rate)

@@ -8,6 +8,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowscrew.errors import SettingError
 from elbowscrew.model import BodyPoints, Selection
 from elbowscrew.motion.segment_errors import BASES, PoseTrack, displacement_along, squares_along
 
@@ -21,6 +22,8 @@ _BLOCK: Final = 64
 # Where along a segment it is probed before all of it is: most segments that fail do so in the middle.
 _PROBES: Final = (0.5, 0.25, 0.75, 0.125, 0.375, 0.625, 0.875)
 _ROUND_OFF: Final = 1e-9
+# To this (m) the sums of squares over all pairs are exact.
+_NANOMETERS: Final = 2e-8
 # Frames among which the smaller sets of a long recording are looked for.
 _THINNED: Final = 400
 
@@ -46,7 +49,8 @@ def select_keyframes(
     pose : ndarray, shape (N, 8)
         Sign-continuous unit dual quaternions, all known. The first and the last are keyframes in any case.
     parameter : ndarray, shape (N,)
-        Not decreasing: between two keyframes the model is where the parameter is between theirs.
+        Not decreasing: between two keyframes the model is where the parameter is between theirs. Where it stands still
+        the model rests, and there is one keyframe at most.
     points : BodyPoints
         What the displacement is averaged over.
     tolerance : float
@@ -60,6 +64,11 @@ def select_keyframes(
     -------
     Selection
         Rows of `pose`.
+
+    Raises
+    ------
+    SettingError
+        If the motion does not rest where the parameter does, so that no set stays within the tolerance.
 
     References
     ----------
@@ -78,6 +87,8 @@ def select_keyframes(
     track = _Track(PoseTrack.of(pose, points), parameter, points, method, stops)
     complete = len(pose) <= MOST_FRAMES_COMPLETE
     found = _best_of_each_size(track, tolerance) if complete else _thinned_and_fewest(track, tolerance)
+    if not found or _errors(track, found[-1]).max() > tolerance * (1.0 + _ROUND_OFF) + _NANOMETERS:
+        raise _no_set(tolerance)
     errors = [_errors(track, row) for row in found]
     return Selection(
         row=found[-1],
@@ -124,6 +135,7 @@ def _errors(track: _Track, keyframes: Index) -> Float:
 
 
 def _best_of_each_size(track: _Track, tolerance: float) -> list[Index]:
+    """Best sets from the smallest on, until one is within the tolerance; of some frames alone none may be."""
     largest, total = _all_pairs(track)
     count = track.parameter.size
     reached = [largest[0]]  # least largest error of a way to each row in so many segments
@@ -158,6 +170,8 @@ def _all_pairs(track: _Track) -> tuple[Float, Float]:
             square[rows[:, None] >= ends] = 0.0
             largest[first, ends] = np.sqrt(square.max(axis=0))
             total[first, ends] = square.sum(axis=0)
+    stands = track.parameter[None, :] <= track.parameter[:, None]
+    largest[stands], total[stands] = np.inf, np.inf
     return largest, total
 
 
@@ -205,12 +219,15 @@ def _fewest(track: _Track, tolerance: float) -> Index:
         reached = []
         for first in frontier[::-1].tolist():  # the farthest first: it reaches most of what there is to reach
             open_rows = np.flatnonzero(before[first + 1 : track.reach(first) + 1] < 0) + first + 1
+            open_rows = open_rows[track.parameter[open_rows] > track.parameter[first]]
             new = _reached_from(track, screen, first, open_rows, tolerance)
             before[new] = first
             reached.append(new)
             if before[-1] >= 0:
                 break
         frontier = np.sort(np.concatenate(reached))
+        if not frontier.size:
+            raise _no_set(tolerance)
     rows = [count - 1]
     while rows[-1]:
         rows.append(int(before[rows[-1]]))
@@ -261,6 +278,13 @@ def _row_at(track: _Track, first: int, ends: Index, share: float) -> Index:
     wanted = (1.0 - share) * track.parameter[first] + share * track.parameter[ends]
     rows: Index = np.searchsorted(track.parameter, wanted).clip(first, ends)
     return rows
+
+
+def _no_set(tolerance: float) -> SettingError:
+    return SettingError(
+        f"--tolerance {1000.0 * tolerance:g}mm: where the law rests the motion itself moves by more than that, so that "
+        "no keyframes keep to it; give a larger tolerance, or leave --law out"
+    )
 
 
 class _Screen(NamedTuple):

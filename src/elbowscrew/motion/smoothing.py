@@ -91,7 +91,8 @@ class Smoothing(NamedTuple):
     def _filtered(self, body: RigidBody, cutoff_hz: float) -> RigidBody:
         # Short gaps are bridged for the filter, so that it does not end at each of them, and opened again.
         smooth = lowpass_poses(self._filled(body), self.elapsed, self.rate_hz, cutoff_hz, self.broken_rows)
-        return replace(body, dual_quat_lab_body=np.where(body.tracked[:, None], smooth, np.nan))
+        smooth[~body.tracked] = np.nan
+        return replace(body, dual_quat_lab_body=smooth)
 
     def _filled(self, body: RigidBody) -> Float:
         series = continuous_signs(body.dual_quat_lab_body)

@@ -95,7 +95,7 @@ def _without_sentinels(
     pose = body.dual_quat_lab_body
     known = np.flatnonzero(body.tracked)
     identity = known[(pose[known, 1:4] == 0.0).all(axis=1)]
-    others = np.setdiff1d(known, identity)
+    others = np.setdiff1d(known, identity, assume_unique=True)
     if not identity.size or others.size < 2:
         return body
     # A run of such frames belongs to the motion if its ends lie where the two frames before, and after, lead.
@@ -175,7 +175,7 @@ def _without_leaps(
         return body, nothing, nothing
     steps = _Steps(body.dual_quat_lab_body, elapsed, 1.0 / recording.rate_hz, settings)
     spikes = steps.spikes(known)
-    steady = np.setdiff1d(known, spikes)
+    steady = np.setdiff1d(known, spikes, assume_unique=True)
     leaps = np.flatnonzero(~steps.possible(steady[:-1], steady[1:]))
     outside, unresolved = _excursions(np.split(steady, leaps + 1), steps, elapsed)
     lost = np.sort(np.concatenate([spikes, outside]))
@@ -302,6 +302,8 @@ def check_swaps(one: RigidBody, other: RigidBody, recording: Recording, elapsed:
 
 
 def _lost(body: RigidBody, rows: Index, reason: TrackingLoss) -> RigidBody:
+    if not rows.size and body.tracked.all():
+        return body  # as most are, and no copy is needed
     loss = body.loss.copy()
     loss[rows] = reason
     lost = (loss != TrackingLoss.NONE)[:, None]

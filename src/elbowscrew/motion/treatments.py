@@ -10,13 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowscrew.errors import SettingError, UsageError
-from elbowscrew.geometry.dual_quaternion import conjugate, multiply
 from elbowscrew.model import ModelPhases
-from elbowscrew.motion.axes import twist_smoothing
+from elbowscrew.motion.axes import smoothed_displacement, twist_smoothing
 from elbowscrew.motion.laws import LAWS
 from elbowscrew.motion.measurement import Measurement
 from elbowscrew.motion.modeling import METHODS
-from elbowscrew.motion.relative import IDENTITY
 from elbowscrew.settings import Settings
 
 Float = NDArray[np.float64]
@@ -108,19 +106,8 @@ def treatments(
         if data == "raw":
             yield Treatment("raw", measured.displacement, usable, phases)
         elif data == "lowpass":
-            smoothing = twist_smoothing(measured, settings)
-            if isinstance(settings.lowpass_hz, float):
-                smoothing = smoothing._replace(cutoff_hz=settings.lowpass_hz)
-            arm, forearm = smoothing.apply(measured.arm, measured.forearm)
-            arm_pose = IDENTITY if arm is None else arm.dual_quat_lab_body
-            pose = multiply(
-                conjugate(measured.joint.reference), multiply(conjugate(arm_pose), forearm.dual_quat_lab_body)
-            )
-            # The signs of the series that it was filtered from, which tell the way round.
-            flipped = np.sum(pose[:, :4] * measured.displacement[:, :4], axis=1) < 0.0
-            pose = np.where(flipped[:, None], -pose, pose)
-            pose = np.where(np.isfinite(pose), pose, measured.displacement)
-            yield Treatment(f"lowpass {smoothing.cutoff_hz:.3g} Hz", pose, usable, phases)
+            cutoff_hz, pose = _filtered(measured, settings)
+            yield Treatment(f"lowpass {cutoff_hz:.3g} Hz", pose, usable, phases)
         else:
             for factor in plan.decimation:
                 yield _decimated(factor, measured, usable, phases)
@@ -131,10 +118,7 @@ def _filtered(measured: Measurement, settings: Settings) -> tuple[float, Float]:
     smoothing = twist_smoothing(measured, settings)
     if isinstance(settings.lowpass_hz, float):
         smoothing = smoothing._replace(cutoff_hz=settings.lowpass_hz)
-    arm, forearm = smoothing.apply(measured.arm, measured.forearm)
-    arm_pose = IDENTITY if arm is None else arm.dual_quat_lab_body
-    joint_pose = multiply(conjugate(arm_pose), forearm.dual_quat_lab_body)
-    pose = multiply(conjugate(measured.joint.reference), joint_pose)
+    pose = smoothed_displacement(measured, smoothing)
     flipped = np.sum(pose[:, :4] * measured.displacement[:, :4], axis=1) < 0.0
     pose = np.where(flipped[:, None], -pose, pose)
     return float(smoothing.cutoff_hz or np.inf), np.where(np.isfinite(pose), pose, measured.displacement)

@@ -11,10 +11,11 @@ from elbowscrew.geometry.dual_quaternion import conjugate, multiply
 from elbowscrew.geometry.sensitivity import confidence_radius, screw_sensitivity
 from elbowscrew.geometry.twist import adjoint
 from elbowscrew.model import JointMotion, PoseNoise
+from elbowscrew.motion.relative import IDENTITY
 
 Float = NDArray[np.float64]
 
-_BLOCK: Final = 16384
+_BLOCK: Final = 1024  # a block of covariances fits the cache, and no product in it is large enough for threads
 # Below so many standard deviations an angle is that of the noise's own rotation, whose sense nobody knows.
 _LEAST_SIGNIFICANCE: Final = 5.0
 
@@ -55,11 +56,11 @@ def joint_covariance(joint: Float, proximal: PoseNoise | None, distal: PoseNoise
     ndarray, shape (..., 6, 6)
         In the forearm's frame. The arm's rotation enters with the forearm's place in the arm as its lever.
     """
-    covariance = np.broadcast_to(distal.covariance, (*joint.shape[:-1], 6, 6))
     if proximal is None:
-        return covariance
+        return np.broadcast_to(distal.covariance, (*joint.shape[:-1], 6, 6))
     lever = adjoint(conjugate(joint))
-    return covariance + lever @ proximal.covariance @ np.swapaxes(lever, -1, -2)
+    levered = (lever.reshape(-1, 6) @ proximal.covariance).reshape(lever.shape)
+    return distal.covariance + levered @ np.swapaxes(lever, -1, -2)
 
 
 def screw_errors(
@@ -120,10 +121,15 @@ def errors_from_covariance(displacement: Float, frame: Float, reference: Float, 
     change : ndarray, shape (8,)
         As in `screw_errors`.
     """
-    lever, turned = adjoint(displacement), adjoint(change)
-    covariance = turned @ (lever @ frame @ np.swapaxes(lever, -1, -2) + reference) @ turned.T
-    screw = screw_sensitivity(multiply(multiply(change, displacement), conjugate(change)))
-    direction = screw.direction @ covariance @ np.swapaxes(screw.direction, -1, -2)
+    lever = adjoint(displacement)
+    covariance = lever @ frame @ np.swapaxes(lever, -1, -2) + reference
+    if (change != IDENTITY).any():
+        turned = adjoint(change)
+        covariance = turned @ covariance @ turned.T
+        displacement = multiply(multiply(change, displacement), conjugate(change))
+    screw = screw_sensitivity(displacement)
+    turning = screw.direction[..., :3]  # a shift does not move a direction
+    direction = turning @ covariance[..., :3, :3] @ np.swapaxes(turning, -1, -2)
     place = screw.place @ covariance @ np.swapaxes(screw.place, -1, -2)
     return ScrewErrors(
         angle=np.sqrt(np.einsum("ni,nij,nj->n", screw.angle, covariance, screw.angle)),

@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 from elbowscrew.model.shown import Shown
 from elbowscrew.motion.scene import axis_segments, bodies_in_space, directions_across, thinned
 from elbowscrew.plots import style
-from elbowscrew.tables import angle_in, length_in
+from elbowscrew.plots.decimation import drawn_rows
+from elbowscrew.tables import LengthUnit, angle_in, length_in
 
 Float = NDArray[np.float64]
 
@@ -53,7 +54,7 @@ def plot_axes_in_space(ax: Axes3D, analysis: Shown) -> Axes3D:
     ax.add_collection3d(Line3DCollection(list(segments), colors=colors, linewidths=0.7, alpha=0.8))
     ends = length_in(mean.center + 1.3 * half * np.outer([-1.0, 1.0], mean.direction), unit)
     ax.plot(*ends.T, color="black", linewidth=1.6, label="mean axis")
-    ax.plot(*length_in(path, unit).T, color="#D55E00", linewidth=1.2, label="forearm path")
+    plot_path(ax, path, unit)
     shown = [segments.reshape(-1, 3), ends, length_in(seen, unit)]
     if arm is not None:
         ax.plot(*length_in(arm[None], unit).T, "^", color="#0072B2", markersize=5, label="arm")
@@ -66,6 +67,12 @@ def plot_axes_in_space(ax: Axes3D, analysis: Shown) -> Axes3D:
     for name, label in (("x", ax.set_xlabel), ("y", ax.set_ylabel), ("z", ax.set_zlabel)):
         label(f"{name} ({unit})", labelpad=-2)
     return ax
+
+
+def plot_path(ax: Axes3D, path: Float, unit: LengthUnit) -> None:
+    """Draw the path (N, 3) of the forearm's origin, meters."""
+    rows = drawn_rows(*path.T)
+    ax.plot(*length_in(path[rows], unit).T, color="#D55E00", linewidth=1.2, label="forearm path")
 
 
 def plot_axis_directions(ax: Axes, analysis: Shown) -> Axes:

@@ -13,13 +13,14 @@ from numpy.typing import NDArray
 
 from elbowscrew.model.shown import Shown
 from elbowscrew.motion.scene import Bundle, Region, bodies_in_space, directions_across, joint_bundle
-from elbowscrew.plots.axis import color_scale, equal_aspect
+from elbowscrew.plots.axis import color_scale, equal_aspect, plot_path
 from elbowscrew.plots.style import CONFIDENCE, SPREAD
 from elbowscrew.tables import angle_in, length_in
 
 Float = NDArray[np.float64]
 
-_AROUND: Final = 48
+_AROUND: Final = 24
+_ALONG_IN_SPACE: Final = 13
 _ALONG: Final = 41
 
 
@@ -33,7 +34,7 @@ def plot_joint_axis_in_space(ax: Axes3D, analysis: Shown) -> Axes3D:
     ends = _ends(bundle)
     ax.plot(*ends.T, color="black", linewidth=1.6, label=bundle.name)
     u, v = directions_across(bundle.direction)[0]
-    along = np.linspace(-bundle.half, bundle.half, _ALONG)
+    along = np.linspace(-bundle.half, bundle.half, _ALONG_IN_SPACE)
     turn = np.linspace(0.0, 2.0 * np.pi, _AROUND)
     ring = np.cos(turn)[:, None] * u + np.sin(turn)[:, None] * v
     for region, look in _regions(bundle):
@@ -41,9 +42,9 @@ def plot_joint_axis_in_space(ax: Axes3D, analysis: Shown) -> Axes3D:
         ax.plot_surface(
             *np.moveaxis(surface, 2, 0), color=look.get("color", look.get("facecolor")), alpha=0.25, linewidth=0.0
         )
-    path = length_in(bodies_in_space(analysis).path, unit)
-    ax.plot(*path.T, color="#D55E00", linewidth=1.2, label="forearm path")
-    equal_aspect(ax, np.concatenate([ends, path[np.isfinite(path).all(axis=1)]]))
+    path = bodies_in_space(analysis).path
+    plot_path(ax, path, unit)
+    equal_aspect(ax, np.concatenate([ends, length_in(path[np.isfinite(path).all(axis=1)], unit)]))
     for name, label in (("x", ax.set_xlabel), ("y", ax.set_ylabel), ("z", ax.set_zlabel)):
         label(f"{name} ({unit})", labelpad=-2)
     return ax

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from elbowscrew.model.shown import Shown
 from elbowscrew.motion.phases import runs_of
 from elbowscrew.plots import style
+from elbowscrew.plots.decimation import drawn_rows
 from elbowscrew.tables import angle_in, length_in
 
 Float = NDArray[np.float64]
@@ -26,9 +27,11 @@ def plot_theta(ax: Axes, analysis: Shown) -> Axes:
     time_s = analysis.screw.time_s
     if np.isfinite(reach).any():
         label = f"95 % interval (±{np.nanmedian(reach):.2g} {unit})"
-        ax.fill_between(time_s, angle - reach, angle + reach, label=label, **style.BAND)
-    ax.plot(time_s, angle, label="measured", **style.MEASURED)
-    ax.plot(time_s, angle_in(analysis.interpolated.angle, unit), label=_model_label(analysis), **style.MODELED)
+        low, high = angle - reach, angle + reach
+        rows = drawn_rows(low, high)
+        ax.fill_between(time_s[rows], low[rows], high[rows], label=label, **style.BAND)
+    _line(ax, time_s, angle, label="measured", **style.MEASURED)
+    _line(ax, time_s, angle_in(analysis.interpolated.angle, unit), label=_model_label(analysis), **style.MODELED)
     rows = analysis.keyframes.row
     ax.plot(time_s[rows], angle[rows], label="keyframes", **style.KEYFRAME)
     mark_movements(ax, analysis)
@@ -41,17 +44,13 @@ def plot_euler_parameter(ax: Axes, analysis: Shown, component: int) -> Axes:
     """Draw one of e0..e3, measured and modeled, over time (the paper's figures 9 and 10)."""
     time_s = analysis.screw.time_s
     measured = analysis.screw.euler_parameters[:, component]
-    ax.plot(time_s, measured, label="measured", **style.MEASURED)
-    ax.plot(
-        time_s,
-        analysis.interpolated.euler_parameters[:, component],
-        label=_model_label(analysis),
-        **style.MODELED,
-    )
+    _line(ax, time_s, measured, label="measured", **style.MEASURED)
+    modeled = analysis.interpolated.euler_parameters[:, component]
+    _line(ax, time_s, modeled, label=_model_label(analysis), **style.MODELED)
     rows = analysis.keyframes.row
     ax.plot(time_s[rows], measured[rows], label="keyframes", **style.KEYFRAME)
     mark_tracking(ax, analysis)
-    ax.set_ylabel(f"$e_{component}$ (–)")
+    ax.set_ylabel(f"e{'₀₁₂₃'[component]} (–)")
     return over_time(ax, time_s)
 
 
@@ -93,7 +92,7 @@ def mark_movements(ax: Axes, analysis: Shown) -> Axes:
 
 def _plot_error(ax: Axes, analysis: Shown, values: Float, name: str, unit: str) -> Axes:
     time_s = analysis.screw.time_s
-    ax.plot(time_s, values, label="model against measurement", **style.MEASURED)
+    _line(ax, time_s, values, label="model against measurement", **style.MEASURED)
     if np.isfinite(values).any():
         level = float(np.sqrt(np.nanmean(values**2)))
         ax.axhline(level, **style.LEVEL)
@@ -113,6 +112,11 @@ def _plot_error(ax: Axes, analysis: Shown, values: Float, name: str, unit: str) 
     ax.set_ylabel(f"{name} ({unit})")
     ax.set_ylim(bottom=min(0.0, ax.get_ylim()[0]))
     return over_time(ax, time_s)
+
+
+def _line(ax: Axes, time_s: Float, values: Float, **look: Any) -> None:
+    rows = drawn_rows(values)
+    ax.plot(time_s[rows], values[rows], **look)
 
 
 def over_time(ax: Axes, time_s: Float) -> Axes:

@@ -9,6 +9,7 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 # From the palette of Okabe and Ito, and apart in grey as well: line styles differ on top of it.
 MEASURED: Final[dict[str, Any]] = {"color": "#000000", "linewidth": 1.3, "linestyle": "-"}
@@ -76,19 +77,17 @@ def publication_style() -> AbstractContextManager[None]:
 
 
 def new_figure(width_mm: float, height_mm: float) -> Figure:
-    """Return an empty figure of that size on paper, laid out by itself, without pyplot's global state."""
-    return Figure(figsize=(width_mm / _MM_PER_INCH, height_mm / _MM_PER_INCH), layout="constrained")
+    """Return an empty figure of that size on paper, without pyplot's global state; `settle` lays it out."""
+    return Figure(figsize=(width_mm / _MM_PER_INCH, height_mm / _MM_PER_INCH))
 
 
 def settle(figure: Figure) -> None:
     """Lay a figure out once and for all, the places of its axes rounded.
 
-    The layout's solver leaves last digits that differ from run to run, and with them the bytes of a file.
+    The layout's solver leaves last digits that differ from run to run, and with them the bytes of a file. It works
+    here once: as the figure's own engine it would do so, and draw all for it, each time the figure is saved.
     """
-    engine = figure.get_layout_engine()
-    if engine is not None:
-        engine.execute(figure)
-    figure.set_layout_engine("none")
+    ConstrainedLayoutEngine().execute(figure)
     for ax in figure.axes:
         left, bottom, width, height = (round(float(value), 6) for value in ax.get_position(original=True).bounds)
         ax.set_position((left, bottom, width, height), which="both")

@@ -20,6 +20,8 @@ _METADATA: Final[dict[str, dict[str, Any]]] = {
     "svg": {"Date": None, "Creator": None},
     "pdf": {"CreationDate": None, "Creator": None, "Producer": None},
 }
+# A third less time for a tenth more bytes.
+_ENCODING: Final[dict[str, dict[str, Any]]] = {"png": {"pil_kwargs": {"compress_level": 3}}, "svg": {}, "pdf": {}}
 _FIGURES: Final[dict[str, MakeFigure]] = {**FIGURES, **PAPER_FIGURES}
 
 
@@ -55,6 +57,6 @@ def files_of(drawings: Mapping[str, Callable[[], Figure]], formats: Sequence[str
             settle(figure)
             for kind in formats:
                 stream = io.BytesIO()
-                figure.savefig(stream, format=kind, metadata=_METADATA[kind])
+                figure.savefig(stream, format=kind, metadata=_METADATA[kind], **_ENCODING[kind])
                 files[f"{name}.{kind}"] = stream.getvalue()
     return files

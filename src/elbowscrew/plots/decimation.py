@@ -1,0 +1,42 @@
+"""Long series drawn with few points that look the same: each pixel's lowest and highest."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+Float = NDArray[np.float64]
+
+# As many as a figure's full width has dots in print (170 mm at 300 dpi): no peak is lost and no line moves.
+_BUCKETS: Final = 2000
+
+
+def drawn_rows(*curves: Float) -> NDArray[np.intp]:
+    """Rows of series that a line through them needs, increasing.
+
+    Parameters
+    ----------
+    *curves : ndarray, shape (N,)
+        Series that are drawn over the same rows; NaN where there is no value.
+
+    Returns
+    -------
+    ndarray of int
+        All rows of a short series; else, of each of some thousand stretches of equal length and for each curve, the
+        rows of the lowest and the highest value. Of a stretch without any value its first row, so that the line is
+        broken there. The first and the last row are always among them.
+    """
+    count = curves[0].size
+    size = -(-count // _BUCKETS)
+    if size <= 2:
+        return np.arange(count)
+    starts = np.arange(0, count, size)
+    filler = np.full(starts.size * size - count, np.nan)
+    found = [np.array([0, count - 1])]
+    for curve in curves:
+        stretches = np.concatenate([curve, filler]).reshape(-1, size)
+        found.append(starts + np.argmin(np.nan_to_num(stretches, nan=np.inf), axis=1))
+        found.append(starts + np.argmax(np.nan_to_num(stretches, nan=-np.inf), axis=1))
+    return np.unique(np.concatenate(found))
