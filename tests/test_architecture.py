@@ -29,7 +29,15 @@ def loaded_after(code: str) -> set[str]:
 
 
 @pytest.mark.parametrize(
-    "arguments", [["--help"], ["analyze", "--help"], ["batch", "--help"], ["simulate", "--help"], ["--version"]]
+    "arguments",
+    [
+        ["--help"],
+        ["analyze", "--help"],
+        ["batch", "--help"],
+        ["report", "--help"],
+        ["simulate", "--help"],
+        ["--version"],
+    ],
 )
 def test_help_and_version_load_no_heavy_library(arguments: list[str]) -> None:
     loaded = loaded_after(f"from elbowscrew.cli import main\nassert main({arguments!r}) == 0")

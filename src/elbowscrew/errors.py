@@ -5,7 +5,8 @@
     ElbowscrewError
     ├── UsageError       2  a setting is not a possible one, whatever the recording
     ├── RecordingError   3  the recording cannot be read
-    │   └── NoBodiesError   it has no rigid bodies, but maybe markers
+    │   ├── NoBodiesError   it has no rigid bodies, but maybe markers
+    │   └── ResultError     a folder that should hold a finished result does not, or a damaged one
     ├── SettingError     4  a setting does not fit this recording
     ├── AnalysisError    5  the recording can be read but not analyzed
     └── OutputError      6  the output cannot be written, or exists
@@ -43,6 +44,10 @@ class RecordingError(ElbowscrewError):
 
 class NoBodiesError(RecordingError):
     """The file has no rigid bodies; it may have markers, which can be asked for."""
+
+
+class ResultError(RecordingError):
+    """A folder holds no finished result, or one that cannot be read: what was to be read is at fault, as in a file."""
 
 
 class SettingError(ElbowscrewError):

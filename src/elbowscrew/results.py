@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import hashlib
-import io
 import json
 import os
 import tempfile
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from functools import partial
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, Literal
+from typing import Any, Final, Literal
 
 from elbowscrew import tables
 from elbowscrew.errors import ElbowscrewError, OutputError, UsageError
@@ -19,27 +17,17 @@ from elbowscrew.io.exporting import check_exports, write_exports
 from elbowscrew.io.joint_summary import joint_summary
 from elbowscrew.io.optitrack_writer import motive_columns_lines, row_tagged_lines
 from elbowscrew.io.reading import read_recording
-from elbowscrew.io.staging import COMPARISON, RESULT_FILES, result_folder, write_files
+from elbowscrew.io.results_reading import read_finished
+from elbowscrew.io.staging import COMPARISON, FIGURE_FORMATS, FIGURE_NAMES, RESULT_FILES, result_folder, write_files
 from elbowscrew.io.summary import summary_from_analysis
 from elbowscrew.io.writing import write_csv, write_tables
 from elbowscrew.model import Analysis, Comparison, Landmarks, RebuiltMotion, TrialsComparison
 from elbowscrew.motion.analysis import analyze
+from elbowscrew.report import write_trial_page
 from elbowscrew.settings import Settings
 from elbowscrew.simulate import SimulatedTrial
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
 SUMMARY: Final = "summary.json"
-
-# Without dates and program versions the same analysis gives the same bytes.
-_METADATA: Final[dict[str, dict[str, Any]]] = {
-    "png": {"Software": None},
-    "svg": {"Date": None, "Creator": None},
-    "pdf": {"CreationDate": None, "Creator": None, "Producer": None},
-}
-# A third less time for a tenth more bytes.
-_ENCODING: Final[dict[str, dict[str, Any]]] = {"png": {"pil_kwargs": {"compress_level": 3}}, "svg": {}, "pdf": {}}
 
 
 def analyze_file(path: Path, settings: Settings, *, landmarks: Landmarks | None = None) -> Analysis:
@@ -66,8 +54,12 @@ def save_analysis(
     force: bool = False,
     figure_formats: Sequence[str] | None = None,
     exports: Sequence[str] | None = None,
+    report: bool = True,
 ) -> Path:
-    """Write the tables, ``summary.json``, ``joint.json`` and ``figures/`` into a folder, whole or not at all.
+    """Write the tables, ``summary.json``, ``joint.json``, ``figures/`` and ``report.html`` into a folder.
+
+    Whole or not at all. Figures and page are made from the tables and JSON just written, so that
+    ``elbowscrew report`` makes the same of them at any later time.
 
     The summary says under ``files`` what else is in the folder, each with its SHA-256.
 
@@ -83,6 +75,8 @@ def save_analysis(
         Those of the analysis' settings by default; may be empty.
     exports : sequence of {"parquet", "mat", "sto"}, optional
         Formats of other programs to write the tables in, too; those of the analysis' settings by default.
+    report : bool
+        Write the page.
 
     Returns
     -------
@@ -113,16 +107,18 @@ def save_analysis(
         write_tables(staged, analysis)
         _write_json(staged / "joint.json", joint_summary(analysis))
         if formats:
-            _write_figures(staged / "figures", analysis, formats)
+            _write_figures(staged, summary, formats)
         write_exports(staged, analysis, summary, others)
         _write_json(staged / SUMMARY, {**summary, "files": digests(staged)})  # the last, when all else is there
+        if report:
+            write_trial_page(staged)
     return target
 
 
 def _known_formats(formats: tuple[str, ...]) -> tuple[str, ...]:
-    unknown = sorted(set(formats) - set(_METADATA))
+    unknown = sorted(set(formats) - set(FIGURE_FORMATS))
     if unknown:
-        msg = f"figure formats: expected {', '.join(_METADATA)}, found {', '.join(unknown)}"
+        msg = f"figure formats: expected {', '.join(FIGURE_FORMATS)}, found {', '.join(unknown)}"
         raise UsageError(msg)
     return formats
 
@@ -158,22 +154,16 @@ def _write_json(path: Path, content: Mapping[str, Any]) -> None:
     path.write_text(text + "\n", encoding="utf-8")
 
 
-def _write_figures(folder: Path, analysis: Analysis, formats: Sequence[str]) -> None:
-    from elbowscrew.plots.figures import FIGURES
+def _write_figures(staged: Path, summary: Mapping[str, Any], formats: Sequence[str]) -> None:
+    from elbowscrew.report.figure_files import figure_files
 
-    _draw(folder, {name: partial(make, analysis) for name, make in FIGURES.items()}, formats)
+    _write_all(staged / "figures", figure_files(read_finished(staged, summary), FIGURE_NAMES, formats))
 
 
-def _draw(folder: Path, figures: Mapping[str, Callable[[], Figure]], formats: Sequence[str]) -> None:
-    from elbowscrew.plots.style import publication_style, settle
-
+def _write_all(folder: Path, files: Mapping[str, bytes]) -> None:
     folder.mkdir()
-    with publication_style():
-        for name, make in figures.items():
-            figure = make()
-            settle(figure)
-            for kind in formats:
-                figure.savefig(folder / f"{name}.{kind}", format=kind, metadata=_METADATA[kind], **_ENCODING[kind])
+    for name, content in files.items():
+        (folder / name).write_bytes(content)
 
 
 def save_simulation(
@@ -248,21 +238,13 @@ def save_paper_figures(folder: str | os.PathLike[str]) -> tuple[Path, ...]:
     OutputError
         If a file is there already, or the disk does not take them.
     """
-    from elbowscrew.plots.figures import FIGURES
-    from elbowscrew.plots.style import publication_style, settle
+    from elbowscrew.report.figure_files import figure_files
     from elbowscrew.simulate import simulate_trial
 
     analysis = analyze(simulate_trial(marker_noise_mm=0.1, seed=2010).recording, Settings(inversion=211))
-    target = Path(folder)
     names = {"figures_7_and_8.png": "theta", "figures_9_and_10.png": "euler_parameters"}
-    contents = {}
-    with publication_style():
-        for file, name in names.items():
-            figure = FIGURES[name](analysis)
-            settle(figure)
-            stream = io.BytesIO()
-            figure.savefig(stream, format="png", metadata=_METADATA["png"], **_ENCODING["png"])
-            contents[target / file] = stream.getvalue()
+    drawn = figure_files(analysis, tuple(names.values()), ("png",))
+    contents = {Path(folder) / file: drawn[f"{name}.png"] for file, name in names.items()}
     write_files(contents, replaceable=None)
     return tuple(contents)
 
@@ -364,6 +346,7 @@ def save_comparison(
         _write_json(staged / "compare.json", summary)
         if formats:
             from elbowscrew.plots.comparison import comparison_figure
+            from elbowscrew.report.figure_files import files_of
 
-            _draw(staged / "figures", {"compare": lambda: comparison_figure(comparison)}, formats)
+            _write_all(staged / "figures", files_of({"compare": lambda: comparison_figure(comparison)}, formats))
     return target

@@ -155,7 +155,7 @@ def test_files_are_replaced_on_request_only_and_only_ours(tmp_path: Path) -> Non
     write_files({one: ["synthetic 3"]}, replaceable="synthetic")
     assert one.read_text() == "synthetic 3\n"
     one.write_text("a recording")
-    with pytest.raises(OutputError, match="no synthetic trial"):
+    with pytest.raises(OutputError, match="not ours"):
         write_files({two: ["new"], one: ["new"]}, replaceable="synthetic")
     assert (one.read_text(), two.read_text()) == ("a recording", "synthetic 2\n")
     with pytest.raises(OutputError, match="no file"):

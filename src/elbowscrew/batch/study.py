@@ -21,6 +21,7 @@ from elbowscrew.io.exporting import check_exports
 from elbowscrew.io.landmarks import read_landmarks
 from elbowscrew.io.staging import is_summary, replace_file
 from elbowscrew.model import Landmarks
+from elbowscrew.report.study_page import write_study_page
 from elbowscrew.results import SUMMARY, read_summary
 from elbowscrew.settings import settings_from
 
@@ -138,7 +139,7 @@ def run_study(
         carried = list(dict.fromkeys(name for trial in trials for name in trial.columns))
         replace_file(folder / FAILURES_TABLE, failures_table(failures))
         replace_file(folder / SUMMARY_TABLE, summary_table(rows, carried, common.angle_unit, common.length_unit))
-        # Both tables are in their places: what is made from them, a page of the study, is made here.
+        write_study_page(folder, carried)
         return StudyResult(
             folder=folder,
             names=tuple(task.folder.name for task in tasks),

@@ -29,6 +29,9 @@ def analyze(
     force: Annotated[bool, typer.Option("--force", help="Replace an earlier result.", rich_help_panel=OUTPUT)] = False,
     *,
     given: dict[str, Any],
+    page: Annotated[
+        bool, typer.Option("--report/--no-report", rich_help_panel=OUTPUT, help="Write the page report.html.")
+    ] = True,
     config: Annotated[
         Path | None, typer.Option(metavar="FILE.toml", rich_help_panel=OUTPUT, help="Settings; options are stronger.")
     ] = None,
@@ -57,7 +60,7 @@ def analyze(
     check_result_folder(target, force=force)  # before the work, not after it
     check_exports(settings.export)
     analysis = analyze_file(trial, settings, landmarks=None if landmarks is None else read_landmarks(landmarks))
-    save_analysis(analysis, target, force=force)
+    save_analysis(analysis, target, force=force, report=page)
     summary = read_summary(target)
     render.warnings(summary["warnings"])
     if json_output:

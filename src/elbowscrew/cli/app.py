@@ -13,6 +13,7 @@ from elbowscrew.cli.compare import compare
 from elbowscrew.cli.info import info
 from elbowscrew.cli.interpolate import interpolate
 from elbowscrew.cli.paper import paper
+from elbowscrew.cli.report import report
 from elbowscrew.cli.simulate import simulate
 
 app = typer.Typer(
@@ -39,6 +40,7 @@ def _common(
 
 app.command()(analyze)
 app.command()(batch)
+app.command()(report)
 app.command()(compare)
 app.command()(interpolate)
 app.command()(info)

@@ -7,8 +7,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat
 from elbowscrew.io.statistics import known, rms, statistic
-from elbowscrew.model import Analysis, AnatomicalMotion, FittedJoint, LineEstimate, PoseNoise
+from elbowscrew.model import Analysis, AnatomicalMotion, FittedJoint, LineEstimate, PoseNoise, RigidBody
 
 Float = NDArray[np.float64]
 
@@ -29,6 +30,7 @@ def joint_summary(analysis: Analysis) -> dict[str, Any]:
         "noise": {name: _noise(noise) for name, noise in axis.noise.items()},
         "repeatability": _repeatability(analysis),
         "anatomy": _anatomy(analysis.anatomy),
+        "bodies": _bodies(analysis),
     }
 
 
@@ -106,6 +108,29 @@ def _anatomy(motion: AnatomicalMotion | None) -> dict[str, Any] | None:
         "epicondyle_midpoint_in_arm_mm": (1000.0 * motion.epicondyle_midpoint).tolist(),
         "landmarks_mm": {name: (1000.0 * place).tolist() for name, place in motion.places.items()},
     }
+
+
+def _bodies(analysis: Analysis) -> dict[str, Any]:
+    """Say where the bodies are at the reference, and where their markers: with `screw.csv`, all that figures show."""
+    joint = analysis.joint
+    return {
+        "forearm_in_arm": _pose(joint.reference),
+        "arm_in_lab": _pose(joint.dual_quat_lab_proximal),
+        "arm_markers_mm": _markers(analysis.arm),
+        "forearm_markers_mm": _markers(analysis.forearm),
+    }
+
+
+def _pose(dual_quat: Float) -> dict[str, list[float]]:
+    quat, position = pose_from_dual_quat(dual_quat)
+    return {"quaternion": quat.tolist(), "position_mm": (1000.0 * position).tolist()}
+
+
+def _markers(body: RigidBody | None) -> list[list[float]] | None:
+    if body is None or body.marker_offsets is None:
+        return None
+    offsets = 1000.0 * body.marker_offsets
+    return [place.tolist() for place in offsets if np.isfinite(place).all()]
 
 
 def _noise(noise: PoseNoise | None) -> dict[str, Any] | None:

@@ -32,6 +32,7 @@ RESULT_FILES: Final = (
     *(f"{name}.{kind}" for name in TABLE_NAMES for kind in ("csv", "parquet")),
     "trial.mat",
     "joint_angle.sto",
+    "report.html",
     *(f"figures/{name}.{kind}" for name in FIGURE_NAMES for kind in FIGURE_FORMATS),
 )
 """All that a result folder may hold."""
@@ -224,7 +225,7 @@ def _check_file(target: Path, replaceable: str | None) -> None:
             raise OutputError(msg)
         with target.open("rb") as stream:
             if replaceable.encode() not in stream.read(4096):
-                msg = f"{target}: exists already and is no synthetic trial of ours; give another name"
+                msg = f"{target}: exists already and is not ours; give another name"
                 raise OutputError(msg)
     except OSError as error:
         raise _output_error(target, error) from error

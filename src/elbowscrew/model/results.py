@@ -136,6 +136,11 @@ class MeanAxis(Brief):
     excursion: float
     place_excursion: float
 
+    @property
+    def spread95(self) -> tuple[float, float]:
+        """Deviation (rad) and distance (m) that 95 % of the frames' axes keep within."""
+        return float(np.nanpercentile(self.deviation, 95.0)), float(np.nanpercentile(self.distance, 95.0))
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Analysis(Brief):

@@ -13,15 +13,14 @@ from mpl_toolkits.mplot3d.art3d import Line3DCollection
 from mpl_toolkits.mplot3d.axes3d import Axes3D
 from numpy.typing import NDArray
 
-from elbowscrew.geometry.dual_quaternion import conjugate, multiply, pose_from_dual_quat, transform_points
-from elbowscrew.model import Analysis
+from elbowscrew.model.shown import Shown
+from elbowscrew.motion.scene import axis_segments, bodies_in_space, directions_across, thinned
 from elbowscrew.plots import style
 from elbowscrew.plots.decimation import drawn_rows
 from elbowscrew.tables import LengthUnit, angle_in, length_in
 
 Float = NDArray[np.float64]
 
-_MOST_AXES: Final = 60
 _MOST_POINTS: Final = 4000
 
 
@@ -34,16 +33,18 @@ class _MeanFrame(NamedTuple):
     center: Float
 
 
-def color_scale(analysis: Analysis) -> ScalarMappable:
+def color_scale(analysis: Shown) -> ScalarMappable:
     """Return the color scale of the angle, for axes and a color bar."""
     angle = angle_in(analysis.screw.angle[analysis.screw.axis_known], analysis.settings.angle_unit)
     return ScalarMappable(Normalize(float(angle.min()), float(angle.max())), style.COLORMAP)
 
 
-def plot_axes_in_space(ax: Axes3D, analysis: Analysis) -> Axes3D:
+def plot_axes_in_space(ax: Axes3D, analysis: Shown) -> Axes3D:
     """Draw the axes with the mean axis, the path of the forearm and the arm, in the frame they are expressed in."""
     unit = analysis.settings.length_unit
-    path, arm, clusters = _bodies(analysis)
+    bodies = bodies_in_space(analysis)
+    path, arm = bodies.path, bodies.arm
+    clusters = [markers for markers in (bodies.arm_markers, bodies.forearm_markers) if markers is not None]
     mean = _mean_frame(analysis, path)
     seen = path[np.isfinite(path).all(axis=1)]
     half = 0.55 * float(np.max(np.ptp(np.concatenate([seen, mean.center[None]]), axis=0)))
@@ -74,24 +75,11 @@ def plot_path(ax: Axes3D, path: Float, unit: LengthUnit) -> None:
     ax.plot(*length_in(path[rows], unit).T, color="#D55E00", linewidth=1.2, label="forearm path")
 
 
-def axis_segments(analysis: Analysis, center: Float, half: float) -> tuple[NDArray[np.int64], Float]:
-    """Rows (M,) of some of the frames with an axis, and pieces (M, 2, 3) of their axes about the center, meters."""
-    rows = _thinned(np.flatnonzero(analysis.screw.axis_known), _MOST_AXES)
-    direction, point = analysis.screw.axis_direction[rows], analysis.screw.axis_point[rows]
-    middle = point + np.sum((center - point) * direction, axis=1, keepdims=True) * direction
-    return rows, np.stack([middle - half * direction, middle + half * direction], axis=1)
-
-
-def forearm_path(analysis: Analysis) -> Float:
-    """Path (N, 3) of the forearm's origin in the frame the screws are expressed in, meters."""
-    return _bodies(analysis)[0]
-
-
-def plot_axis_directions(ax: Axes, analysis: Analysis) -> Axes:
+def plot_axis_directions(ax: Axes, analysis: Shown) -> Axes:
     """Draw how far each axis is tilted from the mean axis, in two directions across it."""
     unit = analysis.settings.angle_unit
-    mean = _mean_frame(analysis, _bodies(analysis)[0])
-    rows = _thinned(np.flatnonzero(analysis.screw.axis_known), _MOST_POINTS)
+    mean = _mean_frame(analysis, bodies_in_space(analysis).path)
+    rows = thinned(np.flatnonzero(analysis.screw.axis_known), _MOST_POINTS)
     direction = analysis.screw.axis_direction[rows]
     along = direction @ mean.direction
     tilts = [angle_in(np.arctan2(direction @ across, along), unit) for across in mean.across]
@@ -101,11 +89,11 @@ def plot_axis_directions(ax: Axes, analysis: Analysis) -> Axes:
     return ax
 
 
-def plot_axis_places(ax: Axes, analysis: Analysis) -> Axes:
+def plot_axis_places(ax: Axes, analysis: Shown) -> Axes:
     """Draw where each axis pierces the plane across the mean axis nearest the forearm, relative to the mean axis."""
     unit = analysis.settings.length_unit
-    mean = _mean_frame(analysis, _bodies(analysis)[0])
-    rows = _thinned(np.flatnonzero(analysis.screw.axis_known), _MOST_POINTS)
+    mean = _mean_frame(analysis, bodies_in_space(analysis).path)
+    rows = thinned(np.flatnonzero(analysis.screw.axis_known), _MOST_POINTS)
     direction, point = analysis.screw.axis_direction[rows], analysis.screw.axis_point[rows]
     along = direction @ mean.direction
     crossing = np.abs(along) > 0.1  # an axis nearly in the plane pierces it far away or nowhere
@@ -118,7 +106,7 @@ def plot_axis_places(ax: Axes, analysis: Analysis) -> Axes:
     return ax
 
 
-def _scatter(ax: Axes, analysis: Analysis, rows: NDArray[np.int64], values: list[Float]) -> None:
+def _scatter(ax: Axes, analysis: Shown, rows: NDArray[np.int64], values: list[Float]) -> None:
     scale = color_scale(analysis)
     angle = angle_in(analysis.screw.angle[rows], analysis.settings.angle_unit)
     ax.axhline(0.0, **style.LEVEL)
@@ -133,47 +121,12 @@ def _scatter(ax: Axes, analysis: Analysis, rows: NDArray[np.int64], values: list
     ax.set_box_aspect(1.0)
 
 
-def _mean_frame(analysis: Analysis, path: Float) -> _MeanFrame:
+def _mean_frame(analysis: Shown, path: Float) -> _MeanFrame:
     axis = analysis.mean_axis
     n = axis.direction
     across, names = directions_across(n)
     center = axis.point + ((np.nanmean(path, axis=0) - axis.point) @ n) * n
     return _MeanFrame(n, across, names, center)
-
-
-def directions_across(direction: Float) -> tuple[tuple[Float, Float], tuple[str, str]]:
-    """Two unit vectors across a direction (3,), and the coordinates that they lean to."""
-    n = direction
-    order = np.argsort(np.abs(n), kind="stable")
-    first, second = sorted(order[:2])
-    u = np.eye(3)[first] - n[first] * n
-    u /= np.linalg.norm(u)
-    v = np.cross(n, u)
-    if v[second] < 0.0:
-        v = -v
-    return (u, v), ("xyz"[first], "xyz"[second])
-
-
-def _bodies(analysis: Analysis) -> tuple[Float, Float | None, list[Float]]:
-    """Path of the forearm's origin, the arm's origin, and the markers at the reference, in the frame shown."""
-    joint = analysis.joint
-    identity = np.array([1.0, 0, 0, 0, 0, 0, 0, 0])
-    change: Float = {
-        "forearm": conjugate(joint.reference),
-        "arm": identity,
-        "lab": joint.dual_quat_lab_proximal,
-    }[analysis.settings.express_in]
-    path = pose_from_dual_quat(multiply(change, joint.dual_quat_proximal_distal))[1]
-    arm = None if analysis.arm is None else pose_from_dual_quat(change)[1]
-    clusters: list[Float] = []
-    for body, pose in ((analysis.arm, change), (analysis.forearm, multiply(change, joint.reference))):
-        if body is not None and body.marker_offsets is not None:
-            clusters.append(transform_points(pose, body.marker_offsets))
-    return path, arm, clusters
-
-
-def _thinned(rows: NDArray[np.int64], most: int) -> NDArray[np.int64]:
-    return rows if rows.size <= most else rows[np.linspace(0, rows.size - 1, most).astype(np.int64)]
 
 
 def equal_aspect(ax: Axes3D, points: Float) -> None:

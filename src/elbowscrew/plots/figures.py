@@ -2,48 +2,66 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Final, cast
+from typing import Final, Protocol, cast
 
 from matplotlib.figure import Figure
 from mpl_toolkits.mplot3d.axes3d import Axes3D
 
-from elbowscrew.model import Analysis
+from elbowscrew.model.shown import Shown
 from elbowscrew.plots import axis, joint, series, style
 
-_WIDTH_MM: Final = 170.0
+WIDTH_MM: Final = 170.0
+NARROW_MM: Final = 120.0  # below this panels stand one below the other
 
 
-def theta_figure(analysis: Analysis) -> Figure:
+class MakeFigure(Protocol):
+    """A whole figure of a trial at a width on paper."""
+
+    def __call__(self, analysis: Shown, *, width_mm: float = WIDTH_MM) -> Figure:
+        """Draw it."""
+        ...
+
+
+def theta_figure(analysis: Shown, *, width_mm: float = WIDTH_MM) -> Figure:
     """Make the figure of measured and modeled angle over time with keyframes."""
-    figure = style.new_figure(_WIDTH_MM, 80.0)
+    narrow = width_mm < NARROW_MM
+    figure = style.new_figure(width_mm, 72.0 if narrow else 80.0)
     ax = series.plot_theta(figure.add_subplot(), analysis)
-    figure.legend(*ax.get_legend_handles_labels(), loc="outside upper center", ncols=4)
+    figure.legend(*ax.get_legend_handles_labels(), loc="outside upper center", ncols=2 if narrow else 4)
     return figure
 
 
-def euler_parameters_figure(analysis: Analysis) -> Figure:
+def euler_parameters_figure(analysis: Shown, *, width_mm: float = WIDTH_MM) -> Figure:
     """Make the figure of measured and modeled e0..e3 over time."""
-    figure = style.new_figure(_WIDTH_MM, 105.0)
-    panels = figure.subplots(2, 2, sharex=True).ravel()
+    narrow = width_mm < NARROW_MM
+    figure = style.new_figure(width_mm, 150.0 if narrow else 105.0)
+    panels = figure.subplots(4 if narrow else 2, 1 if narrow else 2, sharex=True).ravel()
     for component, ax in enumerate(panels):
         series.plot_euler_parameter(ax, analysis, component)
-    for ax in panels[:2]:
+    for ax in panels[: 3 if narrow else 2]:
         ax.set_xlabel("")
-    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside upper center", ncols=5)
+    keys = panels[0].get_legend_handles_labels()
+    figure.legend(*keys, loc="outside upper center", ncols=2 if narrow else 5)
     return figure
 
 
-def axis_figure(analysis: Analysis) -> Figure:
+def axis_figure(analysis: Shown, *, width_mm: float = WIDTH_MM) -> Figure:
     """Make the figure of the axes in space, of their directions and of their places."""
-    figure = style.new_figure(_WIDTH_MM, 84.0)
-    # The second column keeps the labels of the space apart from the next panel's: the layout does not see them.
-    grid = figure.add_gridspec(2, 4, width_ratios=[1.3, 0.12, 1.0, 1.0], height_ratios=[1.0, 0.04])
-    space = cast(Axes3D, figure.add_subplot(grid[:, 0], projection="3d"))
+    if width_mm < NARROW_MM:
+        figure = style.new_figure(width_mm, 160.0)
+        # The second row keeps the legend of the space apart from the panels below it: the layout does not see it.
+        grid = figure.add_gridspec(4, 2, height_ratios=[1.5, 0.2, 1.0, 0.05])
+        cells = grid[0, :], grid[2, 0], grid[2, 1], grid[3, :]
+    else:
+        figure = style.new_figure(width_mm, 84.0)
+        # The second column keeps the labels of the space apart from the next panel's, for the same reason.
+        grid = figure.add_gridspec(2, 4, width_ratios=[1.3, 0.12, 1.0, 1.0], height_ratios=[1.0, 0.04])
+        cells = grid[:, 0], grid[0, 2], grid[0, 3], grid[1, 2:]
+    space = cast(Axes3D, figure.add_subplot(cells[0], projection="3d"))
     axis.plot_axes_in_space(space, analysis)
-    directions = axis.plot_axis_directions(figure.add_subplot(grid[0, 2]), analysis)
-    places = axis.plot_axis_places(figure.add_subplot(grid[0, 3]), analysis)
-    bar = figure.colorbar(axis.color_scale(analysis), cax=figure.add_subplot(grid[1, 2:]), orientation="horizontal")
+    directions = axis.plot_axis_directions(figure.add_subplot(cells[1]), analysis)
+    places = axis.plot_axis_places(figure.add_subplot(cells[2]), analysis)
+    bar = figure.colorbar(axis.color_scale(analysis), cax=figure.add_subplot(cells[3]), orientation="horizontal")
     bar.set_label(f"Angle θ ({analysis.settings.angle_unit})")
     for ax, letter in ((space, "a"), (directions, "b"), (places, "c")):
         ax.set_title(letter, loc="left")
@@ -52,37 +70,46 @@ def axis_figure(analysis: Analysis) -> Figure:
     return figure
 
 
-def joint_axis_figure(analysis: Analysis) -> Figure:
+def joint_axis_figure(analysis: Shown, *, width_mm: float = WIDTH_MM) -> Figure:
     """Make the figure of the joint's axis with its 95 % cone, in space and in three projections."""
-    figure = style.new_figure(_WIDTH_MM, 140.0)
-    grid = figure.add_gridspec(3, 2, height_ratios=[1.0, 0.75, 0.04])
-    space = cast(Axes3D, figure.add_subplot(grid[0, 0], projection="3d"))
+    narrow = width_mm < NARROW_MM
+    if narrow:
+        figure = style.new_figure(width_mm, 230.0)
+        grid = figure.add_gridspec(5, 1, height_ratios=[1.4, 1.2, 0.8, 0.8, 0.06])
+        cells = [grid[k, 0] for k in range(5)]
+    else:
+        figure = style.new_figure(width_mm, 140.0)
+        grid = figure.add_gridspec(3, 2, height_ratios=[1.0, 0.75, 0.04])
+        cells = [grid[0, 0], grid[0, 1], grid[1, 0], grid[1, 1], grid[2, :]]
+    space = cast(Axes3D, figure.add_subplot(cells[0], projection="3d"))
     joint.plot_joint_axis_in_space(space, analysis)
-    panels = [figure.add_subplot(place) for place in (grid[0, 1], grid[1, 0], grid[1, 1])]
+    panels = [figure.add_subplot(cell) for cell in cells[1:4]]
     joint.plot_axis_end_on(panels[0], analysis)
     joint.plot_axis_from_the_side(panels[1], analysis, 0)
     joint.plot_axis_from_the_side(panels[2], analysis, 1)
-    bar = figure.colorbar(axis.color_scale(analysis), cax=figure.add_subplot(grid[2, :]), orientation="horizontal")
+    bar = figure.colorbar(axis.color_scale(analysis), cax=figure.add_subplot(cells[4]), orientation="horizontal")
     bar.set_label(f"Angle θ ({analysis.settings.angle_unit})")
     for ax, letter in ((space, "a"), *zip(panels, "bcd", strict=True)):
         ax.set_title(letter, loc="left")
     frame = f"{analysis.settings.express_in} frame"
-    figure.suptitle(f"Joint axis in the {frame} ({joint.confidence_text(analysis)})", fontsize=8.0)
-    figure.legend(*panels[1].get_legend_handles_labels(), loc="outside lower center", ncols=3)
+    split = "\n" if narrow else " "
+    figure.suptitle(f"Joint axis in the {frame}{split}({joint.confidence_text(analysis)})", fontsize=8.0)
+    figure.legend(*panels[1].get_legend_handles_labels(), loc="outside lower center", ncols=1 if narrow else 3)
     return figure
 
 
-def error_figure(analysis: Analysis) -> Figure:
+def error_figure(analysis: Shown, *, width_mm: float = WIDTH_MM) -> Figure:
     """Make the figure of angle error and RMS displacement over time."""
-    figure = style.new_figure(_WIDTH_MM, 100.0)
+    narrow = width_mm < NARROW_MM
+    figure = style.new_figure(width_mm, 100.0)
     upper, lower = figure.subplots(2, 1, sharex=True)
     series.plot_angle_error(upper, analysis).set_xlabel("")
     series.plot_rms_displacement(lower, analysis)
-    figure.legend(*upper.get_legend_handles_labels(), loc="outside upper center", ncols=4)
+    figure.legend(*upper.get_legend_handles_labels(), loc="outside upper center", ncols=2 if narrow else 4)
     return figure
 
 
-FIGURES: Final[dict[str, Callable[[Analysis], Figure]]] = {
+FIGURES: Final[dict[str, MakeFigure]] = {
     "theta": theta_figure,
     "euler_parameters": euler_parameters_figure,
     "axis": axis_figure,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Final, NamedTuple
+from typing import Any, Final
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -11,8 +11,9 @@ from matplotlib.patches import Circle
 from mpl_toolkits.mplot3d.axes3d import Axes3D
 from numpy.typing import NDArray
 
-from elbowscrew.model import Analysis
-from elbowscrew.plots.axis import axis_segments, color_scale, directions_across, equal_aspect, forearm_path, plot_path
+from elbowscrew.model.shown import Shown
+from elbowscrew.motion.scene import Bundle, Region, bodies_in_space, directions_across, joint_bundle
+from elbowscrew.plots.axis import color_scale, equal_aspect, plot_path
 from elbowscrew.plots.style import CONFIDENCE, SPREAD
 from elbowscrew.tables import angle_in, length_in
 
@@ -21,29 +22,9 @@ Float = NDArray[np.float64]
 _AROUND: Final = 24
 _ALONG_IN_SPACE: Final = 13
 _ALONG: Final = 41
-_PERCENT: Final = 95.0
-_STEEPEST: Final = 1.4
 
 
-class _Bundle(NamedTuple):
-    """What is drawn, in the unit of length of the figures, in the frame the screws are expressed in.
-
-    The joint's axis passes `center` along `direction`, drawn `half` to either side; the axes of the frames are
-    `segments`. Its name says that it is the mean axis where the motion has no single one. Each of `spread` and
-    `confidence` is a half-angle (rad) and a radius.
-    """
-
-    name: str
-    direction: Float
-    center: Float
-    half: float
-    segments: Float
-    rows: NDArray[np.int64]
-    spread: tuple[float, float]
-    confidence: tuple[float, float] | None
-
-
-def plot_joint_axis_in_space(ax: Axes3D, analysis: Analysis) -> Axes3D:
+def plot_joint_axis_in_space(ax: Axes3D, analysis: Shown) -> Axes3D:
     """Draw the axes of the frames, the joint's axis, and the cones that hold 95 %."""
     bundle = _bundle(analysis)
     unit = analysis.settings.length_unit
@@ -56,16 +37,12 @@ def plot_joint_axis_in_space(ax: Axes3D, analysis: Analysis) -> Axes3D:
     along = np.linspace(-bundle.half, bundle.half, _ALONG_IN_SPACE)
     turn = np.linspace(0.0, 2.0 * np.pi, _AROUND)
     ring = np.cos(turn)[:, None] * u + np.sin(turn)[:, None] * v
-    for (angle, radius), look in _regions(bundle):
-        surface = (
-            bundle.center
-            + along[:, None, None] * bundle.direction
-            + _radius(along, angle, radius)[:, None, None] * ring
-        )
+    for region, look in _regions(bundle):
+        surface = bundle.center + along[:, None, None] * bundle.direction + region.reach(along)[:, None, None] * ring
         ax.plot_surface(
             *np.moveaxis(surface, 2, 0), color=look.get("color", look.get("facecolor")), alpha=0.25, linewidth=0.0
         )
-    path = forearm_path(analysis)
+    path = bodies_in_space(analysis).path
     plot_path(ax, path, unit)
     equal_aspect(ax, np.concatenate([ends, length_in(path[np.isfinite(path).all(axis=1)], unit)]))
     for name, label in (("x", ax.set_xlabel), ("y", ax.set_ylabel), ("z", ax.set_zlabel)):
@@ -73,7 +50,7 @@ def plot_joint_axis_in_space(ax: Axes3D, analysis: Analysis) -> Axes3D:
     return ax
 
 
-def plot_axis_from_the_side(ax: Axes, analysis: Analysis, side: int) -> Axes:
+def plot_axis_from_the_side(ax: Axes, analysis: Shown, side: int) -> Axes:
     """Draw the axes and the bands that hold 95 % along the joint's axis, what lies across it enlarged.
 
     `side` is 0 or 1: across to which of the two directions.
@@ -84,8 +61,8 @@ def plot_axis_from_the_side(ax: Axes, analysis: Analysis, side: int) -> Axes:
     offset = bundle.segments - bundle.center
     _add_segments(ax, analysis, bundle, np.stack([offset @ bundle.direction, offset @ directions[side]], axis=2))
     along = np.linspace(-bundle.half, bundle.half, _ALONG)
-    for (angle, radius), look in _regions(bundle):
-        reach = _radius(along, angle, radius)
+    for region, look in _regions(bundle):
+        reach = region.reach(along)
         ax.fill_between(along, -reach, reach, **look)
     ax.plot([-bundle.half, bundle.half], [0.0, 0.0], color="black", linewidth=1.3, zorder=4, label=bundle.name)
     ax.set_xlim(-bundle.half, bundle.half)
@@ -96,15 +73,15 @@ def plot_axis_from_the_side(ax: Axes, analysis: Analysis, side: int) -> Axes:
     return ax
 
 
-def plot_axis_end_on(ax: Axes, analysis: Analysis) -> Axes:
+def plot_axis_end_on(ax: Axes, analysis: Shown) -> Axes:
     """Draw the axes as seen along the joint's axis, with the circles that hold 95 % at the forearm."""
     bundle = _bundle(analysis)
     unit = analysis.settings.length_unit
     directions, names = directions_across(bundle.direction)
     offset = bundle.segments - bundle.center
     _add_segments(ax, analysis, bundle, np.stack([offset @ direction for direction in directions], axis=2))
-    for (_, radius), look in _regions(bundle):
-        ax.add_patch(Circle((0.0, 0.0), radius, **look))
+    for region, look in _regions(bundle):
+        ax.add_patch(Circle((0.0, 0.0), region.radius, **look))
     ax.plot(0.0, 0.0, "+", color="black", markersize=8, markeredgewidth=1.2, zorder=4)
     reach = 1.25 * _widest(bundle)
     ax.set_xlim(-reach, reach)
@@ -115,17 +92,17 @@ def plot_axis_end_on(ax: Axes, analysis: Analysis) -> Axes:
     return ax
 
 
-def _add_segments(ax: Axes, analysis: Analysis, bundle: _Bundle, segments: Float) -> None:
+def _add_segments(ax: Axes, analysis: Shown, bundle: Bundle, segments: Float) -> None:
     angle = angle_in(analysis.screw.angle[bundle.rows], analysis.settings.angle_unit)
     colors = color_scale(analysis).to_rgba(angle)
     ax.add_collection(LineCollection(list(segments), colors=colors, linewidths=0.7, zorder=2))
 
 
-def _widest(bundle: _Bundle) -> float:
-    return max(float(_radius(np.array([bundle.half]), *region)[0]) for region, _ in _regions(bundle)) or 1.0
+def _widest(bundle: Bundle) -> float:
+    return max(float(region.reach(np.array([bundle.half]))[0]) for region, _ in _regions(bundle)) or 1.0
 
 
-def confidence_text(analysis: Analysis) -> str:
+def confidence_text(analysis: Shown) -> str:
     """Say in a line what the joint's axis is known to."""
     best = analysis.joint_axis.best
     if best is None:
@@ -141,41 +118,17 @@ def confidence_text(analysis: Analysis) -> str:
     )
 
 
-def _bundle(analysis: Analysis) -> _Bundle:
-    unit = analysis.settings.length_unit
-    best = analysis.joint_axis.best
-    line = analysis.joint_axis.weighted_mean if best is None else best.line
-    path = forearm_path(analysis)
-    seen = path[np.isfinite(path).all(axis=1)]
-    center = line.point + ((seen.mean(axis=0) - line.point) @ line.direction) * line.direction
-    half = 0.55 * float(np.max(np.ptp(np.concatenate([seen, center[None]]), axis=0)))
-    rows, segments = axis_segments(analysis, center, half)
-    mean = analysis.mean_axis
-    spread = np.nanpercentile(mean.deviation, _PERCENT), np.nanpercentile(mean.distance, _PERCENT)
-    return _Bundle(
-        name="mean axis" if best is None else "joint axis",
-        direction=line.direction,
-        center=length_in(center, unit),
-        half=float(length_in(np.array(1.15 * half), unit)),
-        segments=length_in(segments, unit),
-        rows=rows,
-        spread=(float(spread[0]), float(length_in(np.array(spread[1]), unit))),
-        confidence=None if best is None else (best.axis_cone, float(length_in(np.array(best.point_radius), unit))),
-    )
+def _bundle(analysis: Shown) -> Bundle:
+    """Gather what is drawn, in the figures' unit of length."""
+    return joint_bundle(analysis).scaled(float(length_in(np.array(1.0), analysis.settings.length_unit)))
 
 
-def _regions(bundle: _Bundle) -> list[tuple[tuple[float, float], dict[str, Any]]]:
-    regions: list[tuple[tuple[float, float], dict[str, Any]]] = [(bundle.spread, SPREAD)]
+def _regions(bundle: Bundle) -> list[tuple[Region, dict[str, Any]]]:
+    regions: list[tuple[Region, dict[str, Any]]] = [(bundle.spread, SPREAD)]
     if bundle.confidence is not None:
         regions.append((bundle.confidence, CONFIDENCE))
     return regions
 
 
-def _radius(along: Float, angle: float, radius: float) -> Float:
-    """How far from the axis the region reaches: place and tilt err independently of each other."""
-    reach: Float = np.hypot(radius, np.tan(min(angle, _STEEPEST)) * along)
-    return reach
-
-
-def _ends(bundle: _Bundle) -> Float:
+def _ends(bundle: Bundle) -> Float:
     return bundle.center + bundle.half * np.outer([-1.0, 1.0], bundle.direction)

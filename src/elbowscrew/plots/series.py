@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
-from elbowscrew.model import Analysis
+from elbowscrew.model.shown import Shown
 from elbowscrew.motion.phases import runs_of
 from elbowscrew.plots import style
 from elbowscrew.plots.decimation import drawn_rows
@@ -19,7 +19,7 @@ Float = NDArray[np.float64]
 _NORMAL_95: Final = 1.959964
 
 
-def plot_theta(ax: Axes, analysis: Analysis) -> Axes:
+def plot_theta(ax: Axes, analysis: Shown) -> Axes:
     """Draw measured and modeled angle over time with the keyframes (the paper's figures 7 and 8)."""
     unit = analysis.settings.angle_unit
     angle = angle_in(analysis.screw.angle, unit)
@@ -37,10 +37,10 @@ def plot_theta(ax: Axes, analysis: Analysis) -> Axes:
     mark_movements(ax, analysis)
     mark_tracking(ax, analysis)
     ax.set_ylabel(f"Angle θ ({unit})")
-    return _over_time(ax, time_s)
+    return over_time(ax, time_s)
 
 
-def plot_euler_parameter(ax: Axes, analysis: Analysis, component: int) -> Axes:
+def plot_euler_parameter(ax: Axes, analysis: Shown, component: int) -> Axes:
     """Draw one of e0..e3, measured and modeled, over time (the paper's figures 9 and 10)."""
     time_s = analysis.screw.time_s
     measured = analysis.screw.euler_parameters[:, component]
@@ -51,23 +51,23 @@ def plot_euler_parameter(ax: Axes, analysis: Analysis, component: int) -> Axes:
     ax.plot(time_s[rows], measured[rows], label="keyframes", **style.KEYFRAME)
     mark_tracking(ax, analysis)
     ax.set_ylabel(f"e{'₀₁₂₃'[component]} (–)")
-    return _over_time(ax, time_s)
+    return over_time(ax, time_s)
 
 
-def plot_angle_error(ax: Axes, analysis: Analysis) -> Axes:
+def plot_angle_error(ax: Axes, analysis: Shown) -> Axes:
     """Draw the angle between modeled and measured orientation over time, with its RMS."""
     unit = analysis.settings.angle_unit
     return _plot_error(ax, analysis, angle_in(analysis.interpolated.angle_error, unit), "Angle error", unit)
 
 
-def plot_rms_displacement(ax: Axes, analysis: Analysis) -> Axes:
+def plot_rms_displacement(ax: Axes, analysis: Shown) -> Axes:
     """Draw the RMS displacement of the forearm's points over time, with its RMS."""
     unit = analysis.settings.length_unit
     values = length_in(analysis.interpolated.rms_displacement, unit)
     return _plot_error(ax, analysis, values, "RMS displacement", unit)
 
 
-def mark_tracking(ax: Axes, analysis: Analysis) -> Axes:
+def mark_tracking(ax: Axes, analysis: Shown) -> Axes:
     """Shade the frames without a measured pose: plain where they stay empty, hatched where they were filled in."""
     screw = analysis.screw
     half = 0.5 / analysis.recording.rate_hz
@@ -81,7 +81,7 @@ def mark_tracking(ax: Axes, analysis: Analysis) -> Axes:
     return ax
 
 
-def mark_movements(ax: Axes, analysis: Analysis) -> Axes:
+def mark_movements(ax: Axes, analysis: Shown) -> Axes:
     """Shade the movements between rests."""
     time_s, phases = analysis.screw.time_s, analysis.phases
     for k, (onset, offset) in enumerate(zip(phases.onset_rows, phases.offset_rows, strict=True)):
@@ -90,7 +90,7 @@ def mark_movements(ax: Axes, analysis: Analysis) -> Axes:
     return ax
 
 
-def _plot_error(ax: Axes, analysis: Analysis, values: Float, name: str, unit: str) -> Axes:
+def _plot_error(ax: Axes, analysis: Shown, values: Float, name: str, unit: str) -> Axes:
     time_s = analysis.screw.time_s
     _line(ax, time_s, values, label="model against measurement", **style.MEASURED)
     if np.isfinite(values).any():
@@ -111,7 +111,7 @@ def _plot_error(ax: Axes, analysis: Analysis, values: Float, name: str, unit: st
     mark_tracking(ax, analysis)
     ax.set_ylabel(f"{name} ({unit})")
     ax.set_ylim(bottom=min(0.0, ax.get_ylim()[0]))
-    return _over_time(ax, time_s)
+    return over_time(ax, time_s)
 
 
 def _line(ax: Axes, time_s: Float, values: Float, **look: Any) -> None:
@@ -119,13 +119,14 @@ def _line(ax: Axes, time_s: Float, values: Float, **look: Any) -> None:
     ax.plot(time_s[rows], values[rows], **look)
 
 
-def _over_time(ax: Axes, time_s: Float) -> Axes:
+def over_time(ax: Axes, time_s: Float) -> Axes:
+    """Let the axis along be the time of the recording."""
     margin = 0.01 * (time_s[-1] - time_s[0]) or 0.01
     ax.set_xlim(time_s[0] - margin, time_s[-1] + margin)
     ax.set_xlabel("Time (s)")
     return ax
 
 
-def _model_label(analysis: Analysis) -> str:
+def _model_label(analysis: Shown) -> str:
     method = style.METHOD_NAMES[analysis.settings.model_method]
     return f"{method} through {analysis.keyframes.row.size} poses"

@@ -1,0 +1,100 @@
+"""``elbowscrew report``: pages and publication figures from finished results."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from elbowscrew.cli import options
+
+_PAGES, _FIGURES = "Pages", "Figures for publication"
+
+
+def report(
+    results: Annotated[
+        list[Path],
+        typer.Argument(
+            metavar="RESULTS...", help="Result folders, or folders that hold them, as a batch's.", show_default=False
+        ),
+    ],
+    figures: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAMES",
+            rich_help_panel=_FIGURES,
+            help="Write these figures in place of pages, with commas: theta, euler_parameters, axis, joint_axis, "
+            "error, fig7, fig8, fig9, fig10 (the paper's), overlay (all trials, mean and deviation).",
+        ),
+    ] = None,
+    figure_format: Annotated[
+        list[options.FigureFormat] | None,
+        typer.Option(rich_help_panel=_FIGURES, help="May be given more than once.", show_default="pdf"),
+    ] = None,
+    width: Annotated[
+        str,
+        typer.Option(
+            metavar="WIDTH",
+            rich_help_panel=_FIGURES,
+            help="One column (single, 85 mm), two (double, 170 mm), or millimeters.",
+        ),
+    ] = "double",
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "--output",
+            "-o",
+            metavar="DIR",
+            rich_help_panel=_FIGURES,
+            help="Folder of the figures.",
+            show_default="elbowscrew_figures in the current folder",
+        ),
+    ] = None,
+    force: Annotated[
+        bool, typer.Option("--force", rich_help_panel=_FIGURES, help="Replace figures of the same names.")
+    ] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print no paths.")] = False,
+) -> None:
+    """Make report.html and index.html anew, or figures for publication.
+
+    From finished results, without analyzing again: a page for every trial, and one over those of a batch.
+    """
+    from elbowscrew.cli import render
+    from elbowscrew.cli.text import one_line, printable
+    from elbowscrew.errors import UsageError
+    from elbowscrew.report import remake_pages, results_in
+    from elbowscrew.report.names import FIGURE_CHOICES, figure_names, width_mm
+
+    if not figures:
+        given = {"--figure-format": figure_format, "--output": output, "--force": force or None}
+        idle = [name for name, value in given.items() if value is not None]
+        if idle or width != "double":
+            msg = f"{', '.join(idle or ['--width'])}: belongs to --figures; name some of {', '.join(FIGURE_CHOICES)}"
+            raise UsageError(msg)
+        written, errors = remake_pages(results)
+    else:
+        from elbowscrew.report.publication import save_publication_figures
+
+        errors = ()
+        names, wide = figure_names(figures), width_mm(width)
+        formats = list(dict.fromkeys(kind.value for kind in figure_format or [options.FigureFormat.PDF]))
+        if "none" in formats:
+            msg = "--figure-format none: expected png, svg or pdf, as --figures asks for figures"
+            raise UsageError(msg)
+        folder = output if output is not None else Path("elbowscrew_figures")
+        published = save_publication_figures(results_in(results), folder, names, formats, width_mm=wide, force=force)
+        written = published.files
+        for path in published.left_out:
+            sys.stderr.write(
+                f"elbowscrew: warning: {one_line(str(path))}: has no flexion-extension cycle, and is left out of the "
+                "overlay\n"
+            )
+    if not quiet:
+        for path in written:
+            render.emit(f"{printable(str(path))}\n")
+    for error in errors[1:]:
+        sys.stderr.write(f"elbowscrew: error: {one_line(str(error))}\n")
+    if errors:
+        raise errors[0]

@@ -1,0 +1,288 @@
+"""A finished result read back from its folder, without analyzing anything again."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowscrew import tables
+from elbowscrew.errors import ResultError
+from elbowscrew.geometry.dual_quaternion import conjugate, dual_quat_from_pose, multiply
+from elbowscrew.io.result_tables import read_columns
+from elbowscrew.model import (
+    InterpolatedMotion,
+    JointMotion,
+    Keyframes,
+    ModelPhases,
+    MovementPhases,
+    Repetitions,
+    ScrewMotion,
+)
+from elbowscrew.model.finished import (
+    FinishedBody,
+    FinishedClock,
+    FinishedFit,
+    FinishedJointAxis,
+    FinishedLine,
+    FinishedMean,
+    FinishedTrial,
+)
+from elbowscrew.settings import Settings
+
+Float = NDArray[np.float64]
+Columns = dict[str, NDArray[Any]]
+
+UNREADABLE = (KeyError, TypeError, ValueError, IndexError, AttributeError)
+"""What a result from elsewhere, or one that somebody edited, raises where it is not as it was written."""
+
+
+def is_result(folder: Path) -> bool:
+    """Tell whether a folder holds the result of one trial."""
+    return (folder / "summary.json").is_file() and (folder / "screw.csv").is_file()
+
+
+def read_summary(path: Path) -> dict[str, Any]:
+    """Read ``summary.json`` or ``joint.json`` of a result.
+
+    Raises
+    ------
+    ResultError
+        If there is none, or it is not what was written.
+    """
+    try:
+        content = json.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        msg = (
+            f"{path.parent}: holds no finished result: {path.name}: {error.strerror or error}; analyze the trial first"
+        )
+        raise ResultError(msg) from error
+    except (ValueError, RecursionError) as error:
+        msg = f"{path}: not JSON: {error}; analyze the trial again"
+        raise ResultError(msg) from error
+    if not isinstance(content, dict):
+        msg = f"{path}: expected an object, found {type(content).__name__}; analyze the trial again"
+        raise ResultError(msg)
+    return content
+
+
+def read_finished(folder: Path, summary: Mapping[str, Any] | None = None) -> FinishedTrial:
+    """Read a result folder back, without analyzing anything again.
+
+    Parameters
+    ----------
+    folder : Path
+        As `elbowscrew.save_analysis` wrote it, in whatever units.
+    summary : mapping, optional
+        What will stand in ``summary.json``, which is written last.
+
+    Returns
+    -------
+    FinishedTrial
+
+    Raises
+    ------
+    ResultError
+        If the folder holds no finished result, or a damaged one.
+    """
+    if summary is None:
+        summary = read_summary(folder / "summary.json")
+    joint_summary = read_summary(folder / "joint.json")
+    try:
+        return _finished(folder, summary, joint_summary)
+    except UNREADABLE as error:
+        msg = (
+            f"{folder}: not a result of this version of the program: {type(error).__name__} {error}; "
+            "analyze the trial again"
+        )
+        raise ResultError(" ".join(msg.split())) from error
+
+
+def _finished(folder: Path, summary: Mapping[str, Any], joint_summary: dict[str, Any]) -> FinishedTrial:
+    settings = Settings.model_validate(summary["settings"])
+    units = settings.angle_unit, settings.length_unit
+    read = {
+        name: read_columns(folder / f"{name}.csv", table, *units)
+        for name, table in (
+            ("screw", tables.SCREW_COLUMNS),
+            ("interpolation", tables.INTERPOLATION_COLUMNS),
+            ("repetitions", tables.REPETITION_COLUMNS),
+        )
+    }
+    curve = folder / "repetition_curve.csv"
+    screw, interpolated = _screw(read["screw"]), _interpolated(read["interpolation"])
+    bodies, trial = joint_summary["bodies"], summary["trial"]
+    return FinishedTrial(
+        folder=folder,
+        summary=summary,
+        joint_summary=joint_summary,
+        settings=settings,
+        recording=FinishedClock(rate_hz=float(trial["rate_hz"])),
+        arm=None if trial["arm"] is None else _body(trial["arm"], bodies["arm_markers_mm"]),
+        forearm=_body(trial["forearm"], bodies["forearm_markers_mm"]),
+        joint=_joint(screw, bodies, trial, settings),
+        screw=screw,
+        mean_axis=_mean(summary["motion"]["mean_axis"], joint_summary["dispersion"]),
+        joint_axis=_joint_axis(joint_summary),
+        phases=_phases(summary["motion"]["movements"], screw.frame),
+        repetitions=_repetitions(read["repetitions"]),
+        repetition_curve=read_columns(curve, tables.CURVE_COLUMNS, *units) if curve.exists() else None,
+        keyframes=_keyframes(summary["interpolation"], interpolated),
+        interpolated=interpolated,
+    )
+
+
+def _vectors(columns: Columns, *names: str) -> Float:
+    return np.stack([columns[name] for name in names], axis=1)
+
+
+def _axis(columns: Columns) -> dict[str, Any]:
+    return {
+        "axis_direction": _vectors(columns, "axis_x", "axis_y", "axis_z"),
+        "axis_point": _vectors(columns, "point_x", "point_y", "point_z"),
+    }
+
+
+def _displacement(columns: Columns) -> dict[str, Any]:
+    return {
+        "frame": columns["frame"],
+        "time_s": columns["time_s"],
+        "angle": columns["theta"],
+        "slide": columns["slide"],
+        "euler_parameters": _vectors(columns, "e0", "e1", "e2", "e3"),
+        "translation": _vectors(columns, "d_x", "d_y", "d_z"),
+    }
+
+
+def _screw(columns: Columns) -> ScrewMotion:
+    return ScrewMotion(
+        **_displacement(columns),
+        **_axis(columns),
+        valid=columns["valid"] == 1,
+        filled=columns["filled"] == 1,
+        arm_loss=columns["arm_loss"],
+        forearm_loss=columns["forearm_loss"],
+        angle_sd=columns["theta_sd"],
+        slide_sd=columns["slide_sd"],
+        axis_sd=columns["axis_sd"],
+        point_sd=columns["point_sd"],
+        axis_cone=columns["axis_cone95"],
+        point_radius=columns["point_radius95"],
+    )
+
+
+def _interpolated(columns: Columns) -> InterpolatedMotion:
+    return InterpolatedMotion(
+        **_displacement(columns),
+        phase=np.ma.asarray(columns["phase"]),
+        fraction=columns["t"],
+        angle_error=columns["angle_error"],
+        translation_error=columns["translation_error"],
+        rms_displacement=columns["rms_displacement"],
+        axis_error=columns["axis_error"],
+        axis_distance=columns["axis_distance"],
+    )
+
+
+def _repetitions(columns: Columns) -> Repetitions:
+    kept = ("number", "start_frame", "inversion_frame", "end_frame", "start_time_s", "end_time_s", "duration_s")
+    return Repetitions(
+        **{name: columns[name] for name in (*kept, "slide_range", "flexion_speed", "extension_speed")},
+        **_axis(columns),
+        start_angle=columns["theta_start"],
+        top_angle=columns["theta_max"],
+        angle_range=columns["theta_range"],
+        axis_deviation=columns["axis_deviation"],
+    )
+
+
+def _joint(screw: ScrewMotion, bodies: dict[str, Any], trial: dict[str, Any], settings: Settings) -> JointMotion:
+    """Turn the displacements back into poses of the forearm in the arm."""
+    reference, arm = _pose(bodies["forearm_in_arm"]), _pose(bodies["arm_in_lab"])
+    D = dual_quat_from_pose(screw.euler_parameters, screw.translation)
+    match settings.express_in:
+        case "forearm":
+            poses = multiply(reference, D)
+        case "arm":
+            poses = multiply(D, reference)
+        case "lab":
+            poses = multiply(conjugate(arm), multiply(D, multiply(arm, reference)))
+    return JointMotion(
+        dual_quat_proximal_distal=poses,
+        measured=screw.valid,
+        filled=screw.filled,
+        reference=reference,
+        reference_row=_rows([trial["reference_frame"]], screw.frame)[0],
+        lowpass_hz=trial["lowpass_hz"],
+        dual_quat_lab_proximal=arm,
+    )
+
+
+def _pose(pose: dict[str, Any]) -> Float:
+    return dual_quat_from_pose(np.array(pose["quaternion"], dtype=np.float64), _millimeters(pose["position_mm"]))
+
+
+def _millimeters(values: Any) -> Float:
+    """Read lengths in millimeters as meters."""
+    return np.array(values, dtype=np.float64) / 1000.0
+
+
+def _body(trial: dict[str, Any], markers: Any) -> FinishedBody:
+    offsets = None if markers is None else _millimeters(markers).reshape(-1, 3)
+    return FinishedBody(name=str(trial["name"]), marker_offsets=offsets)
+
+
+def _line(line: dict[str, Any]) -> FinishedLine:
+    return FinishedLine(direction=np.array(line["direction"], dtype=np.float64), point=_millimeters(line["point_mm"]))
+
+
+def _mean(mean: dict[str, Any], dispersion: dict[str, Any]) -> FinishedMean:
+    line = _line(mean)
+    spread = float(np.radians(dispersion["direction_95_deg"])), dispersion["place_95_mm"] / 1000.0
+    return FinishedMean(direction=line.direction, point=line.point, spread95=spread)
+
+
+def _joint_axis(joint: dict[str, Any]) -> FinishedJointAxis:
+    preferred = joint["preferred"]
+    best = None
+    if preferred is not None:
+        fit = joint[preferred]
+        cone, radius = (
+            np.nan if fit[name] is None else float(fit[name]) for name in ("axis_cone95_deg", "point_radius95_mm")
+        )
+        best = FinishedFit(line=_line(fit), axis_cone=float(np.radians(cone)), point_radius=radius / 1000.0)
+    return FinishedJointAxis(preferred=preferred, best=best, weighted_mean=_line(joint["weighted_mean"]))
+
+
+def _phases(movements: list[dict[str, int]], frame: NDArray[np.int64]) -> MovementPhases:
+    onset = _rows([movement["onset_frame"] for movement in movements], frame)
+    offset = _rows([movement["offset_frame"] for movement in movements], frame)
+    moving = np.zeros(frame.size, dtype=bool)
+    for first, last in zip(onset, offset, strict=True):
+        moving[first : last + 1] = True
+    return MovementPhases(onset_rows=onset, offset_rows=offset, moving=moving, threshold=float("nan"))
+
+
+def _keyframes(model: Mapping[str, Any], interpolated: InterpolatedMotion) -> Keyframes:
+    """Read the keyframes; a phase begins where its number first stands, and the last one ends at the last keyframe."""
+    row = _rows(model["keyframes"], interpolated.frame)
+    begins = np.unique(interpolated.phase.compressed(), return_index=True)[1]
+    bounds = np.append(np.flatnonzero(~np.ma.getmaskarray(interpolated.phase))[begins], row[-1])
+    laws = [_rows([law["start_frame"], law["end_frame"]], interpolated.frame) for law in model["phase_laws"]]
+    phases = ModelPhases(bound_rows=bounds.astype(np.int64), law_rows=np.stack(laws))
+    return Keyframes(row=row, frame=interpolated.frame[row], phases=phases, knots=())
+
+
+def _rows(numbers: Any, frame: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Rows of frame numbers; a number that stands twice is taken where it stands first."""
+    order = np.argsort(frame, kind="stable")
+    wanted = np.array(numbers, dtype=np.int64)
+    places = np.searchsorted(frame, wanted, sorter=order)
+    if (places == frame.size).any() or (frame[order[places]] != wanted).any():
+        msg = "a frame of the summary is not in screw.csv"
+        raise ValueError(msg)
+    return order[places].astype(np.int64)

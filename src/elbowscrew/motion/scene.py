@@ -1,0 +1,138 @@
+"""What stands in space around the joint, in the frame the screws are expressed in: axes, bodies and the path."""
+
+from __future__ import annotations
+
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowscrew.geometry.dual_quaternion import conjugate, multiply, pose_from_dual_quat, transform_points
+from elbowscrew.model.shown import Shown
+
+Float = NDArray[np.float64]
+
+_MOST_AXES: Final = 60
+_STEEPEST: Final = 1.4
+
+
+class Bodies(NamedTuple):
+    """Bodies in the frame shown, meters.
+
+    The path (N, 3) of the forearm's origin; the arm's origin (3,), None without an arm; and the markers (M, 3) of the
+    arm and of the forearm at the reference, None where the file has none.
+    """
+
+    path: Float
+    arm: Float | None
+    arm_markers: Float | None
+    forearm_markers: Float | None
+
+
+class Region(NamedTuple):
+    """What holds 95 % of lines about an axis: a half-angle (rad) and a radius, meters unless scaled."""
+
+    angle: float
+    radius: float
+
+    def reach(self, along: Float) -> Float:
+        """How far from the axis it reaches: place and tilt err independently of each other."""
+        reach: Float = np.hypot(self.radius, np.tan(min(self.angle, _STEEPEST)) * along)
+        return reach
+
+
+class Bundle(NamedTuple):
+    """The joint's axis among the axes of the frames, meters unless scaled.
+
+    It passes `center` along `direction` and is drawn `half` to either side; `rows` are some of the frames with an axis
+    and `segments` (M, 2, 3) pieces of these. Its name says that it is the mean axis where the motion has no single one,
+    and then there is no `confidence`.
+    """
+
+    name: str
+    direction: Float
+    center: Float
+    half: float
+    rows: NDArray[np.int64]
+    segments: Float
+    spread: Region
+    confidence: Region | None
+
+    def scaled(self, scale: float) -> Bundle:
+        """Give the same bundle in another unit of length."""
+        spread, known = self.spread, self.confidence
+        return self._replace(
+            center=scale * self.center,
+            half=scale * self.half,
+            segments=scale * self.segments,
+            spread=Region(spread.angle, scale * spread.radius),
+            confidence=None if known is None else Region(known.angle, scale * known.radius),
+        )
+
+
+def bodies_in_space(shown: Shown) -> Bodies:
+    """Place the bodies in the frame the screws are expressed in."""
+    joint = shown.joint
+    identity = np.array([1.0, 0, 0, 0, 0, 0, 0, 0])
+    change: Float = {
+        "forearm": conjugate(joint.reference),
+        "arm": identity,
+        "lab": joint.dual_quat_lab_proximal,
+    }[shown.settings.express_in]
+    markers = [
+        None if body is None or body.marker_offsets is None else transform_points(pose, body.marker_offsets)
+        for body, pose in ((shown.arm, change), (shown.forearm, multiply(change, joint.reference)))
+    ]
+    return Bodies(
+        path=pose_from_dual_quat(multiply(change, joint.dual_quat_proximal_distal))[1],
+        arm=None if shown.arm is None else pose_from_dual_quat(change)[1],
+        arm_markers=markers[0],
+        forearm_markers=markers[1],
+    )
+
+
+def joint_bundle(shown: Shown) -> Bundle:
+    """Gather the joint's axis, the axes of the frames about it, and what holds 95 % of each."""
+    best = shown.joint_axis.best
+    line = shown.joint_axis.weighted_mean if best is None else best.line
+    path = bodies_in_space(shown).path
+    seen = path[np.isfinite(path).all(axis=1)]
+    center = line.point + ((seen.mean(axis=0) - line.point) @ line.direction) * line.direction
+    half = 0.55 * float(np.max(np.ptp(np.concatenate([seen, center[None]]), axis=0)))
+    rows, segments = axis_segments(shown, center, half)
+    return Bundle(
+        name="mean axis" if best is None else "joint axis",
+        direction=line.direction,
+        center=center,
+        half=1.15 * half,
+        rows=rows,
+        segments=segments,
+        spread=Region(*shown.mean_axis.spread95),
+        confidence=None if best is None else Region(best.axis_cone, best.point_radius),
+    )
+
+
+def axis_segments(shown: Shown, center: Float, half: float) -> tuple[NDArray[np.int64], Float]:
+    """Rows (M,) of some of the frames with an axis, and pieces (M, 2, 3) of their axes about the center, meters."""
+    rows = thinned(np.flatnonzero(shown.screw.axis_known), _MOST_AXES)
+    direction, point = shown.screw.axis_direction[rows], shown.screw.axis_point[rows]
+    middle = point + np.sum((center - point) * direction, axis=1, keepdims=True) * direction
+    return rows, np.stack([middle - half * direction, middle + half * direction], axis=1)
+
+
+def directions_across(direction: Float) -> tuple[tuple[Float, Float], tuple[str, str]]:
+    """Two unit vectors across a direction (3,), and the coordinates that they lean to."""
+    n = direction
+    order = np.argsort(np.abs(n), kind="stable")
+    first, second = sorted(order[:2])
+    u = np.eye(3)[first] - n[first] * n
+    u /= np.linalg.norm(u)
+    v = np.cross(n, u)
+    if v[second] < 0.0:
+        v = -v
+    return (u, v), ("xyz"[first], "xyz"[second])
+
+
+def thinned(rows: NDArray[np.int64], most: int) -> NDArray[np.int64]:
+    """At most so many of the rows, evenly chosen, the first and the last among them."""
+    return rows if rows.size <= most else rows[np.linspace(0, rows.size - 1, most).astype(np.int64)]

@@ -1,0 +1,76 @@
+"""The paper's figures 7 to 10 one by one: angle and Euler parameters, measured and modeled."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import Any, Final
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from elbowscrew.model.shown import Shown
+from elbowscrew.plots import series, style
+from elbowscrew.plots.figures import NARROW_MM, WIDTH_MM, MakeFigure
+from elbowscrew.tables import angle_in
+
+Float = NDArray[np.float64]
+
+# Okabe and Ito's colors with line styles of their own, so that they are apart in grey as well.
+_COMPONENTS: Final[tuple[dict[str, Any], ...]] = (
+    {"color": "#000000", "linestyle": "-"},
+    {"color": "#D55E00", "linestyle": (0, (5, 2))},
+    {"color": "#0072B2", "linestyle": (0, (1, 1.2))},
+    {"color": "#009E73", "linestyle": (0, (6, 2, 1, 2))},
+)
+
+
+def _angle_figure(analysis: Shown, *, width_mm: float = WIDTH_MM, modeled: bool) -> Figure:
+    figure = style.new_figure(width_mm, 0.4 * width_mm + 20.0)
+    ax = figure.add_subplot()
+    unit, time_s = analysis.settings.angle_unit, analysis.screw.time_s
+    rows = analysis.keyframes.row
+    motion = analysis.interpolated if modeled else analysis.screw
+    angle = angle_in(motion.angle, unit)
+    ax.plot(time_s, angle, label="modeled" if modeled else "measured", **(style.MODELED if modeled else style.MEASURED))
+    ax.plot(time_s[rows], angle_in(analysis.screw.angle[rows], unit), label="keyframes", **style.KEYFRAME)
+    if not modeled:
+        series.mark_tracking(ax, analysis)
+    ax.set_ylabel(f"Angle θ ({unit})")
+    _alike(ax, angle_in(analysis.screw.angle, unit), angle_in(analysis.interpolated.angle, unit))
+    series.over_time(ax, time_s)
+    figure.legend(*ax.get_legend_handles_labels(), loc="outside upper center", ncols=4)
+    return figure
+
+
+def _euler_figure(analysis: Shown, *, width_mm: float = WIDTH_MM, modeled: bool) -> Figure:
+    figure = style.new_figure(width_mm, 0.4 * width_mm + 20.0)
+    ax = figure.add_subplot()
+    time_s = analysis.screw.time_s
+    motion = analysis.interpolated if modeled else analysis.screw
+    for component, look in enumerate(_COMPONENTS):
+        ax.plot(time_s, motion.euler_parameters[:, component], label=f"$e_{component}$", linewidth=1.3, **look)
+    if not modeled:
+        series.mark_tracking(ax, analysis)
+    ax.set_ylabel("Modeled $e_k$ (–)" if modeled else "Measured $e_k$ (–)")
+    _alike(ax, analysis.screw.euler_parameters, analysis.interpolated.euler_parameters)
+    series.over_time(ax, time_s)
+    figure.legend(*ax.get_legend_handles_labels(), loc="outside upper center", ncols=4 if width_mm < NARROW_MM else 6)
+    return figure
+
+
+def _alike(ax: Axes, *both: Float) -> None:
+    """Give figures of the measured and of the modeled motion one scale, so that they can be compared."""
+    low, high = min(float(np.nanmin(part)) for part in both), max(float(np.nanmax(part)) for part in both)
+    air = 0.05 * (high - low) or 0.05
+    ax.set_ylim(low - air, high + air)
+
+
+PAPER_FIGURES: Final[dict[str, MakeFigure]] = {
+    "fig7": partial(_angle_figure, modeled=False),
+    "fig8": partial(_angle_figure, modeled=True),
+    "fig9": partial(_euler_figure, modeled=False),
+    "fig10": partial(_euler_figure, modeled=True),
+}
+"""Counterparts of the figures of Pennestrì and Valentini 2010, of any trial."""

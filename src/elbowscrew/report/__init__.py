@@ -1,0 +1,123 @@
+"""Pages and publication figures of finished results; nothing here analyzes anything.
+
+Everything is imported where it is used: an analysis starts without the template engine.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import NamedTuple
+
+from elbowscrew.errors import ResultError
+
+
+def write_trial_page(folder: Path) -> Path:
+    """Write ``report.html`` of one result folder, whole or not at all.
+
+    Parameters
+    ----------
+    folder : Path
+        As `elbowscrew.save_analysis` wrote it. A page of ours is replaced.
+
+    Returns
+    -------
+    Path
+        The page.
+
+    Raises
+    ------
+    ResultError
+        If the folder holds no finished result, or a damaged one.
+    OutputError
+        If something else has the page's name, or the disk does not take it.
+    """
+    from elbowscrew.report.trial_page import write_trial_page as write
+
+    return write(folder)
+
+
+def write_study_page(folder: Path) -> Path:
+    """Write ``index.html`` over all result folders inside a folder, whole or not at all.
+
+    Parameters
+    ----------
+    folder : Path
+        Of a batch, with ``summary.csv`` and ``failures.csv`` if there; or any that holds result folders, however deep.
+
+    Returns
+    -------
+    Path
+        The page.
+
+    Raises
+    ------
+    ResultError
+        If there are neither results nor failures.
+    OutputError
+        If something else has the page's name, or the disk does not take it.
+    """
+    from elbowscrew.report.study_page import write_study_page as write
+
+    return write(folder)
+
+
+class Remade(NamedTuple):
+    """Pages that were made, and why some could not be: a damaged result stops no other."""
+
+    pages: tuple[Path, ...]
+    errors: tuple[ResultError, ...]
+
+
+def remake_pages(folders: Iterable[Path]) -> Remade:
+    """Make the pages of result folders anew; in a folder that holds some, theirs and the one over all of them.
+
+    Parameters
+    ----------
+    folders : iterable of Path
+
+    Returns
+    -------
+    Remade
+
+    Raises
+    ------
+    ResultError
+        If a folder neither is nor holds a finished result.
+    OutputError
+        If something else has a page's name, or the disk does not take it.
+    """
+    from elbowscrew.io.results_reading import is_result
+
+    pages, errors = [], []
+    for folder in folders:
+        for result in results_in([folder]):
+            try:
+                pages.append(write_trial_page(result))
+            except ResultError as error:
+                errors.append(error)
+        if not is_result(folder):
+            pages.append(write_study_page(folder))
+    return Remade(tuple(dict.fromkeys(pages)), tuple(errors))
+
+
+def results_in(folders: Iterable[Path]) -> tuple[Path, ...]:
+    """Find the result folders among folders and inside them, each once.
+
+    Raises
+    ------
+    ResultError
+        If a folder neither is nor holds a finished result.
+    """
+    from elbowscrew.io.results_reading import is_result
+    from elbowscrew.report.study import result_folders
+
+    found = []
+    for folder in folders:
+        inside = [folder] if is_result(folder) else list(result_folders(folder))
+        if not inside:
+            what = "holds no finished result" if folder.is_dir() else "no such folder"
+            msg = f"{folder}: {what}; analyze trials first, and give the folders that were written"
+            raise ResultError(msg)
+        found += inside
+    return tuple(dict.fromkeys(found))

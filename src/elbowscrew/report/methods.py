@@ -1,0 +1,197 @@
+"""The paragraph for a paper's methods section, with the settings and numbers of this very result."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any, Final
+
+from elbowscrew.model.finished import FinishedTrial
+
+_FRAMES: Final = {
+    "forearm": "the forearm's frame at the reference",
+    "arm": "the upper arm's frame",
+    "lab": "the laboratory frame, with the upper arm where it was at the reference",
+}
+_METHODS: Final = {
+    "dlb": "dual quaternion linear blending (DLB)",
+    "sclerp": "screw linear interpolation (ScLERP)",
+    "sdlb": "dual quaternion linear blending of neighboring poses (sDLB)",
+    "dib": "dual quaternion iterative blending (DIB)",
+    "catmull-rom": "a Catmull-Rom spline of dual quaternions",
+}
+_KNOTS: Final = {
+    "law": "the law's value at its time",
+    "chord": "the accumulated distance of the origins",
+    "uniform": "its number, in equal steps",
+    "angle": "the accumulated angle",
+}
+_KEYFRAMES_TOLD: Final = 12
+PAPER: Final = (
+    "Pennestrì E, Valentini PP. Dual quaternions as a tool for rigid body motion analysis: a tutorial with an "
+    "application to biomechanics. The Archive of Mechanical Engineering 57 (2010). doi:10.2478/v10180-010-0010-2"
+)
+
+
+def methods_of(trial: FinishedTrial) -> str:
+    """Describe what was done to this trial, in sentences that can be published.
+
+    Parameters
+    ----------
+    trial : FinishedTrial
+
+    Returns
+    -------
+    str
+        Plain text; names in it are the file's own.
+    """
+    return " ".join(_sentences(trial))
+
+
+def citations_of(trial: FinishedTrial) -> tuple[str, ...]:
+    """Say what to cite."""
+    return (f"elbowscrew, version {trial.summary['elbowscrew']} (BSD-3-Clause).", PAPER)
+
+
+def _sentences(trial: FinishedTrial) -> Iterator[str]:
+    settings, summary = trial.settings, trial.summary
+    yield from _recording(trial, summary["trial"])
+    if trial.arm is None:
+        yield "The upper arm was taken to stand still, so that poses of the forearm are relative motion."
+    else:
+        yield "Motion of the forearm relative to the upper arm was described by unit dual quaternions."
+    window = settings.reference_window
+    mean = f"the mean of {window} frames from frame" if window > 1 else "frame"
+    yield (
+        f"The displacement from the reference pose ({mean} {summary['trial']['reference_frame']}) was resolved into "
+        f"its finite helical (screw) axis, the rotation θ about it and the translation along it, expressed in "
+        f"{_FRAMES[settings.express_in]}."
+    )
+    if settings.axis_sd_deg is None:
+        yield f"Axes are given for rotations of {settings.min_angle_deg:g}° and more."
+    else:
+        yield f"Axes are given where the standard deviation of their direction is {settings.axis_sd_deg:g}° or less."
+    yield from _noise(trial.joint_summary["noise"])
+    yield from _joint_axis(trial)
+    yield from _model(trial)
+    yield f"Computations were made with elbowscrew {summary['elbowscrew']} (Pennestrì and Valentini 2010)."
+
+
+def _recording(trial: FinishedTrial, figures: Mapping[str, Any]) -> Iterator[str]:
+    settings = trial.settings
+    if settings.resample_hz is None:
+        yield f"Poses of the segments were recorded at {figures['rate_hz']:.6g} Hz."
+    else:
+        yield "Poses of the segments were recorded."
+    if settings.arm_markers or settings.forearm_markers:
+        way = {"svd": "least squares", "dual-qr": "the dual QR decomposition"}[settings.pose_method]
+        yield f"Poses were found from marker positions by {way}."
+    lowpass = figures["lowpass_hz"]
+    if lowpass is None:
+        yield "The poses were not filtered."
+    else:
+        chosen = ", chosen by residual analysis (Winter 2009)" if settings.lowpass_hz == "auto" else ""
+        yield (
+            f"The poses were low-pass filtered at {lowpass:.3g} Hz{chosen}: second-order Butterworth, forward and "
+            "backward, with the cut-off corrected for the two passes, on the components of sign-continuous dual "
+            "quaternions."
+        )
+    if settings.resample_hz is not None:
+        yield f"They were resampled to {settings.resample_hz:g} Hz by screw linear interpolation (ScLERP)."
+    who = "The forearm was" if trial.arm is None else "Both segments were"
+    missing = f"{who} tracked in {100.0 * (1.0 - figures['missing_share']):.1f} % of {figures['frames']} frames"
+    if figures["filled_frames"]:
+        yield (
+            f"{missing}; gaps of up to {settings.max_gap_s:g} s ({figures['filled_frames']} frames) were filled by "
+            "ScLERP, and filled poses entered neither means nor errors."
+        )
+    else:
+        yield f"{missing}; no gaps were filled."
+
+
+def _noise(noise: Mapping[str, Any]) -> Iterator[str]:
+    sources = sorted({body["source"] for body in noise.values() if body is not None})
+    if sources:
+        yield (
+            "Standard deviations of angle, translation and axis are propagated from the noise of the poses "
+            f"({', '.join(sources)})."
+        )
+
+
+def _joint_axis(trial: FinishedTrial) -> Iterator[str]:
+    joint = trial.joint_summary
+    preferred = joint["preferred"]
+    if preferred is None:
+        yield (
+            "The motion has no single axis (a hinge leaves more than a quarter of its rotation unexplained); the mean "
+            "of the helical axes, weighted by sin²(θ/2), is given (Woltring 1994)."
+        )
+    else:
+        robust = ", frames weighted by Tukey's biweight" if trial.settings.robust else ""
+        fit = joint[preferred]
+        why = "exceeds" if preferred == "screw_hinge" else "does not exceed"
+        yield (
+            f"The joint axis was fitted to the relative poses of {fit['frames']} frames by maximum likelihood as a "
+            f"hinge and as a screw-hinge{robust}; the {preferred.replace('_', '-')} is reported, as the pitch of the "
+            f"screw-hinge {why} three of its standard deviations."
+        )
+        if fit["axis_cone95_deg"] is not None:
+            yield (
+                "Its 95 % cone and radius account for the size and the autocorrelation of the residuals: "
+                f"{fit['axis_cone95_deg']:.2g}° and {fit['point_radius95_mm']:.2g} mm."
+            )
+    yield (
+        "The dispersion of the helical axes is their angle to the plain mean of their directions "
+        f"(median {joint['dispersion']['direction_median_deg']:.2g}°)."
+    )
+
+
+def _model(trial: FinishedTrial) -> Iterator[str]:
+    settings, model = trial.settings, trial.summary["interpolation"]
+    keyframes = model["keyframes"]
+    listed = f"frames {', '.join(map(str, keyframes))}" if len(keyframes) <= _KEYFRAMES_TOLD else "keyframes.csv"
+    pieces = "phase by phase" if settings.blend == "piecewise" else "all poses at once"
+    yield (
+        f"The motion was modeled by {_METHODS[settings.model_method]} of {len(keyframes)} keyframe poses ({listed}), "
+        f"{pieces}."
+    )
+    if settings.tolerance_mm is not None:
+        yield (
+            "The keyframes are the fewest measured poses between which the RMS displacement stays within "
+            f"{settings.tolerance_mm:g} mm in every frame, found by dynamic programming."
+        )
+    elif len(keyframes) > model["phases"] + 1:
+        yield f"The parameter of each keyframe is {_KNOTS[settings.knots]}."
+    yield from _laws(trial, model)
+    points = model["points"]
+    over = (
+        "the forearm's markers"
+        if points["from"] == "markers"
+        else f"points with a radius of gyration of {points['radius_of_gyration_mm']:.3g} mm"
+    )
+    yield (
+        f"The model's error is the angle between modeled and measured orientation, and the RMS displacement of {over}."
+    )
+
+
+def _laws(trial: FinishedTrial, model: Mapping[str, Any]) -> Iterator[str]:
+    """Tell phases and laws; which law a best fit chose stands in the summary."""
+    settings, phases = trial.settings, model["phases"]
+    count = f"{phases} phase{'s' if phases > 1 else ''}"
+    if settings.tolerance_mm is not None or settings.keyframes is not None:
+        between = count
+    elif settings.inversion is not None:
+        between = f"{count}, with the inversion at frame {settings.inversion}"
+    elif settings.phases == "whole" or not trial.summary["motion"]["movements"]:
+        between = f"{count} between start, inversion and end of the recording"
+    else:
+        between = f"{count} between turns and rests of the joint"
+    match settings.model_law:
+        case "best":
+            found = ", ".join(dict.fromkeys(law["law"] for law in model["phase_laws"]))
+            law = f"of the known laws of motion each phase follows the one nearest the measurement ({found})"
+        case "empirical":
+            law = "the time course in each phase is the recording's own"
+        case name:
+            law = f"the law of motion is the {name} one"
+    peak = "" if settings.law_peak is None else f", with its highest velocity at {settings.law_peak:g} of the phase"
+    yield f"There {'is' if phases == 1 else 'are'} {between}; {law}{peak}."

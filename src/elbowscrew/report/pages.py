@@ -1,0 +1,149 @@
+"""Pages that open from disk and ask the network for nothing: templates, what they embed, and how they are written."""
+
+from __future__ import annotations
+
+import base64
+import functools
+import hashlib
+import json
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Any, Final
+
+import jinja2
+from markupsafe import Markup
+
+from elbowscrew._version import __version__
+from elbowscrew.errors import ResultError
+from elbowscrew.io.results_reading import UNREADABLE
+from elbowscrew.io.staging import write_files
+
+MARK: Final = 'name="generator" content="elbowscrew'
+"""What a page of ours has at its beginning, so that it may be replaced."""
+
+UNSHOWABLE: Final = (*UNREADABLE, jinja2.UndefinedError)
+_HERE: Final = Path(__file__).parent
+_NONE: Final = "–"
+
+
+def render(template: str, *, styles: Sequence[str], script: str, data: Any, content: Mapping[str, Any]) -> str:
+    """Fill a template.
+
+    Parameters
+    ----------
+    template, script : str
+        Files in ``templates/`` and ``static/``.
+    styles : sequence of str
+        Files in ``static/``, each stronger than the one before.
+    data : object
+        What the script works on, as JSON.
+    content : mapping
+        What the template shows; all of it is escaped.
+
+    Returns
+    -------
+    str
+        The page, whose policy allows its own style and script and nothing else, least of all the network.
+    """
+    css, js = "".join(_static(style) for style in styles), _static(script)
+    policy = (
+        f"default-src 'none'; style-src '{_hash(css)}'; script-src '{_hash(js)}'; img-src data:; "
+        "base-uri 'none'; form-action 'none'"
+    )
+    page = _environment().get_template(template)
+    return page.render(
+        content,
+        version=__version__,
+        policy=policy,
+        style=Markup(css),  # noqa: S704 - a file of this package
+        script=Markup(js),  # noqa: S704 - a file of this package
+        data=json_for_script(data),
+    )
+
+
+def json_for_script(data: Any) -> Markup:
+    """Write JSON that can stand inside a script element: nothing in it ends the element or a line of it."""
+    text = json.dumps(data, ensure_ascii=True, allow_nan=False, separators=(",", ":"))
+    for character in "<>&":
+        text = text.replace(character, f"\\u{ord(character):04x}")
+    return Markup(text)  # noqa: S704 - escaped for this place
+
+
+def write_page(path: Path, text: str) -> Path:
+    """Write a page whole or not at all, over nothing but an earlier page of ours."""
+    write_files({path: text.encode("utf-8")}, replaceable=MARK)
+    return path
+
+
+def unshowable(folder: Path, error: Exception) -> ResultError:
+    """Say that a result is not as this version writes it."""
+    what = " ".join(f"{type(error).__name__} {error}".split())
+    return ResultError(f"{folder}: not a result of this version of the program: {what}; analyze the trial again")
+
+
+@functools.cache
+def _static(name: str) -> str:
+    return (_HERE / "static" / name).read_text(encoding="utf-8")
+
+
+@functools.cache
+def _hash(text: str) -> str:
+    return "sha256-" + base64.b64encode(hashlib.sha256(text.encode("utf-8")).digest()).decode("ascii")
+
+
+@functools.cache
+def _environment() -> jinja2.Environment:
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(_HERE / "templates"),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        auto_reload=False,
+    )
+    environment.filters.update(number=number, brief=brief, vector=vector, percent=percent, words=words)
+    return environment
+
+
+def number(value: float | None, decimals: int = 2) -> str:
+    """Write a number with a true minus sign; a dash where it is not known."""
+    if value is None or not math.isfinite(value):
+        return _NONE
+    text = f"{value:.{decimals}f}"
+    if float(text) == 0.0:
+        text = text.lstrip("-")
+    return text.replace("-", "−")
+
+
+def brief(value: float | None, digits: int = 2) -> str:
+    """Write a number to so many digits that count, never with an exponent unless it is very small."""
+    if value is None or not math.isfinite(value):
+        return _NONE
+    if value == 0.0 or abs(value) < 1e-4:
+        return f"{value:.{digits - 1}g}".replace("-", "−")
+    decimals = digits - 1 - math.floor(math.log10(abs(value)))
+    return number(round(value, decimals), max(decimals, 0))
+
+
+def vector(values: Iterable[float | None] | None, decimals: int = 1) -> str:
+    """Write a vector; a dash where it is not known."""
+    if values is None:
+        return _NONE
+    return ", ".join(number(value, decimals) for value in values)
+
+
+def percent(share: float | None, decimals: int = 1) -> str:
+    """Write a share in percent."""
+    return _NONE if share is None else f"{number(100.0 * share, decimals)} %"
+
+
+def words(value: Any) -> str:
+    """Write a setting as a person would."""
+    if value is None:
+        return _NONE
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, list | tuple):
+        return ", ".join(words(part) for part in value)
+    return f"{value:g}" if isinstance(value, float) else str(value)

@@ -1,0 +1,109 @@
+"""Publication figures of finished results, of each trial and of all of them together."""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from collections.abc import Sequence
+from functools import partial
+from pathlib import Path
+from typing import Final, NamedTuple
+
+from elbowscrew.errors import SettingError
+from elbowscrew.io.results_reading import read_finished
+from elbowscrew.io.staging import write_files
+from elbowscrew.report.figure_files import figure_files, files_of
+
+OVERLAY: Final = "overlay"
+_LONGEST_NAME: Final = 80
+
+
+class Published(NamedTuple):
+    """The files written, and the results that an overlay had to leave out as they have no flexion-extension cycle."""
+
+    files: tuple[Path, ...]
+    left_out: tuple[Path, ...]
+
+
+def save_publication_figures(
+    results: Sequence[Path],
+    folder: Path,
+    names: Sequence[str],
+    formats: Sequence[str],
+    *,
+    width_mm: float,
+    force: bool = False,
+) -> Published:
+    """Write figures of results, all of them or none.
+
+    Parameters
+    ----------
+    results : sequence of Path
+        Result folders; of several, the name of each begins the names of its files.
+    folder : Path
+        Where to; it is made.
+    names : sequence of str
+        Of the figures of a trial, and ``overlay`` for one of all of them.
+    formats : sequence of {"png", "svg", "pdf"}
+    width_mm : float
+        Width on paper.
+    force : bool
+        Replace files of these names.
+
+    Returns
+    -------
+    Published
+
+    Raises
+    ------
+    ResultError
+        If a result cannot be read.
+    SettingError
+        If an overlay is asked for and fewer than two results have a flexion-extension cycle.
+    OutputError
+        If a file is there already, or the disk does not take them.
+    """
+    from elbowscrew.plots.overlay import LEAST_TRIALS, mean_curve, overlay_figure
+
+    contents: dict[Path, bytes] = {}
+    single = [name for name in names if name != OVERLAY]
+    prefixes = _prefixes(results)
+    curves, left_out, units = [], [], set()
+    for result, prefix in zip(results, prefixes, strict=True):
+        trial = read_finished(result)
+        for name, content in figure_files(trial, single, formats, width_mm).items():
+            contents[folder / f"{prefix}{name}"] = content
+        if OVERLAY in names:
+            curve = mean_curve(trial)
+            if curve is None:
+                left_out.append(result)
+            else:
+                curves.append(curve)
+                units.add(trial.settings.angle_unit)
+    if OVERLAY in names:
+        if len(curves) < LEAST_TRIALS:
+            msg = (
+                f"--figures overlay: expected at least {LEAST_TRIALS} results with a flexion-extension cycle "
+                f"(repetitions.csv), found {len(curves)} of {len(results)}; give more results, or leave overlay out"
+            )
+            raise SettingError(msg)
+        unit = units.pop() if len(units) == 1 else "deg"
+        drawn = files_of({OVERLAY: partial(overlay_figure, curves, width_mm=width_mm, unit=unit)}, formats)
+        contents |= {folder / name: content for name, content in drawn.items()}
+    write_files(contents, replaceable="" if force else None)
+    return Published(tuple(contents), tuple(left_out))
+
+
+def _prefixes(results: Sequence[Path]) -> list[str]:
+    """Names of files begin with that of their result, made safe for any disk, and numbered where two are alike."""
+    if len(results) == 1:
+        return [""]
+    prefixes: list[str] = []
+    seen: dict[str, int] = {}
+    for result in results:
+        plain = unicodedata.normalize("NFC", result.resolve().name.removesuffix("_elbowscrew"))
+        stem = re.sub(r"[^\w.+-]+", "_", plain).strip("._")[:_LONGEST_NAME] or "trial"
+        seen[stem.casefold()] = seen.get(stem.casefold(), 0) + 1
+        count = seen[stem.casefold()]
+        prefixes.append(f"{stem}_" if count == 1 else f"{stem}~{count}_")
+    return prefixes

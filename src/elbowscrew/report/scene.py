@@ -1,0 +1,101 @@
+"""What the three-dimensional view shows, as plain numbers: millimeters and degrees, in the frame of the axes."""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowscrew.geometry.dual_quaternion import multiply, pose_from_dual_quat
+from elbowscrew.model.finished import FinishedTrial
+from elbowscrew.motion.scene import Region, bodies_in_space, directions_across, joint_bundle, thinned
+from elbowscrew.report.charts import COLORS
+
+Float = NDArray[np.float64]
+
+MOST_FRAMES: Final = 900
+"""Frames that are played; of longer trials every so many."""
+WIDEST: Final = 1.0
+"""Half-angle (rad) of the widest region that is drawn; a wider one hides all else."""
+_DECIMALS: Final = 2
+_PURE_DECIMALS: Final = 5
+
+
+def scene_of(trial: FinishedTrial) -> dict[str, Any]:
+    """Gather bodies, axes and motion of a trial for the view that turns and plays.
+
+    Parameters
+    ----------
+    trial : FinishedTrial
+
+    Returns
+    -------
+    dict
+        Numbers only, ready for JSON; None where nothing is known. Poses are displacements: quaternion, then
+        translation, applied to the forearm as it is at the reference.
+    """
+    screw = trial.screw
+    bundle, bodies = joint_bundle(trial).scaled(1000.0), bodies_in_space(trial)
+    across, _ = directions_across(bundle.direction)
+    rows = thinned(np.arange(screw.frame.size), MOST_FRAMES)
+    angle = np.degrees(screw.angle)
+    known = angle[screw.axis_known]
+    return {
+        "frame": screw.frame[rows].tolist(),
+        "time": _rounded(screw.time_s[rows], 4),
+        "theta": _rounded(angle[rows], _DECIMALS),
+        "slide": _rounded(1000.0 * screw.slide[rows], _DECIMALS),
+        "valid": screw.valid[rows].astype(int).tolist(),
+        "turn": _rounded(screw.euler_parameters[rows], _PURE_DECIMALS),
+        "shift": _rounded(1000.0 * screw.translation[rows], _DECIMALS),
+        "axis": _rounded(screw.axis_direction[rows], _PURE_DECIMALS),
+        "point": _rounded(1000.0 * screw.axis_point[rows], _DECIMALS),
+        "segments": _rounded(bundle.segments.reshape(-1, 6), _DECIMALS),
+        "segmentTheta": _rounded(angle[bundle.rows], _DECIMALS),
+        "thetaRange": [float(known.min()), float(known.max())],
+        "direction": _rounded(bundle.direction, _PURE_DECIMALS),
+        "center": _rounded(bundle.center, _DECIMALS),
+        "half": round(bundle.half, _DECIMALS),
+        "across": _rounded(np.stack(across), _PURE_DECIMALS),
+        "spread": _region(bundle.spread),
+        "confidence": None if bundle.confidence is None else _region(bundle.confidence),
+        "arm": _body(bodies.arm, bodies.arm_markers),
+        "forearm": _body(_forearm_at_reference(trial), bodies.forearm_markers),
+        "colors": list(COLORS),
+    }
+
+
+def _forearm_at_reference(trial: FinishedTrial) -> Float:
+    """Find the forearm's origin at the reference: where the displacement of any frame takes it back from."""
+    joint = trial.joint
+    match trial.settings.express_in:
+        case "forearm":
+            return np.zeros(3)
+        case "arm":
+            return pose_from_dual_quat(joint.reference)[1]
+        case "lab":
+            return pose_from_dual_quat(multiply(joint.dual_quat_lab_proximal, joint.reference))[1]
+
+
+def _body(origin: Float | None, markers: Float | None) -> dict[str, Any] | None:
+    if origin is None:
+        return None
+    return {
+        "origin": _rounded(1000.0 * origin, _DECIMALS),
+        "markers": [] if markers is None else _rounded(1000.0 * markers, _DECIMALS),
+    }
+
+
+def _region(region: Region) -> list[float] | None:
+    if not np.isfinite([region.angle, region.radius]).all() or region.angle > WIDEST:
+        return None
+    return [round(region.angle, 6), round(region.radius, 4)]
+
+
+def _rounded(values: Float, decimals: int) -> list[Any]:
+    """Rounded numbers as lists; None for a row, or a number, that is not known."""
+    if values.ndim == 2:
+        known = np.logical_and.reduce(np.isfinite(values), axis=1)
+        return [row if good else None for row, good in zip(np.round(values, decimals).tolist(), known, strict=True)]
+    return [value if value == value else None for value in (np.round(values, decimals) + 0.0).tolist()]

@@ -1,0 +1,335 @@
+"use strict";
+// The view in space: drawn on a plain canvas, so that it needs neither a library nor a graphics card.
+(() => {
+  const scene = JSON.parse(document.getElementById("data").textContent);
+  const viewer = document.getElementById("viewer");
+  const canvas = document.getElementById("space");
+  const context = canvas.getContext("2d");
+  if (!context) return;
+  viewer.hidden = false;
+  const play = document.getElementById("play");
+  const scrub = document.getElementById("scrub");
+  const speed = document.getElementById("speed");
+  const readout = document.getElementById("readout");
+  const calm = window.matchMedia("(prefers-reduced-motion: reduce)");
+
+  const add = (a, b) => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
+  const less = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+  const times = (k, a) => [k * a[0], k * a[1], k * a[2]];
+  const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+  const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+  const unit = (a) => times(1 / Math.hypot(...a), a);
+
+  // A pose is the displacement since the reference: a point p of the forearm there is at q p q* + d now.
+  const moved = (k, p) => {
+    const q = scene.turn[k];
+    const d = scene.shift[k];
+    if (!q || !d) return null;
+    const v = [q[1], q[2], q[3]];
+    const t = times(2, cross(v, p));
+    return add(add(p, d), add(times(q[0], t), cross(v, t)));
+  };
+  const last = scene.frame.length - 1;
+  const path = scene.frame.map((_, k) => moved(k, scene.forearm.origin));
+  const foot = (p) => add(scene.center, times(dot(less(p, scene.center), scene.direction), scene.direction));
+
+  const colorAt = (theta) => {
+    const [low, high] = scene.thetaRange;
+    const place = Math.min(Math.max((theta - low) / (high - low || 1), 0), 1) * (scene.colors.length - 1);
+    return scene.colors[Math.round(place)];
+  };
+
+  const everything = [...path, ...scene.forearm.markers, ...(scene.arm ? [scene.arm.origin, ...scene.arm.markers] : [])]
+    .filter(Boolean);
+  everything.push(add(scene.center, times(scene.half, scene.direction)), less(scene.center, times(scene.half, scene.direction)));
+  const reach = Math.max(...everything.map((p) => Math.hypot(...less(p, scene.center))));
+
+  // Which way is up: toward the arm if it is known, else away from the middle of the forearm's path.
+  const known = path.filter(Boolean);
+  const middle = times(1 / known.length, known.reduce(add, [0, 0, 0]));
+  const upright = () => {
+    const toward = scene.arm ? less(scene.arm.origin, scene.center) : less(scene.center, middle);
+    const flat = less(toward, times(dot(toward, scene.direction), scene.direction));
+    return Math.hypot(...flat) > 1e-6 * reach ? unit(flat) : scene.across[1];
+  };
+  const view = { rows: null, zoom: 1, frame: 0, playing: false };
+  const turned = (rows, angle, axis) => {
+    const c = Math.cos(angle);
+    const s = Math.sin(angle);
+    const [r0, r1, r2] = rows;
+    return axis === "up"
+      ? [add(times(c, r0), times(s, r2)), r1, less(times(c, r2), times(s, r0))]
+      : [r0, less(times(c, r1), times(s, r2)), add(times(c, r2), times(s, r1))];
+  };
+  const look = (name) => {
+    const up = upright();
+    const toViewer = scene.direction;
+    const right = cross(up, toViewer);
+    let rows = [right, up, toViewer];
+    if (name === "side") rows = turned(rows, Math.PI / 2, "up");
+    if (name === "oblique") rows = turned(turned(rows, -0.62, "up"), -0.3, "across");
+    view.rows = rows;
+  };
+
+  const shown = (name) => viewer.querySelector(`[data-show="${name}"]`).checked;
+  const tellState = () => {
+    viewer.dataset.view = view.rows.flat().map((x) => x.toFixed(4)).join(" ");
+    viewer.dataset.zoom = view.zoom.toFixed(3);
+    viewer.dataset.frame = String(scene.frame[view.frame]);
+    viewer.dataset.playing = String(view.playing);
+  };
+  const number = (value, digits) => (value === null ? "–" : value.toFixed(digits).replace("-", "−"));
+  const tellFrame = () => {
+    const k = view.frame;
+    const text = `Frame ${scene.frame[k]} · ${number(scene.time[k], 2)} s · θ ${number(scene.theta[k], 1)} deg · slide ${number(scene.slide[k], 2)} mm`;
+    readout.textContent = text + (scene.turn[k] ? (scene.valid[k] ? "" : " · filled in") : " · not tracked");
+    scrub.value = String(k);
+    scrub.setAttribute("aria-valuetext", `frame ${scene.frame[k]}, ${number(scene.theta[k], 1)} degrees`);
+  };
+
+  let scale = 1;
+  let width = 1;
+  let height = 1;
+  const screen = (p) => {
+    const q = less(p, scene.center);
+    return [width / 2 + scale * dot(view.rows[0], q), height / 2 - scale * dot(view.rows[1], q), dot(view.rows[2], q)];
+  };
+  const line = (points, color, thick, alpha = 1) => {
+    context.strokeStyle = color;
+    context.lineWidth = thick;
+    context.globalAlpha = alpha;
+    context.beginPath();
+    let open = false;
+    for (const p of points) {
+      if (!p) { open = false; continue; }
+      const [x, y] = screen(p);
+      if (open) context.lineTo(x, y); else context.moveTo(x, y);
+      open = true;
+    }
+    context.stroke();
+    context.globalAlpha = 1;
+  };
+  const disc = (p, radius, color) => {
+    const [x, y] = screen(p);
+    context.fillStyle = color;
+    context.beginPath();
+    context.arc(x, y, radius, 0, 2 * Math.PI);
+    context.fill();
+    context.strokeStyle = "#fff";
+    context.lineWidth = 1;
+    context.stroke();
+  };
+  // Few markers are joined each to each, many to the body's origin.
+  const joined = (points, origin) => (points.length < 5
+    ? points.flatMap((p, k) => points.slice(k + 1).flatMap((q) => [p, q, null]))
+    : points.flatMap((p) => [origin, p, null]));
+  const around = 36;
+  const surface = (region, color, alpha) => {
+    if (!region) return;
+    const [angle, radius] = region;
+    const steps = 12;
+    const ring = (s) => {
+      const wide = Math.hypot(radius, Math.tan(Math.min(angle, 1.4)) * s);
+      return Array.from({ length: around }, (_, k) => {
+        const turn = (2 * Math.PI * k) / around;
+        const out = add(times(wide * Math.cos(turn), scene.across[0]), times(wide * Math.sin(turn), scene.across[1]));
+        return screen(add(add(scene.center, times(s, scene.direction)), out));
+      });
+    };
+    context.fillStyle = color;
+    context.globalAlpha = alpha;
+    let before = null;
+    for (let j = 0; j <= steps; j += 1) {
+      const now = ring(scene.half * ((2 * j) / steps - 1));
+      if (before) {
+        for (let k = 0; k < around; k += 1) {
+          const next = (k + 1) % around;
+          context.beginPath();
+          context.moveTo(before[k][0], before[k][1]);
+          context.lineTo(before[next][0], before[next][1]);
+          context.lineTo(now[next][0], now[next][1]);
+          context.lineTo(now[k][0], now[k][1]);
+          context.closePath();
+          context.fill();
+        }
+      }
+      before = now;
+    }
+    context.globalAlpha = 1;
+  };
+  const label = (p, text, color) => {
+    const [x, y] = screen(p);
+    context.font = "600 13px system-ui, sans-serif";
+    context.textAlign = "center";
+    context.textBaseline = "middle";
+    context.lineWidth = 3;
+    context.strokeStyle = "#fff";
+    context.strokeText(text, x, y);
+    context.fillStyle = color;
+    context.fillText(text, x, y);
+  };
+  const triad = () => {
+    // Directions of the frame the axes are written in, in a corner.
+    const size = 34;
+    const origin = [48, height - 48];
+    context.font = "600 12px system-ui, sans-serif";
+    context.textAlign = "center";
+    context.textBaseline = "middle";
+    ["x", "y", "z"].forEach((name, k) => {
+      const right = view.rows[0][k];
+      const up = view.rows[1][k];
+      context.strokeStyle = "#57606a";
+      context.lineWidth = 1.5;
+      context.beginPath();
+      context.moveTo(...origin);
+      context.lineTo(origin[0] + size * right, origin[1] - size * up);
+      context.stroke();
+      context.fillStyle = "#1b1f24";
+      context.fillText(name, origin[0] + (size + 9) * right, origin[1] - (size + 9) * up);
+    });
+  };
+  const ruler = () => {
+    const wanted = (0.2 * width) / scale;
+    const size = 10 ** Math.floor(Math.log10(wanted));
+    const length = [5, 2, 1].map((k) => k * size).find((value) => value <= wanted);
+    const [x, y] = [width - 24, height - 26];
+    context.strokeStyle = "#1b1f24";
+    context.lineWidth = 2;
+    context.beginPath();
+    context.moveTo(x, y);
+    context.lineTo(x - length * scale, y);
+    context.stroke();
+    context.font = "12px system-ui, sans-serif";
+    context.textAlign = "right";
+    context.fillStyle = "#1b1f24";
+    context.fillText(`${length} mm`, x, y - 10);
+  };
+
+  const draw = () => {
+    const ratio = window.devicePixelRatio || 1;
+    width = canvas.clientWidth || 1;
+    height = canvas.clientHeight || 1;
+    if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio)) {
+      canvas.width = Math.round(width * ratio);
+      canvas.height = Math.round(height * ratio);
+    }
+    context.setTransform(ratio, 0, 0, ratio, 0, 0);
+    context.clearRect(0, 0, width, height);
+    context.lineCap = "round";
+    context.lineJoin = "round";
+    scale = (0.46 * Math.min(width, height) * view.zoom) / reach;
+    const k = view.frame;
+    const here = path[k];
+    if (scene.arm) line([scene.arm.origin, foot(scene.arm.origin)], "#9aa4ae", 9, 0.3);
+    if (here) line([here, foot(here)], "#9aa4ae", 9, 0.3);
+    if (shown("cone")) surface(scene.spread, "#8c959e", 0.1);
+    if (shown("axes")) {
+      scene.segments.forEach((s, j) => line([s.slice(0, 3), s.slice(3)], colorAt(scene.segmentTheta[j]), 1, 0.7));
+    }
+    if (shown("cone")) surface(scene.confidence, "#d55e00", 0.25);
+    line([less(scene.center, times(1.15 * scene.half, scene.direction)), add(scene.center, times(1.15 * scene.half, scene.direction))], "#000", 2.4);
+    if (shown("path")) line(path, "#d55e00", 2);
+    if (shown("moment") && scene.axis[k] && scene.point[k]) {
+      const n = scene.axis[k];
+      const near = add(scene.point[k], times(dot(less(scene.center, scene.point[k]), n), n));
+      const ends = [less(near, times(1.1 * scene.half, n)), add(near, times(1.1 * scene.half, n))];
+      line(ends, "#fff", 6, 0.8);
+      line(ends, colorAt(scene.theta[k]), 3.5);
+    }
+    if (scene.arm) {
+      line(joined(scene.arm.markers, scene.arm.origin), "#0072b2", 1, 0.5);
+      scene.arm.markers.forEach((p) => disc(p, 4, "#0072b2"));
+      disc(scene.arm.origin, 5.5, "#0072b2");
+      label(add(scene.arm.origin, times(18 / scale, view.rows[1])), "upper arm", "#00507d");
+    }
+    if (here) {
+      const markers = scene.forearm.markers.map((p) => moved(k, p));
+      line(joined(markers, here), "#d55e00", 1, 0.6);
+      markers.forEach((p) => disc(p, 4, "#d55e00"));
+      disc(here, 5.5, "#d55e00");
+      label(add(here, times(18 / scale, view.rows[1])), "forearm", "#a34800");
+    }
+    triad();
+    ruler();
+    tellState();
+  };
+
+  let waiting = false;
+  const redraw = () => {
+    if (waiting) return;
+    waiting = true;
+    window.requestAnimationFrame(() => { waiting = false; draw(); });
+  };
+  const goTo = (k) => {
+    view.frame = Math.min(Math.max(k, 0), last);
+    tellFrame();
+    redraw();
+  };
+
+  // Real time; where motion is to be reduced, two steps a second.
+  let started = 0;
+  let from = 0;
+  const tick = (now) => {
+    if (!view.playing) return;
+    const elapsed = calm.matches ? Math.floor((now - started) / 500) * 0.5 : (now - started) / 1000;
+    const wanted = from + elapsed * Number(speed.value);
+    if (wanted >= scene.time[last]) { goTo(last); setPlaying(false); return; }
+    let k = view.frame;
+    while (k < last && scene.time[k + 1] <= wanted) k += 1;
+    if (k !== view.frame) goTo(k);
+    window.requestAnimationFrame(tick);
+  };
+  const setPlaying = (playing) => {
+    view.playing = playing;
+    play.textContent = playing ? "Pause" : "Play";
+    play.setAttribute("aria-pressed", String(playing));
+    if (playing) {
+      if (view.frame === last) goTo(0);
+      started = performance.now();
+      from = scene.time[view.frame];
+      window.requestAnimationFrame(tick);
+    }
+    redraw();
+  };
+  const zoom = (factor) => { view.zoom = Math.min(Math.max(view.zoom * factor, 0.2), 60); redraw(); };
+  const turn = (right, down) => {
+    view.rows = turned(turned(view.rows, -right, "up"), down, "across").map(unit);
+    redraw();
+  };
+
+  play.addEventListener("click", () => setPlaying(!view.playing));
+  scrub.max = String(last);
+  scrub.addEventListener("input", () => { setPlaying(false); goTo(Number(scrub.value)); });
+  speed.addEventListener("change", () => { started = performance.now(); from = scene.time[view.frame]; });
+  viewer.addEventListener("click", (event) => {
+    const button = event.target.closest("button");
+    if (!button) return;
+    if (button.dataset.view) { look(button.dataset.view); view.zoom = 1; redraw(); }
+    if (button.dataset.zoom) zoom(Number(button.dataset.zoom));
+  });
+  viewer.addEventListener("change", (event) => { if (event.target.dataset.show) redraw(); });
+  canvas.addEventListener("pointerdown", (event) => canvas.setPointerCapture(event.pointerId));
+  canvas.addEventListener("pointermove", (event) => {
+    if (canvas.hasPointerCapture(event.pointerId)) turn(event.movementX * 0.01, event.movementY * 0.01);
+  });
+  canvas.addEventListener("wheel", (event) => {
+    if (!event.ctrlKey) return;
+    event.preventDefault();
+    zoom(Math.exp(-0.002 * event.deltaY));
+  }, { passive: false });
+  canvas.addEventListener("keydown", (event) => {
+    const step = 0.1;
+    const turns = { ArrowLeft: [-step, 0], ArrowRight: [step, 0], ArrowUp: [0, -step], ArrowDown: [0, step] };
+    if (turns[event.key]) turn(...turns[event.key]);
+    else if (event.key === "+" || event.key === "=") zoom(1.25);
+    else if (event.key === "-") zoom(0.8);
+    else if (event.key === " ") setPlaying(!view.playing);
+    else return;
+    event.preventDefault();
+  });
+  new ResizeObserver(redraw).observe(canvas);
+  look("oblique");
+  // Begin where the angle is largest: there the motion shows.
+  goTo(scene.theta.reduce((best, theta, k) => (theta !== null && theta > (scene.theta[best] ?? -Infinity) ? k : best), 0));
+  draw();
+})();

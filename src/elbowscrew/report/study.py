@@ -1,0 +1,209 @@
+"""What a folder of results holds: its trials, what the manifest says of them, and what failed."""
+
+from __future__ import annotations
+
+import csv
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowscrew import tables
+from elbowscrew.errors import ResultError
+from elbowscrew.io.result_tables import read_columns
+from elbowscrew.io.results_reading import UNREADABLE, is_result, read_summary
+from elbowscrew.report.charts import min_max_rows
+from elbowscrew.settings import Settings
+
+Float = NDArray[np.float64]
+
+CONDITION: Final = "condition"
+_ALWAYS: Final = ("subject", CONDITION)
+_BEFORE, _BEHIND = "path", "frames"  # columns of a batch's summary.csv around those that its manifest brought
+_MOST_LEVELS: Final = 12
+_MOST_FACTORS: Final = 6
+_THETA: Final = tuple(column for column in tables.SCREW_COLUMNS if column.name in ("theta", "time_s"))
+_KEPT_BUCKETS: Final = 400
+_LONGEST_CELL: Final = 1 << 20
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StudyTrial:
+    """One trial of a study.
+
+    Attributes
+    ----------
+    place : str
+        The result's folder relative to the study's, with slashes.
+    summary : mapping
+        Its ``summary.json``.
+    time_s, theta : ndarray, shape (M,)
+        Seconds and degrees; of long trials as many points as a thumbnail needs.
+    page : bool
+        Whether it has a ``report.html``.
+    factors : mapping of str to str
+        What the manifest says of it.
+    """
+
+    place: str
+    summary: Mapping[str, Any]
+    time_s: Float
+    theta: Float
+    page: bool
+    factors: Mapping[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Failure:
+    """A trial without a result: its path, the kind of error, and what it says."""
+
+    path: str
+    kind: str
+    message: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Study:
+    """Trials of a folder by their places, the columns that the manifest brought, and what failed.
+
+    Where there is a ``summary.csv``, trials are those that it names; `others` are results beside them.
+    """
+
+    name: str
+    trials: tuple[StudyTrial, ...]
+    factors: tuple[str, ...]
+    failures: tuple[Failure, ...]
+    others: tuple[str, ...] = ()
+
+
+def result_folders(folder: Path) -> Iterator[Path]:
+    """Find result folders inside a folder, in order of their names; links are not followed."""
+    for place, names, _ in os.walk(folder):
+        here = Path(place)
+        if here != folder and is_result(here):
+            names.clear()
+            yield here
+            continue
+        names[:] = sorted(name for name in names if not name.startswith("."))
+
+
+def read_study(folder: Path, factors: Sequence[str] | None = None) -> Study:
+    """Read a folder of results.
+
+    Parameters
+    ----------
+    folder : Path
+        With ``summary.csv`` and ``failures.csv`` if there.
+    factors : sequence of str, optional
+        Columns of ``summary.csv`` that tell trials apart; by default subject, condition, and those with a few words.
+
+    Raises
+    ------
+    ResultError
+        If there are neither results nor failures, or a table is no table. A damaged result is a failure of its trial.
+    """
+    trials, failures = [], _failures(folder / "failures.csv")
+    for result in result_folders(folder):
+        place = result.relative_to(folder).as_posix()
+        try:
+            trials.append(_trial(result, place))
+        except ResultError as error:
+            failures.append(Failure(path=place, kind="ResultError", message=str(error)))
+    if not trials and not failures:
+        msg = f"{folder}: holds no finished results; analyze trials into it first"
+        raise ResultError(msg)
+    said = _said_of(folder / "summary.csv", {trial.place for trial in trials})
+    chosen = tuple(_factors(said) if factors is None else factors)
+    kept = tuple(
+        replace(trial, factors={name: said.get(trial.place, {}).get(name, "") for name in chosen})
+        for trial in trials
+        if not said or trial.place in said
+    )
+    others = tuple(trial.place for trial in trials if said and trial.place not in said)
+    name = folder.resolve().name or "study"
+    return Study(name=name, trials=kept, factors=chosen, failures=tuple(failures), others=others)
+
+
+def _trial(result: Path, place: str) -> StudyTrial:
+    summary = read_summary(result / "summary.json")
+    try:
+        settings = Settings.model_validate(summary["settings"])
+        columns = read_columns(result / "screw.csv", _THETA, settings.angle_unit, settings.length_unit)
+    except UNREADABLE as error:
+        msg = f"{result}: not a result of this version of the program: {' '.join(str(error).split())}"
+        raise ResultError(msg) from error
+    theta = np.degrees(columns["theta"])
+    rows = min_max_rows(theta, _KEPT_BUCKETS)
+    return StudyTrial(
+        place=place,
+        summary=summary,
+        time_s=columns["time_s"][rows],
+        theta=theta[rows],
+        page=(result / "report.html").is_file(),
+    )
+
+
+def _failures(path: Path) -> list[Failure]:
+    return [
+        Failure(path=cells[0], kind=cells[1], message=cells[2])
+        for cells in ([*row, "", "", ""][:3] for row in _rows(path)[1:])
+    ]
+
+
+def _said_of(path: Path, places: set[str]) -> dict[str, dict[str, str]]:
+    """Rows of ``summary.csv`` by the results they are of: one of its columns names their folders."""
+    rows = _rows(path)
+    if len(rows) < 2:
+        return {}
+    header = rows[0]
+    matches = [sum(_folder(row, k) in places for row in rows[1:]) for k in range(len(header))]
+    best = int(np.argmax(matches)) if matches else 0
+    if not matches or not matches[best]:
+        return {}
+    return {_folder(row, best): dict(zip(header, row, strict=False)) for row in rows[1:]}
+
+
+def _folder(row: list[str], column: int) -> str:
+    """Read a cell as a folder; an apostrophe is what keeps spreadsheets from taking a name for a formula."""
+    return row[column].replace("\\", "/").rstrip("/").removeprefix("'") if column < len(row) else ""
+
+
+def _factors(said: Mapping[str, Mapping[str, str]]) -> list[str]:
+    """Subject and condition, and other columns of a few different words; of a batch those of its manifest."""
+    names = list(dict.fromkeys(name for row in said.values() for name in row))
+    carried = _BEFORE in names and _BEHIND in names
+    if carried:
+        names = names[names.index(_BEFORE) + 1 : names.index(_BEHIND)]
+    found = [name for name in names if name.strip().casefold() in _ALWAYS]
+    for name in names:
+        levels = {row.get(name, "") for row in said.values()} - {""}
+        if name not in found and 1 < len(levels) <= _MOST_LEVELS and (carried or not any(map(_is_number, levels))):
+            found.append(name)
+    return found[:_MOST_FACTORS]
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
+
+
+def _rows(path: Path) -> list[list[str]]:
+    if not path.is_file():
+        return []
+    csv.field_size_limit(_LONGEST_CELL)
+    try:
+        with path.open(encoding="utf-8-sig", newline="") as stream:
+            return [row for row in csv.reader(stream) if row]
+    except OSError as error:
+        msg = f"{path}: cannot be read: {error.strerror or error}"
+        raise ResultError(msg) from error
+    except (csv.Error, UnicodeDecodeError) as error:
+        msg = f"{path}: not a table of a batch: {error}; run the batch again"
+        raise ResultError(msg) from error

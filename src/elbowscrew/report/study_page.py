@@ -1,0 +1,194 @@
+"""The page over all trials of a study."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any, Final, NamedTuple
+from urllib.parse import quote
+
+import numpy as np
+from markupsafe import Markup
+from numpy.typing import NDArray
+
+from elbowscrew.report.charts import min_max_rows, path_of
+from elbowscrew.report.distributions import LEAST, LIMIT, modified_z, strip_chart
+from elbowscrew.report.pages import UNSHOWABLE, render, unshowable, write_page
+from elbowscrew.report.study import CONDITION, Failure, Study, StudyTrial, read_study
+
+Float = NDArray[np.float64]
+
+_THUMB: Final = (132.0, 34.0)
+_THUMB_BUCKETS: Final = 40
+_MOST_STRIPS: Final = 24
+_ALL: Final = "all trials"
+
+
+class Measure(NamedTuple):
+    """A number that is compared over the trials, and where ``summary.json`` has it."""
+
+    key: str
+    title: str
+    unit: str
+    section: str
+    name: str
+    decimals: int
+
+
+MEASURES: Final = (
+    Measure("top", "Largest angle", "deg", "motion", "theta_max_deg", 1),
+    Measure("dispersion", "Dispersion of the axes", "deg", "motion", "axis_dispersion_deg", 2),
+    Measure("error", "Model error of θ, RMS", "deg", "interpolation", "rmse_theta_deg", 2),
+)
+
+
+def write_study_page(folder: Path, factors: Sequence[str] | None = None) -> Path:
+    """Write ``index.html`` over the results in a folder; see `elbowscrew.report.write_study_page`."""
+    study = read_study(folder, factors)
+    return write_page(folder / "index.html", study_page(study))
+
+
+def study_page(study: Study) -> str:
+    """Make the page of a study.
+
+    Parameters
+    ----------
+    study : Study
+        From `elbowscrew.report.study.read_study`.
+
+    Returns
+    -------
+    str
+        One HTML file that needs no other but the trials' pages it links to. The same results give the same bytes.
+    """
+    trials, failures = [], list(study.failures)
+    rows: list[dict[str, Any]] = []
+    scale = _scale(study.trials)
+    for trial in study.trials:
+        try:
+            rows.append(_row(trial, scale))
+            trials.append(trial)
+        except UNSHOWABLE as error:
+            failures.append(Failure(path=trial.place, kind="ResultError", message=str(unshowable(Path(), error))))
+    groups = _groups(study, trials)
+    _mark_outliers(rows, groups)
+    content = {
+        "name": study.name,
+        "rows": rows,
+        "factors": [{"name": name, "levels": _levels(trials, name)} for name in study.factors],
+        "group_name": _group_factor(study),
+        "groups": _table_of_groups(rows, groups),
+        "measures": MEASURES,
+        "charts": _charts(rows, groups),
+        "failures": failures,
+        "others": study.others,
+        "outliers": sum(bool(row["outlier"]) for row in rows),
+        "warned": sum(bool(row["warnings"]) for row in rows),
+        "limit": LIMIT,
+        "least": LEAST,
+    }
+    return render("study.html", styles=("page.css", "study.css"), script="study.js", data={}, content=content)
+
+
+def thumbnail(time_s: Float, theta: Float, scale: tuple[float, float]) -> Markup:
+    """Draw an angle over time in a few hundred bytes; times are the trial's own, angles to a common scale."""
+    width, height = _THUMB
+    rows = min_max_rows(theta, _THUMB_BUCKETS)
+    span = float(time_s[-1] - time_s[0]) or 1.0
+    x = np.round(1.0 + (width - 2.0) * (time_s[rows] - time_s[0]) / span)
+    y = np.round(height - 2.0 - (height - 4.0) * (theta[rows] - scale[0]) / ((scale[1] - scale[0]) or 1.0), 1)
+    shape = path_of(x, y).replace(".0", "")
+    return Markup(  # noqa: S704 - numbers only
+        f'<svg class="thumb" width="{width:g}" height="{height:g}" aria-hidden="true" focusable="false">'
+        f'<path d="{shape}"/></svg>'
+    )
+
+
+def _scale(trials: Sequence[StudyTrial]) -> tuple[float, float]:
+    known = [trial.theta[np.isfinite(trial.theta)] for trial in trials]
+    known = [theta for theta in known if theta.size]
+    if not known:
+        return 0.0, 1.0
+    return min(float(theta.min()) for theta in known), max(float(theta.max()) for theta in known)
+
+
+def _row(trial: StudyTrial, scale: tuple[float, float]) -> dict[str, Any]:
+    summary = trial.summary
+    figures, motion, model = summary["trial"], summary["motion"], summary["interpolation"]
+    if not trial.theta.size:
+        msg = "screw.csv has no rows"
+        raise ValueError(msg)
+    joint = motion["joint_axis"]
+    warnings = [str(one["code"]) for one in summary["warnings"] if one["severity"] == "warning"]
+    values = {one.key: summary[one.section][one.name] for one in MEASURES}
+    return {
+        "place": trial.place,
+        "link": quote(f"{trial.place}/report.html", safe="/") if trial.page else None,
+        "thumb": thumbnail(trial.time_s, trial.theta, scale),
+        "factors": list(trial.factors.items()),
+        "frames": int(figures["frames"]),
+        "tracked": 100.0 * (1.0 - float(figures["missing_share"])),
+        "cone": None if joint is None else joint["axis_cone95_deg"],
+        "displacement": model["rms_displacement_mm"],
+        "repetitions": int(motion["repetitions"]),
+        "values": {key: np.nan if value is None else float(value) for key, value in values.items()},
+        "warnings": list(dict.fromkeys(warnings)),
+        "outlier": [],
+    }
+
+
+def _group_factor(study: Study) -> str | None:
+    """Name what the distributions are told apart by: the condition, else the first thing that the manifest says."""
+    named = [name for name in study.factors if name.strip().casefold() == CONDITION]
+    return next(iter([*named, *study.factors]), None)
+
+
+def _groups(study: Study, trials: Sequence[StudyTrial]) -> dict[str, list[int]]:
+    factor = _group_factor(study)
+    groups: dict[str, list[int]] = {}
+    for k, trial in enumerate(trials):
+        groups.setdefault(_ALL if factor is None else trial.factors.get(factor, "") or "–", []).append(k)
+    return dict(sorted(groups.items()))
+
+
+def _mark_outliers(rows: list[dict[str, Any]], groups: Mapping[str, list[int]]) -> None:
+    for measure in MEASURES:
+        for members in groups.values():
+            values = np.array([rows[k]["values"][measure.key] for k in members], dtype=np.float64)
+            for k, z in zip(members, modified_z(values).tolist(), strict=True):
+                if abs(z) > LIMIT:
+                    rows[k]["outlier"].append(f"{measure.title} {'high' if z > 0.0 else 'low'}")
+
+
+def _table_of_groups(rows: list[dict[str, Any]], groups: Mapping[str, list[int]]) -> list[dict[str, Any]]:
+    """Count, median and quartiles of each measure in each group."""
+    table = []
+    for name, members in groups.items():
+        cells = []
+        for measure in MEASURES:
+            values = np.array([rows[k]["values"][measure.key] for k in members], dtype=np.float64)
+            known = values[np.isfinite(values)]
+            quartiles = np.percentile(known, [50, 25, 75]).tolist() if known.size else [None] * 3
+            cells.append((measure.decimals, quartiles))
+        table.append({"name": name, "count": len(members), "cells": cells})
+    return table
+
+
+def _charts(rows: list[dict[str, Any]], groups: Mapping[str, list[int]]) -> list[tuple[str, Markup]]:
+    shown = groups if len(groups) <= _MOST_STRIPS else {_ALL: list(range(len(rows)))}
+    charts = []
+    for measure in MEASURES:
+        strips = {
+            name: (
+                np.array([rows[k]["values"][measure.key] for k in members], dtype=np.float64),
+                [rows[k]["place"] for k in members],
+            )
+            for name, members in shown.items()
+        }
+        if any(np.isfinite(values).any() for values, _ in strips.values()):
+            charts.append((measure.title, strip_chart(measure.key, measure.title, measure.unit, strips)))
+    return charts
+
+
+def _levels(trials: Sequence[StudyTrial], factor: str) -> list[str]:
+    return sorted({trial.factors.get(factor, "") for trial in trials} - {""})

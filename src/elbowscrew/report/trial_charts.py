@@ -1,0 +1,264 @@
+"""The charts of a trial's page, in degrees and millimeters."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Final
+
+import numpy as np
+from markupsafe import Markup
+from numpy.typing import NDArray
+
+from elbowscrew.model.finished import FinishedTrial
+from elbowscrew.motion.phases import runs_of
+from elbowscrew.motion.scene import Bundle, directions_across, joint_bundle
+from elbowscrew.report.charts import (
+    COLORS,
+    WIDTH,
+    Chart,
+    color_of,
+    keys_of,
+    picture,
+    range_of,
+    tick_text,
+    ticks_between,
+)
+from elbowscrew.report.scene import WIDEST
+
+Float = NDArray[np.float64]
+
+_NORMAL_95: Final = 1.959964
+_ASPECT: Final = (0.5 * WIDTH - 78.0) / (0.42 * WIDTH - 56.0)  # of the inner part of a panel of the axes
+_METHODS: Final = {"dlb": "DLB", "sclerp": "ScLERP", "sdlb": "sDLB", "dib": "DIB", "catmull-rom": "Catmull-Rom"}
+
+
+def theta_chart(trial: FinishedTrial) -> Markup:
+    """Measured and modeled angle over time, with keyframes, movements and what was lost or filled in."""
+    screw = trial.screw
+    angle, modeled = np.degrees(screw.angle), np.degrees(trial.interpolated.angle)
+    reach = _NORMAL_95 * np.degrees(screw.angle_sd)
+    motion = trial.summary["motion"]
+    chart = _over_time(
+        trial,
+        "theta",
+        "Angle over time",
+        f"Measured and modeled rotation angle over {screw.time_s[-1] - screw.time_s[0]:.2f} seconds; it is largest, "
+        f"{motion['theta_max_deg']:.1f} degrees, at frame {motion['theta_max_frame']}.",
+        range_of(angle, modeled),
+        "Angle θ (deg)",
+    )
+    time_s, phases = screw.time_s, trial.phases
+    chart.spans(zip(time_s[phases.onset_rows], time_s[phases.offset_rows], strict=True), "fill-moving", "moving")
+    _mark_tracking(chart, trial)
+    if np.isfinite(reach).any():
+        label = f"95 % interval (±{np.nanmedian(reach):.2g})"
+        chart.band(time_s, angle - reach, angle + reach, "band-known", label)
+    chart.line(time_s, angle, "measured", "measured")
+    chart.line(time_s, modeled, "modeled", model_name(trial))
+    rows = trial.keyframes.row
+    chart.points(time_s[rows], angle[rows], "keyframe", "keyframes")
+    return chart.svg()
+
+
+def error_chart(trial: FinishedTrial) -> Markup:
+    """Angle error and RMS displacement of the model over time, one above the other."""
+    model = trial.interpolated
+    panels: list[str] = []
+    keys = Markup()
+    for k, (values, label, unit) in enumerate(
+        (
+            (np.degrees(model.angle_error), "Angle error", "deg"),
+            (1000.0 * model.rms_displacement, "RMS displacement", "mm"),
+        )
+    ):
+        chart = _over_time(trial, f"error{k}", "", "", range_of(values, zero=True), f"{label} ({unit})", height=230.0)
+        _mark_tracking(chart, trial)
+        chart.line(model.time_s, values, "measured", "model against measurement")
+        if np.isfinite(values).any():
+            level = float(np.sqrt(np.nanmean(values**2)))
+            chart.segment((model.time_s[0], model.time_s[-1]), (level, level), "level", label="RMS")
+        panels.append(chart.panel(0.0, 235.0 * k))
+        keys = chart.keys()
+    text = "Angle between modeled and measured orientation, and RMS displacement of the forearm's points, over time."
+    return keys + picture("error", "Error of the model over time", text, WIDTH, 465.0, panels)
+
+
+def euler_chart(trial: FinishedTrial) -> Markup:
+    """Measured and modeled e0..e3 over time, four panels."""
+    measured, modeled = trial.screw.euler_parameters, trial.interpolated.euler_parameters
+    panels = []
+    keys = Markup()
+    for k in range(4):
+        chart = _over_time(
+            trial,
+            f"euler{k}",
+            "",
+            "",
+            range_of(measured[:, k], modeled[:, k]),
+            f"e{'₀₁₂₃'[k]} (–)",
+            width=0.5 * WIDTH,
+            height=230.0,
+        )
+        _mark_tracking(chart, trial)
+        chart.line(trial.screw.time_s, measured[:, k], "measured", "measured")
+        chart.line(trial.screw.time_s, modeled[:, k], "modeled", "modeled")
+        rows = trial.keyframes.row
+        chart.points(trial.screw.time_s[rows], measured[rows, k], "keyframe", "keyframes", radius=3.0)
+        panels.append(chart.panel(0.5 * WIDTH * (k % 2), 235.0 * (k // 2)))
+        keys = chart.keys()
+    text = "e0 to e3, measured and modeled, over time."
+    return keys + picture("euler", "Euler parameters over time", text, WIDTH, 465.0, panels)
+
+
+def axis_chart(trial: FinishedTrial) -> Markup:
+    """Axes of the frames and the joint's axis with what holds 95 %, end-on and from the side."""
+    bundle = joint_bundle(trial).scaled(1000.0)
+    across, names = directions_across(bundle.direction)
+    offset = bundle.segments - bundle.center
+    widest = _reach(bundle, offset - (offset @ bundle.direction)[..., None] * bundle.direction)
+    angle = np.degrees(trial.screw.angle[bundle.rows])
+    colors = [color_of(float(share)) for share in (angle - angle.min()) / (float(np.ptp(angle)) or 1.0)]
+    size = (0.5 * WIDTH, 0.42 * WIDTH)
+    end_on = Chart(
+        "endon",
+        "",
+        "",
+        x_range=(-_ASPECT * widest, _ASPECT * widest),
+        y_range=(-widest, widest),
+        x_label=f"Across, toward {names[0]} (mm)",
+        y_label=f"Across, toward {names[1]} (mm)",
+        size=size,
+    )
+    turn = np.linspace(0.0, 2.0 * np.pi, 73)
+    for look, region in _regions(bundle):
+        end_on.band(
+            region.radius * np.cos(turn[:37]),
+            -region.radius * np.sin(turn[:37]),
+            region.radius * np.sin(turn[:37]),
+            look,
+        )
+    for piece, color in zip(np.stack([offset @ direction for direction in across], axis=2), colors, strict=True):
+        end_on.segment(piece[:, 0].tolist(), piece[:, 1].tolist(), "thread", color)
+    end_on.points(np.zeros(1), np.zeros(1), "center", radius=3.0)
+    side = Chart(
+        "side",
+        "",
+        "",
+        x_range=(-bundle.half, bundle.half),
+        y_range=(-widest, widest),
+        x_label=f"Along the {bundle.name} (mm)",
+        y_label=f"Across, toward {names[1]} (mm)",
+        size=size,
+    )
+    along = np.linspace(-bundle.half, bundle.half, 41)
+    for look, region in _regions(bundle):
+        side.band(along, -region.reach(along), region.reach(along), look)
+    for piece, color in zip(np.stack([offset @ bundle.direction, offset @ across[1]], axis=2), colors, strict=True):
+        side.segment(piece[:, 0].tolist(), piece[:, 1].tolist(), "thread", color)
+    side.segment((-bundle.half, bundle.half), (0.0, 0.0), "joint")
+    text = (
+        f"The {bundle.name} and the axes of {bundle.rows.size} frames about it, seen along it and from the side; "
+        "what lies across it is enlarged."
+    )
+    keys = [("band-spread", "95 % of the frames’ axes"), ("joint", bundle.name)]
+    if len(_regions(bundle)) > 1:
+        keys.insert(1, ("band-confidence", "95 % confidence of the joint axis"))
+    panels = [
+        end_on.panel(),
+        side.panel(0.5 * WIDTH),
+        *_color_bar(float(angle.min()), float(angle.max()), size[1] + 8.0),
+    ]
+    drawn = picture("axes", "Axes of the frames about the joint's axis", text, WIDTH, size[1] + 58.0, panels)
+    return keys_of(keys) + drawn
+
+
+def repetition_chart(curve: Mapping[str, NDArray[Any]], count: int) -> Markup:
+    """Mean angle over the cycle's time with its standard deviation."""
+    mean, sd = np.degrees(curve["theta_mean"]), np.degrees(curve["theta_sd"])
+    chart = Chart(
+        "curve",
+        "Angle over the repetitions",
+        f"Mean and standard deviation of the angle over {count} repetitions, time normalized to the cycle.",
+        x_range=(0.0, 100.0),
+        y_range=range_of(mean - sd, mean + sd),
+        x_label="Time of the cycle (%)",
+        y_label="Angle θ (deg)",
+        size=(WIDTH, 280.0),
+    )
+    chart.band(curve["percent"], mean - sd, mean + sd, "band-known", "± standard deviation")
+    chart.line(curve["percent"], mean, "measured", f"mean of {count} repetitions")
+    return chart.svg()
+
+
+def model_name(trial: FinishedTrial) -> str:
+    """Name the model in a few words."""
+    return f"{_METHODS[trial.settings.model_method]} through {trial.keyframes.row.size} poses"
+
+
+def _over_time(
+    trial: FinishedTrial,
+    name: str,
+    title: str,
+    text: str,
+    y_range: tuple[float, float],
+    label: str,
+    *,
+    width: float = WIDTH,
+    height: float = 340.0,
+) -> Chart:
+    time_s = trial.screw.time_s
+    return Chart(
+        name,
+        title,
+        text,
+        x_range=range_of(time_s, air=0.01),
+        y_range=y_range,
+        x_label="Time (s)",
+        y_label=label,
+        size=(width, height),
+    )
+
+
+def _mark_tracking(chart: Chart, trial: FinishedTrial) -> None:
+    screw, half = trial.screw, 0.5 / trial.recording.rate_hz
+    for mask, look, label in (
+        (~screw.valid & ~screw.filled, "fill-lost", "not tracked"),
+        (screw.filled, "fill-filled", "filled in"),
+    ):
+        spans = [(screw.time_s[a] - half, screw.time_s[b] + half) for a, b in zip(*runs_of(mask), strict=True)]
+        chart.spans(spans, look, label)
+
+
+def _regions(bundle: Bundle) -> list[tuple[str, Any]]:
+    regions = [("band-spread", bundle.spread)]
+    if bundle.confidence is not None and np.isfinite(bundle.confidence.angle):
+        regions.append(("band-confidence", bundle.confidence))
+    return regions
+
+
+def _reach(bundle: Bundle, across: Float) -> float:
+    """How far across the axis the view goes: as far as the regions, or, if one is too wide, most of the axes."""
+    reaches = [float(region.reach(np.array([bundle.half]))[0]) for _, region in _regions(bundle)]
+    if any(region.angle > WIDEST for _, region in _regions(bundle)):
+        reaches = [float(np.percentile(np.linalg.norm(across, axis=2), 95.0))]
+    return 1.25 * max(reaches) or 1.0
+
+
+def _color_bar(low: float, high: float, top: float) -> list[str]:
+    """Draw the scale of the angle below both panels."""
+    left, width = 62.0, WIDTH - 78.0
+    pieces = 4 * len(COLORS)
+    piece = width / pieces
+    parts = [
+        f'<rect x="{left + k * piece:.1f}" y="{top:g}" width="{piece + 0.4:.1f}" height="9" '
+        f'fill="{color_of(k / (pieces - 1))}"/>'
+        for k in range(pieces)
+    ]
+    values, decimals = ticks_between(low, high, 8)
+    for value in values:
+        place = left + width * (value - low) / ((high - low) or 1.0)
+        parts.append(f'<text x="{place:.1f}" y="{top + 25:g}" text-anchor="middle">{tick_text(value, decimals)}</text>')
+    parts.append(
+        f'<text x="{left + 0.5 * width:g}" y="{top + 45:g}" text-anchor="middle">Angle θ of the frame (deg)</text>'
+    )
+    return parts

@@ -1,0 +1,171 @@
+"""The page of one trial, from its finished result."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from elbowscrew.io.results_reading import read_finished
+from elbowscrew.model.finished import FinishedTrial
+from elbowscrew.report.methods import citations_of, methods_of
+from elbowscrew.report.pages import UNSHOWABLE, render, unshowable, write_page
+from elbowscrew.report.scene import WIDEST, scene_of
+from elbowscrew.report.trial_charts import (
+    axis_chart,
+    error_chart,
+    euler_chart,
+    model_name,
+    repetition_chart,
+    theta_chart,
+)
+from elbowscrew.settings import Settings
+
+_FRAMES_TOLD: Final = 24
+_HARDLY_DEG: Final = 30.0  # a cone wider than this tells of no direction
+_FILES: Final = (
+    ("screw.csv", "measured motion and screw axis, frame by frame"),
+    ("interpolation.csv", "modeled motion and its error, frame by frame"),
+    ("keyframes.csv", "the poses of the model, with all that rebuilds it"),
+    ("instantaneous.csv", "instantaneous axis, frame by frame"),
+    ("repetitions.csv", "flexion-extension cycles"),
+    ("repetition_curve.csv", "mean and standard deviation over the cycles"),
+    ("steps.csv", "axes from step to step"),
+    ("anatomy.csv", "anatomical angles"),
+    ("summary.json", "results, quality, settings, provenance"),
+    ("joint.json", "joint axis by all estimators"),
+)
+_FRAME_NAMES: Final = {
+    "forearm": "forearm’s frame at the reference",
+    "arm": "upper arm’s frame",
+    "lab": "laboratory frame, upper arm as at the reference",
+}
+
+
+def write_trial_page(folder: Path) -> Path:
+    """Write ``report.html`` into a result folder; see `elbowscrew.report.write_trial_page`."""
+    trial = read_finished(folder)
+    try:
+        page = trial_page(trial)
+    except UNSHOWABLE as error:
+        raise unshowable(folder, error) from error
+    return write_page(folder / "report.html", page)
+
+
+def trial_page(trial: FinishedTrial) -> str:
+    """Make the page of one trial.
+
+    Parameters
+    ----------
+    trial : FinishedTrial
+        From `elbowscrew.io.results_reading.read_finished`.
+
+    Returns
+    -------
+    str
+        One HTML file that needs no other. The same result gives the same bytes.
+    """
+    summary, joint = trial.summary, trial.joint_summary
+    curve = trial.repetition_curve
+    warnings = summary["warnings"]
+    content = {
+        "summary": summary,
+        "source": summary["source"],
+        "trial": summary["trial"],
+        "motion": summary["motion"],
+        "model": summary["interpolation"],
+        "joint": joint,
+        "title": summary["source"]["name"] or "trial",
+        "arm_name": "still upper arm" if trial.arm is None else trial.arm.name,
+        "forearm_name": trial.forearm.name,
+        "bodies": [body for body in (summary["trial"]["arm"], summary["trial"]["forearm"]) if body is not None],
+        "frame_name": _FRAME_NAMES[trial.settings.express_in],
+        "lost_frames": int((~trial.screw.valid & ~trial.screw.filled).sum()),
+        "warnings": [warning for warning in warnings if warning["severity"] == "warning"],
+        "notes": [warning for warning in warnings if warning["severity"] != "warning"],
+        "model_name": model_name(trial),
+        "laws": " and ".join(dict.fromkeys(law["law"] for law in summary["interpolation"]["phase_laws"])),
+        "hardly_deg": _HARDLY_DEG,
+        "widest_deg": float(np.degrees(WIDEST)),
+        "theta_chart": theta_chart(trial),
+        "axis_chart": axis_chart(trial),
+        "error_chart": error_chart(trial),
+        "euler_chart": euler_chart(trial),
+        "curve_chart": None if curve is None else repetition_chart(curve, trial.repetitions.number.size),
+        "estimates": _estimates(joint),
+        "axis_rows": _axis_rows(trial),
+        "repetitions": _repetition_rows(trial),
+        "settings": _settings(trial.settings),
+        "other_units": (trial.settings.angle_unit, trial.settings.length_unit) != ("deg", "mm"),
+        "methods": methods_of(trial),
+        "citations": citations_of(trial),
+        "files": [(name, text) for name, text in _FILES if (trial.folder / name).is_file()],
+    }
+    return render("trial.html", styles=("page.css",), script="trial.js", data=scene_of(trial), content=content)
+
+
+def _estimates(joint: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """Rows of the table of the joint's axis, the preferred one marked."""
+    names = (
+        ("hinge", "Hinge, maximum likelihood"),
+        ("screw_hinge", "Screw-hinge, maximum likelihood"),
+        ("weighted_mean", "Weighted mean helical axis"),
+        ("sara", "SARA"),
+    )
+    blank = dict.fromkeys(
+        ("axis_cone95_deg", "point_radius95_mm", "pitch_mm_per_rad", "residual_rotation_deg", "residual_translation_mm")
+    )
+    return [
+        {**blank, **joint[key], "name": name, "preferred": key == joint["preferred"]}
+        for key, name in names
+        if joint[key] is not None
+    ]
+
+
+def _axis_rows(trial: FinishedTrial) -> list[dict[str, Any]]:
+    """Some frames with an axis, evenly chosen over the time that has one."""
+    screw = trial.screw
+    known = np.flatnonzero(screw.axis_known & screw.valid)
+    rows = known[np.unique(np.linspace(0, known.size - 1, min(known.size, _FRAMES_TOLD)).astype(np.int64))]
+    return [
+        {
+            "frame": int(screw.frame[row]),
+            "time_s": float(screw.time_s[row]),
+            "theta": float(np.degrees(screw.angle[row])),
+            "slide": float(1000.0 * screw.slide[row]),
+            "direction": screw.axis_direction[row].tolist(),
+            "point": (1000.0 * screw.axis_point[row]).tolist(),
+            "cone": float(np.degrees(screw.axis_cone[row])),
+            "radius": float(1000.0 * screw.point_radius[row]),
+        }
+        for row in rows
+    ]
+
+
+def _repetition_rows(trial: FinishedTrial) -> list[dict[str, Any]]:
+    found = trial.repetitions
+    return [
+        {
+            "number": int(found.number[k]),
+            "frames": [int(part[k]) for part in (found.start_frame, found.inversion_frame, found.end_frame)],
+            "duration": float(found.duration_s[k]),
+            "top": float(np.degrees(found.top_angle[k])),
+            "range": float(np.degrees(found.angle_range[k])),
+            "slide": float(1000.0 * found.slide_range[k]),
+            "flexion": float(np.degrees(found.flexion_speed[k])),
+            "extension": float(np.degrees(found.extension_speed[k])),
+            "deviation": float(np.degrees(found.axis_deviation[k])),
+        }
+        for k in range(found.number.size)
+    ]
+
+
+def _settings(settings: Settings) -> list[tuple[str, Any, str, bool]]:
+    """Give option, value, what it is, and whether it was chosen otherwise than by default."""
+    values = settings.model_dump(mode="json", by_alias=True)
+    return [
+        (str(field.alias), values[str(field.alias)], field.description or "", getattr(settings, name) != field.default)
+        for name, field in Settings.model_fields.items()
+    ]

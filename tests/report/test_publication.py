@@ -1,0 +1,136 @@
+"""Publication figures: their size on paper, their fonts, the paper's four and the overlay."""
+
+from __future__ import annotations
+
+import io
+import re
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+from finished_results import flexion_only
+from matplotlib.figure import Figure
+from PIL import Image
+
+from elbowscrew import analyze, plots, save_analysis, simulate_trial
+from elbowscrew.errors import OutputError, SettingError, UsageError
+from elbowscrew.io.results_reading import read_finished
+from elbowscrew.plots.overlay import PERCENT, MeanCurve, mean_curve, plot_overlay
+from elbowscrew.plots.paper_figures import PAPER_FIGURES
+from elbowscrew.report.figure_files import figure_files
+from elbowscrew.report.names import FIGURE_CHOICES, figure_names, width_mm
+from elbowscrew.report.publication import save_publication_figures
+
+POINTS_PER_MM = 72.0 / 25.4
+SINGLES = tuple(name for name in FIGURE_CHOICES if name != "overlay")
+
+
+@pytest.mark.parametrize("width", [85.0, 170.0])
+@pytest.mark.parametrize("name", SINGLES)
+def test_figures_have_the_width_asked_for_and_carry_their_fonts(result: Path, name: str, width: float) -> None:
+    files = figure_files(read_finished(result), [name], ["pdf", "svg", "png"], width)
+    pdf = files[f"{name}.pdf"]
+    box = re.search(rb"/MediaBox \[ ?0 0 ([\d.]+) ([\d.]+) ?\]", pdf)
+    assert box
+    assert float(box[1]) == pytest.approx(width * POINTS_PER_MM, abs=0.01)
+    assert b"/FontFile2" in pdf
+    assert b"/Type3" not in pdf
+    svg = files[f"{name}.svg"].decode()
+    assert float(re.search(r'<svg [^>]*width="([\d.]+)pt"', svg)[1]) == pytest.approx(width * POINTS_PER_MM, abs=0.01)  # type: ignore[index]
+    assert "<text" not in svg  # letters are outlines
+    assert all(link.startswith(("#", "data:")) for link in re.findall(r'href="([^"]*)"', svg))
+    with Image.open(io.BytesIO(files[f"{name}.png"])) as image:
+        assert image.size[0] == pytest.approx(width / 25.4 * 300, abs=1)
+
+
+def test_figures_of_the_result_folder_are_made_again_to_the_byte(tmp_path: Path) -> None:
+    analysis = analyze(simulate_trial(frames=100, inversion=50, seed=3).recording)
+    folder = save_analysis(analysis, tmp_path / "r", figure_formats=("png", "svg"), report=False)
+    again = figure_files(read_finished(folder), tuple(plots.FIGURES), ("png", "svg"))
+    assert again == {path.name: path.read_bytes() for path in (folder / "figures").iterdir()}
+    assert len(again) == 10
+
+
+def test_the_papers_figures_show_measured_and_modeled_at_one_scale(result: Path) -> None:
+    trial = read_finished(result)
+    drawn = {name: make(trial).axes[0] for name, make in PAPER_FIGURES.items()}
+    lines = {name: [np.asarray(line.get_ydata()) for line in ax.get_lines()] for name, ax in drawn.items()}
+    assert lines["fig7"][0] == pytest.approx(np.degrees(trial.screw.angle), nan_ok=True)
+    assert lines["fig8"][0] == pytest.approx(np.degrees(trial.interpolated.angle), nan_ok=True)
+    for k in range(4):
+        assert lines["fig9"][k] == pytest.approx(trial.screw.euler_parameters[:, k], nan_ok=True)
+        assert lines["fig10"][k] == pytest.approx(trial.interpolated.euler_parameters[:, k], nan_ok=True)
+    assert drawn["fig7"].get_ylim() == drawn["fig8"].get_ylim()
+    assert drawn["fig9"].get_ylim() == drawn["fig10"].get_ylim()
+
+
+def test_the_mean_curve_of_a_trial_is_that_of_its_cycles(result: Path) -> None:
+    trial = read_finished(result)
+    curve = mean_curve(trial)
+    assert curve is not None
+    assert trial.repetition_curve is not None
+    assert curve.cycles == 2
+    # The table of the analysis is another computation of the same.
+    assert curve.angle == pytest.approx(trial.repetition_curve["theta_mean"], abs=1e-3, nan_ok=True)
+
+
+def test_the_overlay_shows_mean_and_deviation_between_trials() -> None:
+    bump = np.sin(np.pi * PERCENT / 100.0)
+    curves = [MeanCurve(height * bump, 1) for height in (1.0, 2.0, 3.0)]
+    curves[1].angle[10] = np.nan
+    ax = plot_overlay(Figure().add_subplot(), curves, "rad")
+    mean = next(np.asarray(line.get_ydata()) for line in ax.get_lines() if line.get_label() == "mean")
+    expected = 2.0 * bump
+    expected[10] = np.nan
+    assert mean == pytest.approx(expected, nan_ok=True)
+    vertices = np.asarray(ax.collections[0].get_paths()[-1].vertices)
+    middle = vertices[np.abs(vertices[:, 0] - 50.0) < 1e-9, 1]
+    assert [middle.min(), middle.max()] == pytest.approx([1.0, 3.0])  # 2 ± 1
+
+
+def test_figures_of_several_results_have_names_of_their_own(result: Path, tmp_path: Path) -> None:
+    places = [tmp_path / "a" / "Trial 1_elbowscrew", tmp_path / "b" / "trial 1", tmp_path / "c" / ".._..%&"]
+    for place in places:
+        shutil.copytree(result, place)
+    out = tmp_path / "out"
+    made = save_publication_figures(places, out, ["fig7", "overlay"], ["svg"], width_mm=85.0)
+    assert made.left_out == ()
+    assert {path.name for path in made.files} == {
+        "Trial_1_fig7.svg",
+        "trial_1~2_fig7.svg",
+        "trial_fig7.svg",
+        "overlay.svg",
+    }
+    assert {path.parent for path in made.files} == {out}
+    before = (out / "overlay.svg").read_bytes()
+    with pytest.raises(OutputError, match="--force"):
+        save_publication_figures(places, out, ["fig7", "overlay"], ["svg"], width_mm=85.0)
+    assert save_publication_figures(places, out, ["overlay"], ["svg"], width_mm=85.0, force=True)
+    assert (out / "overlay.svg").read_bytes() == before
+
+
+def test_an_overlay_needs_movements(result: Path, tmp_path: Path) -> None:
+    flexion = save_analysis(analyze(flexion_only()), tmp_path / "flexion", figure_formats=(), report=False)
+    with pytest.raises(SettingError, match="found 1 of 2"):
+        save_publication_figures([result, flexion], tmp_path / "out", ["overlay"], ["pdf"], width_mm=170.0)
+    assert not (tmp_path / "out").exists()
+
+
+def test_an_overlay_leaves_out_what_has_no_cycle_and_says_so(result: Path, tmp_path: Path) -> None:
+    flexion = save_analysis(analyze(flexion_only()), tmp_path / "flexion", figure_formats=(), report=False)
+    second = shutil.copytree(result, tmp_path / "second")
+    made = save_publication_figures([result, flexion, second], tmp_path, ["overlay"], ["svg"], width_mm=85.0)
+    assert made.left_out == (flexion,)
+    assert made.files == (tmp_path / "overlay.svg",)
+
+
+def test_names_and_widths() -> None:
+    assert figure_names(["theta, fig7", "theta"]) == ("theta", "fig7")
+    assert (width_mm("single"), width_mm("double"), width_mm("90"), width_mm("120.5mm")) == (85.0, 170.0, 90.0, 120.5)
+    for bad in ("wide", "10", "nan", "1e9", "-85"):
+        with pytest.raises(UsageError, match="--width"):
+            width_mm(bad)
+    for names in (["thta"], [""], ["theta;axis"]):
+        with pytest.raises(UsageError, match="--figures"):
+            figure_names(names)

@@ -1,0 +1,203 @@
+"""The page of a study: every trial and every failure, outliers by the rule it states."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+from dataclasses import replace
+from pathlib import Path
+from urllib.parse import unquote
+
+import numpy as np
+import pytest
+from finished_results import HOSTILE, write_rows
+from hypothesis import given
+from hypothesis import strategies as st
+
+from elbowscrew.errors import OutputError, ResultError
+from elbowscrew.report import remake_pages, results_in, write_study_page
+from elbowscrew.report.distributions import LEAST, LIMIT, modified_z
+from elbowscrew.report.study import read_study
+from elbowscrew.report.study_page import study_page, thumbnail
+
+STUDY_MOST_BYTES = 10_000_000
+
+
+def text_of(folder: Path) -> str:
+    return (folder / "index.html").read_text(encoding="utf-8")
+
+
+def links(page: str) -> list[str]:
+    return re.findall(r'<th scope="row"><a href="([^"]+)">', page)
+
+
+def test_every_trial_and_every_failure_is_there(study: Path) -> None:
+    page = text_of(study)
+    found = {unquote(link) for link in links(page)}
+    places = [folder.relative_to(study).as_posix() for folder in results_in([study])]
+    assert len(places) == 18
+    # The one trial without a page of its own is told without a link.
+    assert found == {f"{place}/report.html" for place in places if place != "trial 3"}
+    assert '<th scope="row">trial 3</th>' in page
+    assert "18 trials analyzed" in page
+    assert "2 failed" in page
+    assert "data/broken.csv" in page
+    assert "http" not in page.replace("http-equiv", "")
+
+
+def test_hostile_names_and_reasons_are_escaped(study: Path) -> None:
+    page = text_of(study)
+    assert "<b>%41</b>" not in page
+    assert 'href="trial%20%237%20%3Cb%3E%2541%3C/b%3E/report.html"' in page
+    assert HOSTILE[:20] not in page
+    assert page.count("<script") == 2
+
+
+def test_what_the_manifest_says_is_carried(study: Path) -> None:
+    found = read_study(study)
+    assert found.factors == ("subject", "condition")
+    told = {trial.place: trial.factors["condition"] for trial in found.trials}
+    assert told["trial 4"] == "slow"
+    assert told["trial 5"] == "fast"
+    assert "Distributions by condition" in text_of(study)
+    assert read_study(study, ["subject"]).factors == ("subject",)
+
+
+def test_the_outlier_is_flagged_within_its_condition(study: Path) -> None:
+    page = text_of(study)
+    (row,) = re.findall(r'<tr><th scope="row"><a href="[^"]+">trial 5</a>.*?</tr>', page)
+    assert "Largest angle high" in row
+    assert page.count("Largest angle high") == 1
+    assert f"over {LIMIT}" in page
+
+
+def test_any_folder_of_results_will_do(result: Path, tmp_path: Path) -> None:
+    shutil.copytree(result, tmp_path / "a" / "deep" / "one")
+    shutil.copytree(result, tmp_path / "two")
+    (tmp_path / "notes").mkdir()
+    (tmp_path / ".hidden").mkdir()
+    shutil.copytree(result, tmp_path / ".hidden" / "partial")
+    assert [path.relative_to(tmp_path).as_posix() for path in results_in([tmp_path])] == ["a/deep/one", "two"]
+    page = write_study_page(tmp_path).read_text(encoding="utf-8")
+    assert links(page) == ["a/deep/one/report.html", "two/report.html"]
+    assert "failed" not in page
+
+
+def test_links_out_of_the_folder_are_not_followed(result: Path, tmp_path: Path) -> None:
+    shutil.copytree(result, tmp_path / "study" / "one")
+    shutil.copytree(result, tmp_path / "elsewhere")
+    (tmp_path / "study" / "out").symlink_to(tmp_path / "elsewhere", target_is_directory=True)
+    assert [path.name for path in results_in([tmp_path / "study"])] == ["one"]
+
+
+def test_a_damaged_result_is_a_failure_of_its_own(result: Path, tmp_path: Path) -> None:
+    for name in ("good", "damaged", "poor"):
+        shutil.copytree(result, tmp_path / name)
+    (tmp_path / "damaged" / "summary.json").write_text("{")
+    summary = json.loads((tmp_path / "poor" / "summary.json").read_text())
+    del summary["motion"]["axis_dispersion_deg"]
+    (tmp_path / "poor" / "summary.json").write_text(json.dumps(summary))
+    made = remake_pages([tmp_path])
+    assert [page.relative_to(tmp_path).as_posix() for page in made.pages] == ["good/report.html", "index.html"]
+    assert len(made.errors) == 2
+    page = text_of(tmp_path)
+    assert links(page) == ["good/report.html"]
+    assert "2 failed" in page
+    assert "damaged" in page
+    assert "axis_dispersion_deg" in page
+
+
+def test_a_folder_without_results_is_told(tmp_path: Path) -> None:
+    with pytest.raises(ResultError, match="analyze trials"):
+        write_study_page(tmp_path)
+    with pytest.raises(ResultError, match="no such folder"):
+        results_in([tmp_path / "none"])
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_failures_alone_make_a_page(tmp_path: Path) -> None:
+    write_rows(tmp_path / "failures.csv", [["path", "error class", "message"], ["a.csv", "RecordingError", "cut"]])
+    page = write_study_page(tmp_path).read_text(encoding="utf-8")
+    assert "0 trials analyzed" in page
+    assert "a.csv" in page
+
+
+def test_nothing_of_the_users_is_replaced(result: Path, tmp_path: Path) -> None:
+    shutil.copytree(result, tmp_path / "one")
+    (tmp_path / "index.html").write_text("<p>my home page")
+    with pytest.raises(OutputError, match=r"index\.html"):
+        write_study_page(tmp_path)
+    assert text_of(tmp_path) == "<p>my home page"
+
+
+def test_the_same_results_give_the_same_bytes(study: Path) -> None:
+    before = text_of(study)
+    assert study_page(read_study(study)) == before
+    assert write_study_page(study).read_text(encoding="utf-8") == before
+
+
+def test_a_thousand_trials_make_a_page_of_less_than_ten_megabytes(study: Path) -> None:
+    found = read_study(study)
+    many = [
+        replace(found.trials[k % 18], place=f"folder {k}/a trial with a rather long name {k}", page=True)
+        for k in range(1000)
+    ]
+    page = study_page(replace(found, trials=tuple(many)))
+    assert len(links(page)) == 1000
+    assert len(page.encode()) < STUDY_MOST_BYTES
+
+
+def test_a_thumbnail_takes_a_few_hundred_bytes_however_long_the_trial() -> None:
+    time_s = np.linspace(0.0, 100.0, 100_000)
+    theta = 60.0 - 60.0 * np.cos(time_s / 10.0)
+    theta[500:900] = np.nan
+    drawn = thumbnail(time_s, theta, (0.0, 120.0))
+    assert len(drawn) < 1200
+    heights = [float(y) for y in re.findall(r"[ML][\d.]+ ([\d.]+)", drawn)]
+    assert min(heights) == pytest.approx(2.0, abs=0.1)  # the highest angle is at the top
+    assert max(heights) == pytest.approx(32.0, abs=0.1)
+
+
+@given(st.lists(st.floats(-50, 50), min_size=LEAST, max_size=40), st.floats(0.1, 10), st.floats(-100, 100))
+def test_outliers_do_not_depend_on_unit_and_origin(values: list[float], scale: float, shift: float) -> None:
+    x = np.round(np.array(values), 3)
+    before, after = modified_z(x), modified_z(scale * x + shift)
+    if np.median(np.abs(x - np.median(x))) > 0.0:
+        assert after == pytest.approx(before, rel=1e-6, abs=1e-6)
+
+
+def test_the_rule_is_the_one_of_the_handbook() -> None:
+    # Median 4, absolute deviations 3 2 1 1 0 1 2 96: their median is 1.5.
+    z = modified_z(np.array([1.0, 2.0, 3.0, 3.0, 4.0, 5.0, 6.0, 100.0, np.nan, 4.0]))
+    deviation = np.array([1.0, 2.0, 3.0, 3.0, 4.0, 5.0, 6.0, 100.0, 4.0]) - 4.0
+    assert z[[0, 1, 2, 3, 4, 5, 6, 7, 9]] == pytest.approx(0.6745 * deviation / np.median(np.abs(deviation)))
+    assert np.isnan(z[8])
+    assert (np.abs(z) > LIMIT).nonzero()[0].tolist() == [7]
+
+
+def test_too_few_or_all_alike_have_no_outliers() -> None:
+    assert np.isnan(modified_z(np.array([1.0, 2.0, 3.0, 1e9]))).all()
+    assert (modified_z(np.full(9, 7.0)) == 0.0).all()
+    mostly = modified_z(np.array([5.0] * 9 + [6.0]))
+    assert mostly[-1] > LIMIT
+    assert (mostly[:-1] == 0.0).all()
+
+
+def test_the_columns_of_a_batchs_manifest_are_those_between_path_and_frames(result: Path, tmp_path: Path) -> None:
+    for name in ("=one", "two", "left over"):
+        shutil.copytree(result, tmp_path / name)
+    header = ["trial", "path", "session", "condition", "frames", "expressed_in"]
+    rows = [["'=one", "in/1.csv", "1", "<i>a</i>", "450", "arm"], ["two", "in/2.csv", "2", "b", "450", "lab"]]
+    write_rows(tmp_path / "summary.csv", [header, *rows])
+    found = read_study(tmp_path)
+    assert found.factors == ("condition", "session")
+    assert [trial.factors for trial in found.trials] == [
+        {"condition": "<i>a</i>", "session": "1"},
+        {"condition": "b", "session": "2"},
+    ]
+    assert found.others == ("left over",)
+    page = write_study_page(tmp_path).read_text(encoding="utf-8")
+    assert links(page) == ["%3Done/report.html", "two/report.html"]
+    assert "1 further result in this folder (left over)" in page
+    assert "<i>a" not in page
