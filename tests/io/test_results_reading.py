@@ -83,7 +83,8 @@ def test_poses_keyframes_and_movements_come_back(pair: Pair) -> None:
     assert finished.keyframes.phases.law_rows.tolist() == analysis.keyframes.phases.law_rows.tolist()
     assert finished.phases.moving.tolist() == analysis.phases.moving.tolist()
     assert finished.joint_axis.preferred == analysis.joint_axis.preferred
-    assert finished.settings == analysis.settings
+    told = {"method": analysis.settings.model_method, "law": analysis.settings.model_law}
+    assert finished.settings == analysis.settings.model_copy(update=told)
 
 
 @pytest.mark.parametrize("name", FIGURES)
