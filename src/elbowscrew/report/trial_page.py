@@ -9,6 +9,7 @@ from typing import Any, Final
 import numpy as np
 
 from elbowscrew.io.results_reading import read_finished
+from elbowscrew.io.summary import settings_summary
 from elbowscrew.model.finished import FinishedTrial
 from elbowscrew.report.methods import citations_of, methods_of
 from elbowscrew.report.pages import UNSHOWABLE, render, unshowable, write_page
@@ -164,8 +165,10 @@ def _repetition_rows(trial: FinishedTrial) -> list[dict[str, Any]]:
 
 def _settings(settings: Settings) -> list[tuple[str, Any, str, bool]]:
     """Give option, value, what it is, and whether it was chosen otherwise than by default."""
-    values = settings.model_dump(mode="json", by_alias=True)
+    values = settings_summary(settings)
+    usual = settings_summary(Settings(tolerance_mm=settings.tolerance_mm))  # method and law go by the tolerance
+    usual["tolerance"] = None
     return [
-        (str(field.alias), values[str(field.alias)], field.description or "", getattr(settings, name) != field.default)
-        for name, field in Settings.model_fields.items()
+        (option, values[option], field.description or "", values[option] != usual[option])
+        for option, field in ((str(field.alias), field) for field in Settings.model_fields.values())
     ]
