@@ -9,7 +9,7 @@ import sys
 import warnings
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, ProcessPoolExecutor
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import AbstractContextManager, contextmanager, suppress
 from functools import partial
 from importlib import import_module
 from importlib.util import find_spec
@@ -23,6 +23,7 @@ LOCAL_CLUSTER: Final = "local-cluster"
 OpenExecutor = Callable[[], AbstractContextManager[Executor]]
 """Gives a new executor; leaving its context by an error ends the work in hand."""
 
+_LONGEST_CLOSE_S: Final = 5.0
 _LONGEST_WAIT: Final = "15s"
 
 
@@ -108,9 +109,11 @@ def _cluster(scheduler: str, workers: int) -> Iterator[Executor]:
             executor.shutdown(wait=False)
             raise
         finally:
-            client.close()
-            if cluster is not None:
-                cluster.close()
+            # A worker that is just coming to life may keep a cluster from ever closing; it dies with this process.
+            with suppress(TimeoutError):
+                client.close()
+                if cluster is not None:
+                    cluster.close(timeout=_LONGEST_CLOSE_S)
 
 
 @contextmanager
