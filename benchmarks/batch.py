@@ -93,7 +93,7 @@ def broken(folder: Path, trials: int | None) -> None:
             "Dask, 2 workers": ("--workers", 2, "--scheduler", "local-cluster")}  # fmt: skip
     outputs = {}
     for name, options in ways.items():
-        out = folder / f"broken {name}"
+        out = folder / name / "results"  # the page of a study is called as its folder is
         elapsed = run(folder / "broken", out, *options, *FAST, code=7)
         outputs[name] = contents(out)
         print(f"{name:16s} {elapsed:7.2f} s, {1000 * elapsed / count:.1f} ms a trial")
@@ -112,9 +112,9 @@ def kills(folder: Path, trials: int | None) -> None:
     count = trials or 1000
     if not (folder / "broken").exists():
         study(folder / "broken", count, frames=60, broken=0.05)
-    undisturbed = folder / "undisturbed"
+    undisturbed = folder / "undisturbed" / "results"
     elapsed = run(folder / "broken", undisturbed, "--workers", 2, *FAST, code=7)
-    out = folder / "killed"
+    out = folder / "killed" / "results"
     chance = random.Random(2010)  # noqa: S311
     moments = sorted(chance.uniform(0.0, elapsed) for _ in range(20))
     done = []
