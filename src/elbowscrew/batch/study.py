@@ -126,10 +126,10 @@ def run_study(
     check_exports(common.export)
     tasks = _tasks(trials, folder, config, dict(options or {}), landmarks)
     with batch_folder(folder):
-        todo = [k for k, task in enumerate(tasks) if restart or not is_current(task)]
-        if todo:
+        pending = [k for k, task in enumerate(tasks) if restart or not is_current(task)]
+        if pending:
             _remove_tables(folder)  # what stands there is of a batch that is finished; this one is not
-        failed = _analyze(tasks, todo, open_executor, workers, report)
+        failed = _analyze(tasks, pending, open_executor, workers, report)
         failures = tuple(FailedTrial(path=tasks[k].label, failure=failed[k]) for k in sorted(failed))
         rows = [
             StudyRow(trial=task.folder.name, path=task.label, columns=trial.columns, summary=_summary_of(task))
@@ -143,7 +143,7 @@ def run_study(
         return StudyResult(
             folder=folder,
             names=tuple(task.folder.name for task in tasks),
-            kept=len(tasks) - len(todo),
+            kept=len(tasks) - len(pending),
             warned=sum(any(one["severity"] == "warning" for one in row.summary["warnings"]) for row in rows),
             failed=failures,
             others=_others(folder, {row.trial for row in rows}),
@@ -152,14 +152,14 @@ def run_study(
 
 def _analyze(
     tasks: Sequence[TrialTask],
-    todo: Sequence[int],
+    pending: Sequence[int],
     open_executor: OpenExecutor,
     workers: int,
     report: Callable[[Progress], None],
 ) -> dict[int, Failure]:
     """Analyze the trials that are left, tell of each, and give the failures."""
     failed: dict[int, Failure] = {}
-    done = kept = len(tasks) - len(todo)
+    done = kept = len(tasks) - len(pending)
 
     def tell(latest: FailedTrial | None = None) -> None:
         report(Progress(total=len(tasks), done=done, failed=len(failed), kept=kept, latest=latest))
@@ -170,11 +170,11 @@ def _analyze(
         if failure is None:
             tell()
         else:
-            failed[todo[index]] = failure
-            tell(FailedTrial(path=tasks[todo[index]].label, failure=failure))
+            failed[pending[index]] = failure
+            tell(FailedTrial(path=tasks[pending[index]].label, failure=failure))
 
     tell()
-    run_tasks([tasks[k] for k in todo], analyze_trial, open_executor, workers, settled)
+    run_tasks([tasks[k] for k in pending], analyze_trial, open_executor, workers, settled)
     return failed
 
 
