@@ -75,7 +75,7 @@ def analyze(recording: Recording, settings: Settings | None = None, *, landmarks
     model = build_model(measured, phases, known_velocity, wanted)
     warnings = measured.warnings + model.warnings + axes.warnings
     cycles = find_cycles(screw.angle, phases)
-    repetitions = repetitions_of(cycles, screw, measured.line, velocity, elapsed, near)
+    repetitions = repetitions_of(cycles, screw, measured.line, velocity, elapsed)
     if (
         len(cycles) > 1
         and model.inversion_rows.size < len(cycles)

@@ -13,6 +13,23 @@ from elbowscrew.model import MeanAxis
 Float = NDArray[np.float64]
 
 _MOST_COMPARED: Final = 1000
+_ROUNDING: Final = 1e-12
+
+
+def mean_line_of(angle: Float, line: Float) -> tuple[Float, Float]:
+    """Direction and point nearest the origin, each (3,), of the weighted mean of lines; as of `mean_axis_of`.
+
+    Parameters
+    ----------
+    angle : ndarray, shape (N,)
+    line : ndarray, shape (N, 6)
+        All of them known.
+    """
+    weights = np.sin(0.5 * angle) ** 2
+    mean = weights @ line / weights.sum()
+    scale = length(mean[:3])
+    direction = mean[:3] / scale
+    return direction, np.cross(direction, mean[3:] / scale)
 
 
 def mean_axis_of(angle: Float, line: Float, near: Float) -> MeanAxis:
@@ -35,12 +52,7 @@ def mean_axis_of(angle: Float, line: Float, near: Float) -> MeanAxis:
     Woltring 1994, Human Movement Science 13.
     """
     known = np.isfinite(line).all(axis=1)
-    weights = np.sin(0.5 * angle[known]) ** 2
-    mean = weights @ line[known] / weights.sum()
-    scale = length(mean[:3])
-    direction = mean[:3] / scale
-    moment = mean[3:] / scale
-    point = np.cross(direction, moment)
+    direction, point = mean_line_of(angle[known], line[known])
     plain = line[known, :3].mean(axis=0)
     deviation = np.arctan2(length(np.cross(line[:, :3], plain)), line[:, :3] @ plain)
     # Where each axis pierces the plane across the mean axis at `near`: the same in whatever frame it is described.
@@ -62,4 +74,11 @@ def mean_axis_of(angle: Float, line: Float, near: Float) -> MeanAxis:
 
 def _largest_distance(points: Float) -> float:
     """Between any two of the points (M, 3)."""
-    return max(float(np.nanmax(length(points - one), initial=0.0)) for one in points)
+    known = points[np.isfinite(points).all(axis=1)]
+    if not len(known):
+        return 0.0
+    radius = length(known - known.mean(axis=0))
+    found = float(length(known - known[np.argmax(radius)]).max())
+    # Two points that are farther apart than these are as far from the mean together: the inner points are none of them.
+    outer = known[radius >= (1.0 - _ROUNDING) * found - radius.max()]
+    return max(found, *(float(length(outer - one).max()) for one in outer))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from typing import Final, Literal, NamedTuple
+from typing import Any, Final, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -77,7 +77,7 @@ def model_phases(
     bounds = np.concatenate([known[:1], turns, known[-1:]]).astype(np.int64)
     if whole:
         return ModelPhases(bound_rows=bounds, law_rows=np.column_stack([bounds[:-1], bounds[1:]]))
-    motion = _Motion(angle, elapsed, known, movements, np.abs(velocity))
+    motion = _Motion(angle, elapsed, known, movements, np.abs(velocity), _least_swing(angle[known]))
     return _moving(bounds if inversion is not None else _parted(bounds, motion), motion)
 
 
@@ -131,23 +131,25 @@ class _Motion(NamedTuple):
     known: NDArray[np.intp]
     movements: MovementPhases
     speed: Float
+    least_swing: float
 
     def runs(self, first: int, last: int) -> list[tuple[int, int]]:
         """Movements between two rows, cut there, that turn the joint by more than a tremor does."""
         onset, offset = self.movements.onset_rows, self.movements.offset_rows
-        inside = (onset < last) & (offset > first)
+        inside = slice(int(np.searchsorted(offset, first, side="right")), int(np.searchsorted(onset, last)))
         runs = list(zip(onset[inside].clip(min=first).tolist(), offset[inside].clip(max=last).tolist(), strict=True))
         travel = [abs(float(self.angle[self.nearest(b)] - self.angle[self.nearest(a)])) for a, b in runs]
-        least = min(_least_swing(self.angle[self.known]), max(travel, default=0.0))
+        least = min(self.least_swing, max(travel, default=0.0))
         return [run for run, angle in zip(runs, travel, strict=True) if angle >= least]
 
     def nearest(self, row: int, low: int = 0, high: int | None = None) -> int:
         """Known row nearest to a row, not beyond the limits."""
-        allowed = self.known[(self.known >= low) & (self.known <= (self.angle.size if high is None else high))]
-        return int(allowed[np.argmin(np.abs(allowed - row))])
+        first = int(np.searchsorted(self.known, low))
+        last = self.known.size if high is None else int(np.searchsorted(self.known, high, side="right"))
+        return int(self.known[first + _nearest(self.known[first:last], row)])
 
     def row_at(self, time: float) -> int:
-        return int(np.argmin(np.abs(self.elapsed - time)))
+        return _nearest(self.elapsed, time)
 
     def foot(self, onset: int, offset: int) -> float:
         """Share of a movement that passes before its speed is over the threshold."""
@@ -156,6 +158,13 @@ class _Motion(NamedTuple):
             return 0.0
         ratio = min(self.movements.threshold / float(np.nanmax(speed)), 1.0)
         return float(0.5 * (1.0 - np.sqrt(1.0 - np.sqrt(ratio))))
+
+
+def _nearest(increasing: NDArray[Any], value: float) -> int:
+    """Place of the nearest of increasing numbers, the earlier of two."""
+    after = min(int(np.searchsorted(increasing, value)), increasing.size - 1)
+    before = max(after - 1, 0)
+    return before if value - increasing[before] <= increasing[after] - value else after
 
 
 def _parted(bounds: Index, motion: _Motion) -> Index:

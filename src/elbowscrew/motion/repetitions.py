@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from elbowscrew.geometry._small_angle import divide, length
 from elbowscrew.model import Repeatability, Repetitions, ScrewMotion
-from elbowscrew.motion.mean_axis import mean_axis_of
+from elbowscrew.motion.mean_axis import mean_line_of
 
 Float = NDArray[np.float64]
 
@@ -17,7 +17,7 @@ _POINTS: Final = 101
 
 
 def repetitions_of(
-    cycles: NDArray[np.int64], screw: ScrewMotion, line: Float, angular_velocity: Float, elapsed: Float, near: Float
+    cycles: NDArray[np.int64], screw: ScrewMotion, line: Float, angular_velocity: Float, elapsed: Float
 ) -> Repetitions:
     """Figures of every cycle.
 
@@ -30,8 +30,6 @@ def repetitions_of(
         Axes of the frames, NaN where there is none.
     angular_velocity, elapsed : ndarray, shape (N,)
         rad/s and seconds.
-    near : ndarray, shape (3,)
-        A point of the body, as in `mean_axis_of`.
     """
     start, top, end = cycles.T
     direction, point = np.full((len(cycles), 3), np.nan), np.full((len(cycles), 3), np.nan)
@@ -39,12 +37,11 @@ def repetitions_of(
     speed = np.full((len(cycles), 2), np.nan)
     for k, (first, turn, last) in enumerate(cycles.tolist()):
         rows = slice(first, last + 1)
-        lines = np.where(screw.valid[rows, None], line[rows], np.nan)
+        known = first + np.flatnonzero(screw.valid[rows] & np.isfinite(line[rows]).all(axis=1))
         span[k] = np.ptp(screw.angle[rows][np.isfinite(screw.angle[rows])])
         speed[k] = _largest(angular_velocity[first : turn + 1]), _largest(-angular_velocity[turn : last + 1])
-        if np.isfinite(lines[:, 0]).any():
-            mean = mean_axis_of(screw.angle[rows], lines, near)
-            direction[k], point[k] = mean.direction, mean.point
+        if known.size:
+            direction[k], point[k] = mean_line_of(screw.angle[known], line[known])
             slides = screw.slide[rows]
             slide_range[k] = np.ptp(slides[np.isfinite(slides)])
     middle = _mean_direction(direction)
