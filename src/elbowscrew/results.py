@@ -17,11 +17,12 @@ from elbowscrew.io.exporting import check_exports, write_exports
 from elbowscrew.io.joint_summary import joint_summary
 from elbowscrew.io.optitrack_writer import motive_columns_lines, row_tagged_lines
 from elbowscrew.io.reading import read_recording
-from elbowscrew.io.results_reading import read_finished
+from elbowscrew.io.results_reading import as_finished
 from elbowscrew.io.staging import COMPARISON, FIGURE_FORMATS, FIGURE_NAMES, RESULT_FILES, result_folder, write_files
 from elbowscrew.io.summary import summary_from_analysis
 from elbowscrew.io.writing import write_csv, write_tables
 from elbowscrew.model import Analysis, Comparison, Landmarks, RebuiltMotion, TrialsComparison
+from elbowscrew.model.finished import FinishedTrial
 from elbowscrew.motion.analysis import analyze
 from elbowscrew.report import write_trial_page
 from elbowscrew.settings import Settings
@@ -58,8 +59,8 @@ def save_analysis(
 ) -> Path:
     """Write the tables, ``summary.json``, ``joint.json``, ``figures/`` and ``report.html`` into a folder.
 
-    Whole or not at all. Figures and page are made from the tables and JSON just written, so that
-    ``elbowscrew report`` makes the same of them at any later time.
+    Whole or not at all. Figures and page are made of the numbers as the tables and JSON hold them, so that
+    ``elbowscrew report`` makes the same of the folder at any later time.
 
     The summary says under ``files`` what else is in the folder, each with its SHA-256.
 
@@ -102,16 +103,16 @@ def save_analysis(
     formats = _known_formats(analysis.settings.figure_formats if figure_formats is None else tuple(figure_formats))
     others = analysis.settings.export if exports is None else tuple(exports)
     check_exports(others)
-    summary = summary_from_analysis(analysis)
+    summary, joint = summary_from_analysis(analysis), joint_summary(analysis)
     with result_folder(target, force=force) as staged:
         write_tables(staged, analysis)
-        _write_json(staged / "joint.json", joint_summary(analysis))
+        joint = _write_json(staged / "joint.json", joint)
         if formats:
-            _write_figures(staged, summary, formats)
+            _write_figures(staged, as_finished(analysis, staged, summary, joint), formats)
         write_exports(staged, analysis, summary, others)
-        _write_json(staged / SUMMARY, {**summary, "files": digests(staged)})  # the last, when all else is there
+        summary = _write_json(staged / SUMMARY, {**summary, "files": digests(staged)})  # when all else is there
         if report:
-            write_trial_page(staged)
+            write_trial_page(staged, as_finished(analysis, staged, summary, joint))
     return target
 
 
@@ -149,15 +150,18 @@ def digests(folder: Path) -> dict[str, str]:
     return {name: hashlib.sha256((folder / name).read_bytes()).hexdigest() for name in names}
 
 
-def _write_json(path: Path, content: Mapping[str, Any]) -> None:
+def _write_json(path: Path, content: Mapping[str, Any]) -> dict[str, Any]:
+    """Write an object, and give it as it reads back."""
     text = json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False)
     path.write_text(text + "\n", encoding="utf-8")
+    written: dict[str, Any] = json.loads(text)
+    return written
 
 
-def _write_figures(staged: Path, summary: Mapping[str, Any], formats: Sequence[str]) -> None:
+def _write_figures(staged: Path, trial: FinishedTrial, formats: Sequence[str]) -> None:
     from elbowscrew.report.figure_files import figure_files
 
-    _write_all(staged / "figures", figure_files(read_finished(staged, summary), FIGURE_NAMES, formats))
+    _write_all(staged / "figures", figure_files(trial, FIGURE_NAMES, formats))
 
 
 def _write_all(folder: Path, files: Mapping[str, bytes]) -> None:

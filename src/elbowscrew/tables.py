@@ -6,10 +6,8 @@ they are, and `columns` turns a result into named columns in the units asked for
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum
-from operator import attrgetter
 from typing import TYPE_CHECKING, Any, Final, Literal
 
 import numpy as np
@@ -39,22 +37,25 @@ class Quantity(Enum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Column:
-    """One column: its name without unit, where its values are found, and their kind."""
+    """One column: its name without unit, the attribute that holds its values, and their kind."""
 
     name: str
-    values: Callable[[Any], NDArray[Any]]
+    attribute: str
+    component: int | None = None
     quantity: Quantity
+
+    def values(self, result: object) -> NDArray[Any]:
+        """Values of the column, in SI units and radians."""
+        found: NDArray[Any] = getattr(result, self.attribute)
+        return found if self.component is None else found[:, self.component]
 
 
 def _column(name: str, attribute: str, quantity: Quantity) -> Column:
-    return Column(name=name, values=attrgetter(attribute), quantity=quantity)
+    return Column(name=name, attribute=attribute, quantity=quantity)
 
 
 def _components(names: tuple[str, ...], attribute: str, quantity: Quantity) -> tuple[Column, ...]:
-    def component(k: int) -> Callable[[Any], NDArray[Any]]:
-        return lambda result: attrgetter(attribute)(result)[:, k]
-
-    return tuple(Column(name=name, values=component(k), quantity=quantity) for k, name in enumerate(names))
+    return tuple(Column(name=name, attribute=attribute, component=k, quantity=quantity) for k, name in enumerate(names))
 
 
 _DISPLACEMENT: Final = (
@@ -320,26 +321,52 @@ def length_in(meters: NDArray[np.float64], unit: LengthUnit) -> NDArray[np.float
 
 
 def columns(
-    result: object, table: tuple[Column, ...], angle_unit: AngleUnit, length_unit: LengthUnit
+    result: object,
+    table: tuple[Column, ...],
+    angle_unit: AngleUnit,
+    length_unit: LengthUnit,
+    rows: slice = slice(None),
 ) -> dict[str, NDArray[Any]]:
     """Named columns of a result, in order; floats are NaN and masked integers masked where nothing is known."""
-    named: dict[str, NDArray[Any]] = {}
-    for column in table:
-        values = column.values(result)
-        match column.quantity:
-            case Quantity.ANGLE:
-                named[f"{column.name}_{angle_unit}"] = angle_in(values, angle_unit)
-            case Quantity.LENGTH:
-                named[f"{column.name}_{length_unit}"] = length_in(values, length_unit)
-            case Quantity.ANGULAR_VELOCITY:
-                named[f"{column.name}_{angle_unit}_s"] = angle_in(values, angle_unit)
-            case Quantity.VELOCITY:
-                named[f"{column.name}_{length_unit}_s"] = length_in(values, length_unit)
-            case Quantity.INTEGER:
-                named[column.name] = values.astype(np.int64)
-            case Quantity.NUMBER | Quantity.LABEL:
-                named[column.name] = values
-    return named
+    suffixes = unit_suffixes(angle_unit, length_unit)
+    return {
+        column.name + suffixes.get(column.quantity, ""): in_units(
+            column.values(result)[rows], column.quantity, angle_unit, length_unit
+        )
+        for column in table
+    }
+
+
+def unit_suffixes(angle_unit: AngleUnit, length_unit: LengthUnit) -> dict[Quantity, str]:
+    """What the names of columns with units end in."""
+    return {
+        Quantity.ANGLE: f"_{angle_unit}",
+        Quantity.LENGTH: f"_{length_unit}",
+        Quantity.ANGULAR_VELOCITY: f"_{angle_unit}_s",
+        Quantity.VELOCITY: f"_{length_unit}_s",
+    }
+
+
+def in_units(values: NDArray[Any], quantity: Quantity, angle_unit: AngleUnit, length_unit: LengthUnit) -> NDArray[Any]:
+    """Values of a kind, from SI units and radians, in the units asked for."""
+    match quantity:
+        case Quantity.ANGLE | Quantity.ANGULAR_VELOCITY:
+            return angle_in(values, angle_unit)
+        case Quantity.LENGTH | Quantity.VELOCITY:
+            return length_in(values, length_unit)
+        case Quantity.INTEGER:
+            return values.astype(np.int64)
+        case Quantity.NUMBER | Quantity.LABEL:
+            return values
+
+
+def in_si(values: NDArray[Any], quantity: Quantity, angle_unit: AngleUnit, length_unit: LengthUnit) -> NDArray[Any]:
+    """Values of a kind back in SI units and radians; a unit there and back costs the last digit."""
+    if quantity in (Quantity.ANGLE, Quantity.ANGULAR_VELOCITY):
+        return np.radians(values) if angle_unit == "deg" else values
+    if quantity in (Quantity.LENGTH, Quantity.VELOCITY) and length_unit == "mm":
+        return values * METERS["mm"]
+    return values
 
 
 def data_frame(

@@ -10,9 +10,37 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowscrew.errors import ResultError
-from elbowscrew.tables import METERS, AngleUnit, Column, LengthUnit, Quantity
+from elbowscrew.tables import AngleUnit, Column, LengthUnit, Quantity, in_si, in_units, unit_suffixes
 
 _BLOCK_LINES: Final = 4096
+
+
+class AsRead:
+    """A result whose numbers are those that its table gives when it is read back, to the last digit.
+
+    Each is made when it is asked for: all at once they would take as much memory as the result.
+
+    Parameters
+    ----------
+    result : object
+    table : tuple of Column
+    angle_unit, length_unit : str
+        Units of the table.
+    """
+
+    def __init__(
+        self, result: object, table: tuple[Column, ...], angle_unit: AngleUnit, length_unit: LengthUnit
+    ) -> None:
+        self._result = result
+        self._quantities = {column.attribute: column.quantity for column in table}
+        self._units = angle_unit, length_unit
+
+    def __getattr__(self, name: str) -> Any:
+        values = getattr(self._result, name)
+        quantity = self._quantities.get(name)
+        if quantity in (None, Quantity.INTEGER, Quantity.LABEL):
+            return values
+        return in_si(in_units(values, quantity, *self._units) + 0.0, quantity, *self._units)  # -0.0 is written as 0.0
 
 
 def read_columns(
@@ -39,16 +67,11 @@ def read_columns(
     ResultError
         If the table is missing, cut, or lacks a column.
     """
-    units = {
-        Quantity.ANGLE: f"_{angle_unit}",
-        Quantity.LENGTH: f"_{length_unit}",
-        Quantity.ANGULAR_VELOCITY: f"_{angle_unit}_s",
-        Quantity.VELOCITY: f"_{length_unit}_s",
-    }
+    suffixes = unit_suffixes(angle_unit, length_unit)
     try:
         with path.open(encoding="utf-8", newline="") as stream:
             header = stream.readline().rstrip("\n").split(",")
-            places = [header.index(column.name + units.get(column.quantity, "")) for column in table]
+            places = [header.index(column.name + suffixes.get(column.quantity, "")) for column in table]
             blocks: list[list[NDArray[Any]]] = [[] for _ in table]
             while lines := list(islice(stream, _BLOCK_LINES)):
                 if not lines[-1].endswith("\n"):
@@ -67,7 +90,7 @@ def read_columns(
         msg = f"{path}: not the table that was written: {error}; analyze the trial again"
         raise ResultError(msg) from error
     return {
-        column.name: _in_si(_joined(block, column.quantity), column.quantity, angle_unit, length_unit)
+        column.name: in_si(_joined(block, column.quantity), column.quantity, angle_unit, length_unit)
         for column, block in zip(table, blocks, strict=True)
     }
 
@@ -91,11 +114,3 @@ def _joined(blocks: list[NDArray[Any]], quantity: Quantity) -> NDArray[Any]:
         joined: NDArray[Any] = np.ma.concatenate(blocks)  # type: ignore[no-untyped-call]
         return joined
     return np.concatenate(blocks)
-
-
-def _in_si(values: NDArray[Any], quantity: Quantity, angle_unit: AngleUnit, length_unit: LengthUnit) -> NDArray[Any]:
-    if quantity in (Quantity.ANGLE, Quantity.ANGULAR_VELOCITY):
-        return np.radians(values) if angle_unit == "deg" else values
-    if quantity in (Quantity.LENGTH, Quantity.VELOCITY) and length_unit == "mm":
-        return values * METERS["mm"]
-    return values

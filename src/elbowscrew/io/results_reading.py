@@ -5,18 +5,18 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from elbowscrew import tables
 from elbowscrew.errors import ResultError
-from elbowscrew.geometry.dual_quaternion import conjugate, dual_quat_from_pose, multiply
-from elbowscrew.io.result_tables import read_columns
+from elbowscrew.geometry.dual_quaternion import dual_quat_from_pose
+from elbowscrew.io.result_tables import AsRead, read_columns
 from elbowscrew.model import (
+    Analysis,
     InterpolatedMotion,
-    JointMotion,
     Keyframes,
     ModelPhases,
     MovementPhases,
@@ -27,6 +27,7 @@ from elbowscrew.model.finished import (
     FinishedBody,
     FinishedClock,
     FinishedFit,
+    FinishedJoint,
     FinishedJointAxis,
     FinishedLine,
     FinishedMean,
@@ -70,15 +71,13 @@ def read_summary(path: Path) -> dict[str, Any]:
     return content
 
 
-def read_finished(folder: Path, summary: Mapping[str, Any] | None = None) -> FinishedTrial:
+def read_finished(folder: Path) -> FinishedTrial:
     """Read a result folder back, without analyzing anything again.
 
     Parameters
     ----------
     folder : Path
         As `elbowscrew.save_analysis` wrote it, in whatever units.
-    summary : mapping, optional
-        What will stand in ``summary.json``, which is written last.
 
     Returns
     -------
@@ -89,11 +88,10 @@ def read_finished(folder: Path, summary: Mapping[str, Any] | None = None) -> Fin
     ResultError
         If the folder holds no finished result, or a damaged one.
     """
-    if summary is None:
-        summary = read_summary(folder / "summary.json")
+    summary = read_summary(folder / "summary.json")
     joint_summary = read_summary(folder / "joint.json")
     try:
-        return _finished(folder, summary, joint_summary)
+        return _finished(folder, summary, joint_summary, _read_tables(folder, summary))
     except UNREADABLE as error:
         msg = (
             f"{folder}: not a result of this version of the program: {type(error).__name__} {error}; "
@@ -102,37 +100,75 @@ def read_finished(folder: Path, summary: Mapping[str, Any] | None = None) -> Fin
         raise ResultError(" ".join(msg.split())) from error
 
 
-def _finished(folder: Path, summary: Mapping[str, Any], joint_summary: dict[str, Any]) -> FinishedTrial:
+def as_finished(
+    analysis: Analysis, folder: Path, summary: Mapping[str, Any], joint_summary: Mapping[str, Any]
+) -> FinishedTrial:
+    """Give what `read_finished` reads of a folder that an analysis was just written to, without reading the tables.
+
+    Parameters
+    ----------
+    analysis : Analysis
+    folder : Path
+    summary, joint_summary : mapping
+        As the two JSON files read back.
+    """
+    units = analysis.settings.angle_unit, analysis.settings.length_unit
+    curve = None
+    if analysis.repetitions.number.size > 1:
+        read = AsRead(analysis.repeatability, tables.CURVE_COLUMNS, *units)
+        curve = {column.name: column.values(read) for column in tables.CURVE_COLUMNS}
+    given = _Tables(
+        screw=cast(ScrewMotion, AsRead(analysis.screw, tables.SCREW_COLUMNS, *units)),
+        interpolated=cast(InterpolatedMotion, AsRead(analysis.interpolated, tables.INTERPOLATION_COLUMNS, *units)),
+        repetitions=cast(Repetitions, AsRead(analysis.repetitions, tables.REPETITION_COLUMNS, *units)),
+        curve=curve,
+    )
+    return _finished(folder, summary, joint_summary, given)
+
+
+class _Tables(NamedTuple):
+    screw: ScrewMotion
+    interpolated: InterpolatedMotion
+    repetitions: Repetitions
+    curve: Columns | None
+
+
+def _read_tables(folder: Path, summary: Mapping[str, Any]) -> _Tables:
     settings = Settings.model_validate(summary["settings"])
     units = settings.angle_unit, settings.length_unit
-    read = {
-        name: read_columns(folder / f"{name}.csv", table, *units)
-        for name, table in (
-            ("screw", tables.SCREW_COLUMNS),
-            ("interpolation", tables.INTERPOLATION_COLUMNS),
-            ("repetitions", tables.REPETITION_COLUMNS),
-        )
-    }
     curve = folder / "repetition_curve.csv"
-    screw, interpolated = _screw(read["screw"]), _interpolated(read["interpolation"])
+    return _Tables(
+        screw=_screw(read_columns(folder / "screw.csv", tables.SCREW_COLUMNS, *units)),
+        interpolated=_interpolated(read_columns(folder / "interpolation.csv", tables.INTERPOLATION_COLUMNS, *units)),
+        repetitions=_repetitions(read_columns(folder / "repetitions.csv", tables.REPETITION_COLUMNS, *units)),
+        curve=read_columns(curve, tables.CURVE_COLUMNS, *units) if curve.exists() else None,
+    )
+
+
+def _finished(
+    folder: Path, summary: Mapping[str, Any], joint_summary: Mapping[str, Any], read: _Tables
+) -> FinishedTrial:
     bodies, trial = joint_summary["bodies"], summary["trial"]
+    frame = _Frames(read.screw.frame)
     return FinishedTrial(
         folder=folder,
         summary=summary,
         joint_summary=joint_summary,
-        settings=settings,
+        settings=Settings.model_validate(summary["settings"]),
         recording=FinishedClock(rate_hz=float(trial["rate_hz"])),
         arm=None if trial["arm"] is None else _body(trial["arm"], bodies["arm_markers_mm"]),
         forearm=_body(trial["forearm"], bodies["forearm_markers_mm"]),
-        joint=_joint(screw, bodies, trial, settings),
-        screw=screw,
+        joint=FinishedJoint(
+            reference=_pose(bodies["forearm_in_arm"]), dual_quat_lab_proximal=_pose(bodies["arm_in_lab"])
+        ),
+        screw=read.screw,
         mean_axis=_mean(summary["motion"]["mean_axis"], joint_summary["dispersion"]),
         joint_axis=_joint_axis(joint_summary),
-        phases=_phases(summary["motion"]["movements"], screw.frame),
-        repetitions=_repetitions(read["repetitions"]),
-        repetition_curve=read_columns(curve, tables.CURVE_COLUMNS, *units) if curve.exists() else None,
-        keyframes=_keyframes(summary["interpolation"], interpolated),
-        interpolated=interpolated,
+        phases=_phases(summary["motion"]["movements"], frame),
+        repetitions=read.repetitions,
+        repetition_curve=read.curve,
+        keyframes=_keyframes(summary["interpolation"], read.interpolated.phase, frame),
+        interpolated=read.interpolated,
     )
 
 
@@ -200,28 +236,6 @@ def _repetitions(columns: Columns) -> Repetitions:
     )
 
 
-def _joint(screw: ScrewMotion, bodies: dict[str, Any], trial: dict[str, Any], settings: Settings) -> JointMotion:
-    """Turn the displacements back into poses of the forearm in the arm."""
-    reference, arm = _pose(bodies["forearm_in_arm"]), _pose(bodies["arm_in_lab"])
-    D = dual_quat_from_pose(screw.euler_parameters, screw.translation)
-    match settings.express_in:
-        case "forearm":
-            poses = multiply(reference, D)
-        case "arm":
-            poses = multiply(D, reference)
-        case "lab":
-            poses = multiply(conjugate(arm), multiply(D, multiply(arm, reference)))
-    return JointMotion(
-        dual_quat_proximal_distal=poses,
-        measured=screw.valid,
-        filled=screw.filled,
-        reference=reference,
-        reference_row=_rows([trial["reference_frame"]], screw.frame)[0],
-        lowpass_hz=trial["lowpass_hz"],
-        dual_quat_lab_proximal=arm,
-    )
-
-
 def _pose(pose: dict[str, Any]) -> Float:
     return dual_quat_from_pose(np.array(pose["quaternion"], dtype=np.float64), _millimeters(pose["position_mm"]))
 
@@ -246,7 +260,7 @@ def _mean(mean: dict[str, Any], dispersion: dict[str, Any]) -> FinishedMean:
     return FinishedMean(direction=line.direction, point=line.point, spread95=spread)
 
 
-def _joint_axis(joint: dict[str, Any]) -> FinishedJointAxis:
+def _joint_axis(joint: Mapping[str, Any]) -> FinishedJointAxis:
     preferred = joint["preferred"]
     best = None
     if preferred is not None:
@@ -258,31 +272,37 @@ def _joint_axis(joint: dict[str, Any]) -> FinishedJointAxis:
     return FinishedJointAxis(preferred=preferred, best=best, weighted_mean=_line(joint["weighted_mean"]))
 
 
-def _phases(movements: list[dict[str, int]], frame: NDArray[np.int64]) -> MovementPhases:
-    onset = _rows([movement["onset_frame"] for movement in movements], frame)
-    offset = _rows([movement["offset_frame"] for movement in movements], frame)
-    moving = np.zeros(frame.size, dtype=bool)
+class _Frames:
+    """Rows of frame numbers; a number that stands twice is taken where it stands first."""
+
+    def __init__(self, frame: NDArray[np.int64]) -> None:
+        self.frame = frame
+        self._order = np.argsort(frame, kind="stable")
+
+    def rows(self, numbers: Any) -> NDArray[np.int64]:
+        wanted = np.array(numbers, dtype=np.int64)
+        places = np.searchsorted(self.frame, wanted, sorter=self._order)
+        if (places == self.frame.size).any() or (self.frame[self._order[places]] != wanted).any():
+            msg = "a frame of the summary is not in screw.csv"
+            raise ValueError(msg)
+        return self._order[places].astype(np.int64)
+
+
+def _phases(movements: list[dict[str, int]], frame: _Frames) -> MovementPhases:
+    onset = frame.rows([movement["onset_frame"] for movement in movements])
+    offset = frame.rows([movement["offset_frame"] for movement in movements])
+    moving = np.zeros(frame.frame.size, dtype=bool)
     for first, last in zip(onset, offset, strict=True):
         moving[first : last + 1] = True
     return MovementPhases(onset_rows=onset, offset_rows=offset, moving=moving, threshold=float("nan"))
 
 
-def _keyframes(model: Mapping[str, Any], interpolated: InterpolatedMotion) -> Keyframes:
+def _keyframes(model: Mapping[str, Any], phase: np.ma.MaskedArray[Any, Any], frame: _Frames) -> Keyframes:
     """Read the keyframes; a phase begins where its number first stands, and the last one ends at the last keyframe."""
-    row = _rows(model["keyframes"], interpolated.frame)
-    begins = np.unique(interpolated.phase.compressed(), return_index=True)[1]
-    bounds = np.append(np.flatnonzero(~np.ma.getmaskarray(interpolated.phase))[begins], row[-1])
-    laws = [_rows([law["start_frame"], law["end_frame"]], interpolated.frame) for law in model["phase_laws"]]
-    phases = ModelPhases(bound_rows=bounds.astype(np.int64), law_rows=np.stack(laws))
-    return Keyframes(row=row, frame=interpolated.frame[row], phases=phases, knots=())
-
-
-def _rows(numbers: Any, frame: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Rows of frame numbers; a number that stands twice is taken where it stands first."""
-    order = np.argsort(frame, kind="stable")
-    wanted = np.array(numbers, dtype=np.int64)
-    places = np.searchsorted(frame, wanted, sorter=order)
-    if (places == frame.size).any() or (frame[order[places]] != wanted).any():
-        msg = "a frame of the summary is not in screw.csv"
-        raise ValueError(msg)
-    return order[places].astype(np.int64)
+    row = frame.rows(model["keyframes"])
+    known = np.ma.masked_array(phase)
+    begins = np.unique(known.compressed(), return_index=True)[1]
+    bounds = np.append(np.flatnonzero(~np.ma.getmaskarray(known))[begins], row[-1])
+    laws = frame.rows([[law["start_frame"], law["end_frame"]] for law in model["phase_laws"]])
+    phases = ModelPhases(bound_rows=bounds.astype(np.int64), law_rows=laws)
+    return Keyframes(row=row, frame=frame.frame[row], phases=phases, knots=())

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -20,8 +21,21 @@ _BLOCK_ROWS = 4096
 def named_tables(analysis: Analysis) -> dict[str, dict[str, NDArray[Any]]]:
     """Give the columns of ``screw``, ``interpolation`` and what else was asked for, in the units of the settings."""
     units = analysis.settings.angle_unit, analysis.settings.length_unit
+    return {name: tables.columns(result, table, *units) for name, result, table in _results(analysis)}
+
+
+def write_tables(folder: Path, analysis: Analysis) -> None:
+    """Write the tables of an analysis, each to a file of its name; converted block by block, as they may be long."""
+    units = analysis.settings.angle_unit, analysis.settings.length_unit
+    for name, result, table in _results(analysis):
+        blocks = (tables.columns(result, table, *units, rows) for rows in _blocks(len(table[0].values(result))))
+        _write_blocks(folder / f"{name}.csv", blocks)
+
+
+def _results(analysis: Analysis) -> list[tuple[str, object, tuple[tables.Column, ...]]]:
+    """Name, result and columns of each table that there is."""
     several = analysis.repetitions.number.size > 1
-    wanted: tuple[tuple[str, object, tuple[tables.Column, ...]], ...] = (
+    found: tuple[tuple[str, object, tuple[tables.Column, ...]], ...] = (
         ("screw", analysis.screw, tables.SCREW_COLUMNS),
         ("interpolation", analysis.interpolated, tables.INTERPOLATION_COLUMNS),
         ("keyframes", keyframes_of(analysis), tables.KEYFRAME_COLUMNS),
@@ -31,13 +45,7 @@ def named_tables(analysis: Analysis) -> dict[str, dict[str, NDArray[Any]]]:
         ("steps", analysis.steps, tables.STEP_COLUMNS),
         ("anatomy", analysis.anatomy, tables.ANATOMY_COLUMNS),
     )
-    return {name: tables.columns(result, table, *units) for name, result, table in wanted if result is not None}
-
-
-def write_tables(folder: Path, analysis: Analysis) -> None:
-    """Write the tables of an analysis, each to a file of its name."""
-    for name, columns in named_tables(analysis).items():
-        write_csv(folder / f"{name}.csv", columns)
+    return [one for one in found if one[1] is not None]
 
 
 def write_csv(path: Path, columns: dict[str, NDArray[Any]], *, quoted: bool = False) -> None:
@@ -48,12 +56,23 @@ def write_csv(path: Path, columns: dict[str, NDArray[Any]], *, quoted: bool = Fa
             table.writerow(columns)
             table.writerows(zip(*(_cells(values) for values in columns.values()), strict=True))
         return
-    rows = len(next(iter(columns.values())))
+    lengths = _blocks(len(next(iter(columns.values()))))
+    _write_blocks(path, ({name: values[rows] for name, values in columns.items()} for rows in lengths))
+
+
+def _blocks(rows: int) -> list[slice]:
+    """Some thousand rows each; a table without any is one block of none."""
+    return [slice(start, start + _BLOCK_ROWS) for start in range(0, max(rows, 1), _BLOCK_ROWS)]
+
+
+def _write_blocks(path: Path, blocks: Iterable[Mapping[str, NDArray[Any]]]) -> None:
     with path.open("wb") as stream:
-        stream.write((",".join(columns) + "\n").encode())
-        for start in range(0, rows, _BLOCK_ROWS):
-            block = [_cells(values[start : start + _BLOCK_ROWS]) for values in columns.values()]
-            stream.write(_lines(list(zip(*block, strict=True))))
+        for k, block in enumerate(blocks):
+            if k == 0:
+                stream.write((",".join(block) + "\n").encode())
+            rows = list(zip(*(_cells(values) for values in block.values()), strict=True))
+            if rows:
+                stream.write(_lines(rows))
 
 
 def _lines(rows: list[tuple[object, ...]]) -> bytes:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from elbowscrew.model.brief import Brief
 from elbowscrew.model.modeled import InterpolatedMotion, Keyframes
 from elbowscrew.model.repetitions import MovementPhases, Repetitions
-from elbowscrew.model.results import JointMotion, ScrewMotion
+from elbowscrew.model.results import ScrewMotion
 
 if TYPE_CHECKING:
     from elbowscrew.settings import Settings
@@ -34,6 +34,14 @@ class FinishedBody(Brief):
 
     name: str
     marker_offsets: Float | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class FinishedJoint(Brief):
+    """Poses at the reference, unit dual quaternions (8,): the forearm in the arm, and the arm in the laboratory."""
+
+    reference: Float
+    dual_quat_lab_proximal: Float
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -84,7 +92,7 @@ class FinishedTrial(Brief):
     recording : FinishedClock
     arm : FinishedBody or None
     forearm : FinishedBody
-    joint : JointMotion
+    joint : FinishedJoint
     screw : ScrewMotion
     mean_axis : FinishedMean
     joint_axis : FinishedJointAxis
@@ -105,7 +113,7 @@ class FinishedTrial(Brief):
     recording: FinishedClock
     arm: FinishedBody | None
     forearm: FinishedBody
-    joint: JointMotion
+    joint: FinishedJoint
     screw: ScrewMotion
     mean_axis: FinishedMean
     joint_axis: FinishedJointAxis

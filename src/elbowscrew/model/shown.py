@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from elbowscrew.model.modeled import InterpolatedMotion, Keyframes
 from elbowscrew.model.repetitions import MovementPhases, Repetitions
-from elbowscrew.model.results import JointMotion, ScrewMotion
+from elbowscrew.model.results import ScrewMotion
 
 if TYPE_CHECKING:
     from elbowscrew.settings import Settings
@@ -63,6 +63,15 @@ class ShownBody(Protocol):
     def marker_offsets(self) -> Float | None: ...
 
 
+class ShownJoint(Protocol):
+    """Poses at the reference, unit dual quaternions (8,): the forearm in the arm, and the arm in the laboratory."""
+
+    @property
+    def reference(self) -> Float: ...
+    @property
+    def dual_quat_lab_proximal(self) -> Float: ...
+
+
 class ShownClock(Protocol):
     """Frames per second."""
 
@@ -82,7 +91,7 @@ class Shown(Protocol):
     @property
     def forearm(self) -> ShownBody: ...
     @property
-    def joint(self) -> JointMotion: ...
+    def joint(self) -> ShownJoint: ...
     @property
     def screw(self) -> ScrewMotion: ...
     @property

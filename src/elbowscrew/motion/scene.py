@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowscrew.geometry.dual_quaternion import conjugate, multiply, pose_from_dual_quat, transform_points
+from elbowscrew.geometry.quaternion import rotate
 from elbowscrew.model.shown import Shown
 
 Float = NDArray[np.float64]
@@ -19,11 +20,12 @@ _STEEPEST: Final = 1.4
 class Bodies(NamedTuple):
     """Bodies in the frame shown, meters.
 
-    The path (N, 3) of the forearm's origin; the arm's origin (3,), None without an arm; and the markers (M, 3) of the
-    arm and of the forearm at the reference, None where the file has none.
+    The path (N, 3) of the forearm's origin, and where it is at the reference (3,); the arm's origin (3,), None without
+    an arm; and the markers (M, 3) of the arm and of the forearm at the reference, None where the file has none.
     """
 
     path: Float
+    start: Float
     arm: Float | None
     arm_markers: Float | None
     forearm_markers: Float | None
@@ -72,19 +74,23 @@ class Bundle(NamedTuple):
 
 def bodies_in_space(shown: Shown) -> Bodies:
     """Place the bodies in the frame the screws are expressed in."""
-    joint = shown.joint
+    reference, arm = shown.joint.reference, shown.joint.dual_quat_lab_proximal
     identity = np.array([1.0, 0, 0, 0, 0, 0, 0, 0])
-    change: Float = {
-        "forearm": conjugate(joint.reference),
-        "arm": identity,
-        "lab": joint.dual_quat_lab_proximal,
+    change, at_reference = {
+        "forearm": (conjugate(reference), identity),
+        "arm": (identity, reference),
+        "lab": (arm, multiply(arm, reference)),
     }[shown.settings.express_in]
     markers = [
         None if body is None or body.marker_offsets is None else transform_points(pose, body.marker_offsets)
-        for body, pose in ((shown.arm, change), (shown.forearm, multiply(change, joint.reference)))
+        for body, pose in ((shown.arm, change), (shown.forearm, at_reference))
     ]
+    start = pose_from_dual_quat(at_reference)[1]
+    # The displacement takes the forearm's origin along from where it is at the reference.
+    turned = rotate(shown.screw.euler_parameters, start) if start.any() else 0.0
     return Bodies(
-        path=pose_from_dual_quat(multiply(change, joint.dual_quat_proximal_distal))[1],
+        path=turned + shown.screw.translation,
+        start=start,
         arm=None if shown.arm is None else pose_from_dual_quat(change)[1],
         arm_markers=markers[0],
         forearm_markers=markers[1],

@@ -7,18 +7,23 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from elbowscrew.errors import ResultError
 
+if TYPE_CHECKING:
+    from elbowscrew.model.finished import FinishedTrial
 
-def write_trial_page(folder: Path) -> Path:
+
+def write_trial_page(folder: Path, trial: FinishedTrial | None = None) -> Path:
     """Write ``report.html`` of one result folder, whole or not at all.
 
     Parameters
     ----------
     folder : Path
         As `elbowscrew.save_analysis` wrote it. A page of ours is replaced.
+    trial : FinishedTrial, optional
+        What is in the folder, if it is at hand; else it is read.
 
     Returns
     -------
@@ -34,7 +39,7 @@ def write_trial_page(folder: Path) -> Path:
     """
     from elbowscrew.report.trial_page import write_trial_page as write
 
-    return write(folder)
+    return write(folder, trial)
 
 
 def write_study_page(folder: Path) -> Path:

@@ -7,7 +7,6 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowscrew.geometry.dual_quaternion import multiply, pose_from_dual_quat
 from elbowscrew.model.finished import FinishedTrial
 from elbowscrew.motion.scene import Region, bodies_in_space, directions_across, joint_bundle, thinned
 from elbowscrew.report.charts import COLORS
@@ -61,21 +60,9 @@ def scene_of(trial: FinishedTrial) -> dict[str, Any]:
         "spread": _region(bundle.spread),
         "confidence": None if bundle.confidence is None else _region(bundle.confidence),
         "arm": _body(bodies.arm, bodies.arm_markers),
-        "forearm": _body(_forearm_at_reference(trial), bodies.forearm_markers),
+        "forearm": _body(bodies.start, bodies.forearm_markers),
         "colors": list(COLORS),
     }
-
-
-def _forearm_at_reference(trial: FinishedTrial) -> Float:
-    """Find the forearm's origin at the reference: where the displacement of any frame takes it back from."""
-    joint = trial.joint
-    match trial.settings.express_in:
-        case "forearm":
-            return np.zeros(3)
-        case "arm":
-            return pose_from_dual_quat(joint.reference)[1]
-        case "lab":
-            return pose_from_dual_quat(multiply(joint.dual_quat_lab_proximal, joint.reference))[1]
 
 
 def _body(origin: Float | None, markers: Float | None) -> dict[str, Any] | None:
@@ -95,7 +82,8 @@ def _region(region: Region) -> list[float] | None:
 
 def _rounded(values: Float, decimals: int) -> list[Any]:
     """Rounded numbers as lists; None for a row, or a number, that is not known."""
+    rounded = np.round(values, decimals) + 0.0  # no -0.0
     if values.ndim == 2:
         known = np.logical_and.reduce(np.isfinite(values), axis=1)
-        return [row if good else None for row, good in zip(np.round(values, decimals).tolist(), known, strict=True)]
-    return [value if value == value else None for value in (np.round(values, decimals) + 0.0).tolist()]
+        return [row if good else None for row, good in zip(rounded.tolist(), known, strict=True)]
+    return [value if value == value else None for value in rounded.tolist()]

@@ -45,11 +45,11 @@ _FRAME_NAMES: Final = {
 }
 
 
-def write_trial_page(folder: Path) -> Path:
+def write_trial_page(folder: Path, trial: FinishedTrial | None = None) -> Path:
     """Write ``report.html`` into a result folder; see `elbowscrew.report.write_trial_page`."""
-    trial = read_finished(folder)
+    shown = read_finished(folder) if trial is None else trial
     try:
-        page = trial_page(trial)
+        page = trial_page(shown)
     except UNSHOWABLE as error:
         raise unshowable(folder, error) from error
     return write_page(folder / "report.html", page)
