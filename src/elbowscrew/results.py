@@ -147,7 +147,12 @@ def read_summary(folder: str | os.PathLike[str]) -> dict[str, Any]:
 def digests(folder: Path) -> dict[str, str]:
     """SHA-256 of the files of a result folder, all but the summary that holds them and the report made from it."""
     names = (name for name in RESULT_FILES if name not in (SUMMARY, "report.html") and (folder / name).is_file())
-    return {name: hashlib.sha256((folder / name).read_bytes()).hexdigest() for name in names}
+    return {name: _digest(folder / name) for name in names}
+
+
+def _digest(path: Path) -> str:
+    with path.open("rb") as stream:
+        return hashlib.file_digest(stream, "sha256").hexdigest()
 
 
 def _write_json(path: Path, content: Mapping[str, Any]) -> dict[str, Any]:

@@ -15,7 +15,7 @@ from finished_results import ball
 
 from elbowscrew import Analysis, Settings, analyze, save_analysis, simulate_trial
 from elbowscrew.errors import ResultError
-from elbowscrew.io.results_reading import is_result, read_finished
+from elbowscrew.io.results_reading import as_finished, is_result, read_finished, read_summary
 from elbowscrew.model.finished import FinishedTrial
 from elbowscrew.model.shown import Shown
 from elbowscrew.plots import FIGURES
@@ -70,6 +70,22 @@ def test_tables_come_back_as_they_were(pair: Pair, part: str) -> None:
         else:
             assert np.ma.getmaskarray(before).tolist() == np.ma.getmaskarray(after).tolist(), field.name
             assert np.ma.filled(before, 0).tolist() == np.ma.filled(after, 0).tolist(), field.name
+
+
+@pytest.mark.parametrize("part", ["screw", "interpolated", "repetitions", "keyframes", "phases", "joint"])
+def test_a_result_at_hand_has_the_very_numbers_of_the_one_read_back(pair: Pair, part: str) -> None:
+    folder, read = pair.finished.folder, pair.finished
+    at_hand = as_finished(pair.analysis, folder, read_summary(folder / "summary.json"), read.joint_summary)
+    for field in fields(getattr(read, part)):
+        one, other = getattr(getattr(read, part), field.name), getattr(getattr(at_hand, part), field.name)
+        if isinstance(one, np.ndarray):
+            assert np.ma.getmaskarray(one).tolist() == np.ma.getmaskarray(other).tolist(), field.name
+            assert np.array_equal(np.ma.filled(one, 0), np.ma.filled(other, 0), one.dtype.kind == "f"), field.name
+    curves = read.repetition_curve, at_hand.repetition_curve
+    assert (curves[0] is None) == (curves[1] is None)
+    if curves[0] is not None and curves[1] is not None:
+        for name, values in curves[0].items():
+            assert np.array_equal(values, curves[1][name], equal_nan=True), name
 
 
 def test_poses_keyframes_and_movements_come_back(pair: Pair) -> None:

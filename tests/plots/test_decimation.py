@@ -9,7 +9,7 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from elbowscrew.plots.decimation import drawn_rows
+from elbowscrew.plots.decimation import drawn_band, drawn_rows
 
 
 def test_short_series_are_drawn_whole() -> None:
@@ -59,3 +59,31 @@ def test_the_picture_is_that_of_all_points() -> None:
         pictures.append(np.asarray(canvas.buffer_rgba(), dtype=np.float64)[..., 0])
     differing = np.abs(pictures[0] - pictures[1]) > 64.0
     assert differing.mean() < 2e-3
+
+
+@pytest.mark.parametrize("count", [4000, 100_003])
+def test_a_band_covers_all_of_its_frames_and_no_more(count: int) -> None:
+    rng = np.random.default_rng(count)
+    low = rng.normal(size=count)
+    high = low + 0.1
+    low[40:90], high[40:90] = np.nan, np.nan
+    rows, lower, upper = drawn_band(low, high)
+    assert rows.size <= 4000
+    assert rows[0] == 0
+    assert rows[-1] == count - 1
+    assert np.nanmin(lower) == np.nanmin(low)
+    assert np.nanmax(upper) == np.nanmax(high)
+    for place in rng.integers(100, rows.size - 2, 50):
+        inside = slice(rows[place], rows[place + 1])
+        assert lower[place] == low[inside].min()
+        assert upper[place] == high[inside].max()
+
+
+def test_a_band_is_broken_where_nothing_is_known() -> None:
+    curve = np.zeros(100_000)
+    curve[30_000:60_000] = np.nan
+    rows, lower, upper = drawn_band(curve - 1.0, curve + 1.0)
+    inside = (rows > 30_100) & (rows < 59_900)
+    assert inside.any()
+    assert np.isnan(lower[inside]).all()
+    assert np.isnan(upper[inside]).all()

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
 from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
@@ -36,18 +37,28 @@ def test_theta_shows_measured_modeled_and_keyframes_in_the_units_asked_for(analy
     assert ax.get_xlabel() == "Time (s)"
 
 
-def shaded(patches: list[Any], time_s: NDArray[np.float64]) -> NDArray[np.bool_]:
-    found = np.zeros(time_s.size, dtype=bool)
-    for patch in patches:
-        found |= (time_s > patch.get_x() - 1e-9) & (time_s < patch.get_x() + patch.get_width() + 1e-9)
-    return found
+def spans(ax: Axes, color: str) -> list[Any]:
+    return [
+        np.asarray(path.vertices)[:, 0]
+        for collection in ax.collections
+        if isinstance(collection, PolyCollection) and np.all(collection.get_facecolor() == np.array(to_rgba(color)))
+        for path in collection.get_paths()
+    ]
+
+
+def shaded(found: list[Any], time_s: NDArray[np.float64]) -> NDArray[np.bool_]:
+    inside = np.zeros(time_s.size, dtype=bool)
+    for times in found:
+        inside |= (time_s > times.min() - 1e-9) & (time_s < times.max() + 1e-9)
+    return inside
 
 
 def test_lost_frames_and_movements_are_shaded(analysis: Analysis) -> None:
     ax = plots.plot_euler_parameter(Figure().add_subplot(), analysis, 0)
-    assert (shaded(list(ax.patches), analysis.screw.time_s) == ~analysis.screw.valid).all()
+    lost = spans(ax, style.LOST["color"])
+    assert (shaded(lost, analysis.screw.time_s) == ~analysis.screw.valid).all()
     theta = plots.plot_theta(Figure().add_subplot(), analysis)
-    moving = [patch for patch in theta.patches if patch.get_facecolor() == to_rgba(style.MOVING["color"])]
+    moving = spans(theta, style.MOVING["color"])
     assert len(moving) == analysis.phases.onset_rows.size > 0
     assert (shaded(moving, analysis.screw.time_s) == analysis.phases.moving).all()
 
@@ -55,7 +66,7 @@ def test_lost_frames_and_movements_are_shaded(analysis: Analysis) -> None:
 def test_the_band_of_the_angle_is_its_95_percent_interval() -> None:
     analysis = analyze(simulate_trial(frames=120, inversion=60).recording, Settings(marker_noise_mm=0.2))
     ax = plots.plot_theta(Figure().add_subplot(), analysis)
-    (band,) = ax.collections
+    (band,) = (one for one in ax.collections if str(one.get_label()).startswith("95 %"))
     path = np.asarray(band.get_paths()[0].vertices)
     row = 60
     there = path[np.abs(path[:, 0] - analysis.screw.time_s[row]) < 1e-9, 1]

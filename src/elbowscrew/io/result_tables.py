@@ -18,7 +18,8 @@ _BLOCK_LINES: Final = 4096
 class AsRead:
     """A result whose numbers are those that its table gives when it is read back, to the last digit.
 
-    Each is made when it is asked for: all at once they would take as much memory as the result.
+    Only the sign of a zero is lost in a table. Each is made when it is asked for: all at once they would take as much
+    memory as the result.
 
     Parameters
     ----------
@@ -38,9 +39,9 @@ class AsRead:
     def __getattr__(self, name: str) -> Any:
         values = getattr(self._result, name)
         quantity = self._quantities.get(name)
-        if quantity in (None, Quantity.INTEGER, Quantity.LABEL):
+        if quantity in (None, Quantity.INTEGER, Quantity.NUMBER, Quantity.LABEL):
             return values
-        return in_si(in_units(values, quantity, *self._units) + 0.0, quantity, *self._units)  # -0.0 is written as 0.0
+        return in_si(in_units(values, quantity, *self._units), quantity, *self._units)
 
 
 def read_columns(

@@ -177,6 +177,8 @@ class RigidBody(Brief):
 
     def loss_labels(self) -> NDArray[np.str_]:
         """Give the reason of each lost frame in a word, shape (N,); empty for tracked ones."""
+        if not self.loss.any():
+            return np.broadcast_to(np.array("", dtype=np.str_), self.loss.shape)  # of no size, however long
         words = ["", *(reason.name.lower() for reason in TrackingLoss if reason != TrackingLoss.NONE)]
         return np.array(words)[self.loss]
 

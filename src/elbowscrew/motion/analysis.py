@@ -151,7 +151,7 @@ def _compared(model: JointModel, measured: Measurement, settings: Settings) -> I
         fraction=modeled.fraction,
         angle=series.angle,
         slide=series.slide,
-        euler_parameters=D_model[:, :4],
+        euler_parameters=D_model[:, :4].copy(),  # a view would keep all of the poses
         translation=pose_from_dual_quat(D_model)[1],
         **errors,
     )

@@ -36,6 +36,7 @@ _FEWEST_FOR_NOISE: Final = 20
 # The density of white noise is the same at all frequencies; where it falls below this share it is none.
 _WHITE: Final = 0.3
 _NO_NOISE_M: Final = 1e-9
+_BLOCK: Final = 65_536
 
 
 def lowpass_poses(
@@ -223,8 +224,12 @@ class _Lowpass:
         attenuation = 1.0 + ratio**4
         for component in local.T:  # one by one, which takes an eighth of the memory
             component[...] = np.fft.irfft(np.fft.rfft(component) / attenuation, len(local))
-        local = normalize(local[settling : settling + len(run)])
-        return multiply(run[0], local)
+        filtered = np.empty_like(run)
+        for start in range(0, len(run), _BLOCK):  # which takes no memory but the result's
+            part = slice(start, min(start + _BLOCK, len(run)))
+            inner = local[settling + part.start : settling + part.stop]
+            filtered[part] = multiply(run[0], normalize(inner))
+        return filtered
 
 
 def _fast_length(least: int) -> int:

@@ -81,5 +81,6 @@ def helical_series(displacement: Float, min_angle: float, anchor_row: int, ancho
     half -= 2.0 * np.pi * np.round((half[anchor_row] - 0.5 * anchor_angle) / (2.0 * np.pi))
     axis = np.full(sine.size, np.nan)
     axis[reliable] = sense[reliable]
-    line = np.concatenate([screw.direction, screw.moment], axis=1) * axis[:, None]
+    line = np.concatenate([screw.direction, screw.moment], axis=1)
+    line *= axis[:, None]
     return HelicalSeries(2.0 * half, screw.slide * axis, line)

@@ -77,6 +77,6 @@ def instantaneous_motion(
         lowpass_hz=lowpass_hz,
         angular_velocity=screw.rate * turned,
         slide_velocity=slide_rate,
-        axis_direction=line[:, :3],
+        axis_direction=line[:, :3].copy(),  # a view would keep all of the line
         axis_point=point_nearest_origin(line),
     )

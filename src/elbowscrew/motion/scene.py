@@ -20,11 +20,14 @@ _STEEPEST: Final = 1.4
 class Bodies(NamedTuple):
     """Bodies in the frame shown, meters.
 
-    The path (N, 3) of the forearm's origin, and where it is at the reference (3,); the arm's origin (3,), None without
-    an arm; and the markers (M, 3) of the arm and of the forearm at the reference, None where the file has none.
+    The path (N, 3) of the forearm's origin with its mean (3,) and the corners (2, 3) of the box about it, and where it
+    is at the reference (3,); the arm's origin (3,), None without an arm; and the markers (M, 3) of the arm and of the
+    forearm at the reference, None where the file has none.
     """
 
     path: Float
+    middle: Float
+    corners: Float
     start: Float
     arm: Float | None
     arm_markers: Float | None
@@ -88,8 +91,11 @@ def bodies_in_space(shown: Shown) -> Bodies:
     start = pose_from_dual_quat(at_reference)[1]
     # The displacement takes the forearm's origin along from where it is at the reference.
     turned = rotate(shown.screw.euler_parameters, start) if start.any() else 0.0
+    path = turned + shown.screw.translation
     return Bodies(
-        path=turned + shown.screw.translation,
+        path=path,
+        middle=np.nanmean(path, axis=0),
+        corners=np.stack([np.fmin.reduce(path, axis=0), np.fmax.reduce(path, axis=0)]),
         start=start,
         arm=None if shown.arm is None else pose_from_dual_quat(change)[1],
         arm_markers=markers[0],
@@ -101,10 +107,9 @@ def joint_bundle(shown: Shown) -> Bundle:
     """Gather the joint's axis, the axes of the frames about it, and what holds 95 % of each."""
     best = shown.joint_axis.best
     line = shown.joint_axis.weighted_mean if best is None else best.line
-    path = bodies_in_space(shown).path
-    seen = path[np.isfinite(path).all(axis=1)]
-    center = line.point + ((seen.mean(axis=0) - line.point) @ line.direction) * line.direction
-    half = 0.55 * float(np.max(np.ptp(np.concatenate([seen, center[None]]), axis=0)))
+    bodies = bodies_in_space(shown)
+    center = line.point + ((bodies.middle - line.point) @ line.direction) * line.direction
+    half = half_length(bodies, center)
     rows, segments = axis_segments(shown, center, half)
     return Bundle(
         name="mean axis" if best is None else "joint axis",
@@ -116,6 +121,11 @@ def joint_bundle(shown: Shown) -> Bundle:
         spread=Region(*shown.mean_axis.spread95),
         confidence=None if best is None else Region(best.axis_cone, best.point_radius),
     )
+
+
+def half_length(bodies: Bodies, center: Float) -> float:
+    """Tell how far to either side of a center (3,) on it an axis is drawn beside the path: a little over half of it."""
+    return 0.55 * float(np.max(np.ptp(np.concatenate([bodies.corners, center[None]]), axis=0)))
 
 
 def axis_segments(shown: Shown, center: Float, half: float) -> tuple[NDArray[np.int64], Float]:

@@ -14,7 +14,7 @@ from mpl_toolkits.mplot3d.axes3d import Axes3D
 from numpy.typing import NDArray
 
 from elbowscrew.model.shown import Shown
-from elbowscrew.motion.scene import axis_segments, bodies_in_space, directions_across, thinned
+from elbowscrew.motion.scene import Bodies, axis_segments, bodies_in_space, directions_across, half_length, thinned
 from elbowscrew.plots import style
 from elbowscrew.plots.decimation import drawn_rows
 from elbowscrew.tables import LengthUnit, angle_in, length_in
@@ -43,19 +43,18 @@ def plot_axes_in_space(ax: Axes3D, analysis: Shown) -> Axes3D:
     """Draw the axes with the mean axis, the path of the forearm and the arm, in the frame they are expressed in."""
     unit = analysis.settings.length_unit
     bodies = bodies_in_space(analysis)
-    path, arm = bodies.path, bodies.arm
+    arm = bodies.arm
     clusters = [markers for markers in (bodies.arm_markers, bodies.forearm_markers) if markers is not None]
-    mean = _mean_frame(analysis, path)
-    seen = path[np.isfinite(path).all(axis=1)]
-    half = 0.55 * float(np.max(np.ptp(np.concatenate([seen, mean.center[None]]), axis=0)))
+    mean = _mean_frame(analysis, bodies)
+    half = half_length(bodies, mean.center)
     rows, segments = axis_segments(analysis, mean.center, half)
     segments = length_in(segments, unit)
     colors = color_scale(analysis).to_rgba(angle_in(analysis.screw.angle[rows], analysis.settings.angle_unit))
     ax.add_collection3d(Line3DCollection(list(segments), colors=colors, linewidths=0.7, alpha=0.8))
     ends = length_in(mean.center + 1.3 * half * np.outer([-1.0, 1.0], mean.direction), unit)
     ax.plot(*ends.T, color="black", linewidth=1.6, label="mean axis")
-    plot_path(ax, path, unit)
-    shown = [segments.reshape(-1, 3), ends, length_in(seen, unit)]
+    plot_path(ax, bodies.path, unit)
+    shown = [segments.reshape(-1, 3), ends, length_in(bodies.corners, unit)]
     if arm is not None:
         ax.plot(*length_in(arm[None], unit).T, "^", color="#0072B2", markersize=5, label="arm")
         shown.append(length_in(arm[None], unit))
@@ -78,7 +77,7 @@ def plot_path(ax: Axes3D, path: Float, unit: LengthUnit) -> None:
 def plot_axis_directions(ax: Axes, analysis: Shown) -> Axes:
     """Draw how far each axis is tilted from the mean axis, in two directions across it."""
     unit = analysis.settings.angle_unit
-    mean = _mean_frame(analysis, bodies_in_space(analysis).path)
+    mean = _mean_frame(analysis, bodies_in_space(analysis))
     rows = thinned(np.flatnonzero(analysis.screw.axis_known), _MOST_POINTS)
     direction = analysis.screw.axis_direction[rows]
     along = direction @ mean.direction
@@ -92,7 +91,7 @@ def plot_axis_directions(ax: Axes, analysis: Shown) -> Axes:
 def plot_axis_places(ax: Axes, analysis: Shown) -> Axes:
     """Draw where each axis pierces the plane across the mean axis nearest the forearm, relative to the mean axis."""
     unit = analysis.settings.length_unit
-    mean = _mean_frame(analysis, bodies_in_space(analysis).path)
+    mean = _mean_frame(analysis, bodies_in_space(analysis))
     rows = thinned(np.flatnonzero(analysis.screw.axis_known), _MOST_POINTS)
     direction, point = analysis.screw.axis_direction[rows], analysis.screw.axis_point[rows]
     along = direction @ mean.direction
@@ -121,11 +120,11 @@ def _scatter(ax: Axes, analysis: Shown, rows: NDArray[np.int64], values: list[Fl
     ax.set_box_aspect(1.0)
 
 
-def _mean_frame(analysis: Shown, path: Float) -> _MeanFrame:
+def _mean_frame(analysis: Shown, bodies: Bodies) -> _MeanFrame:
     axis = analysis.mean_axis
     n = axis.direction
     across, names = directions_across(n)
-    center = axis.point + ((np.nanmean(path, axis=0) - axis.point) @ n) * n
+    center = axis.point + ((bodies.middle - axis.point) @ n) * n
     return _MeanFrame(n, across, names, center)
 
 

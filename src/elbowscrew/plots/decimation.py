@@ -11,6 +11,7 @@ Float = NDArray[np.float64]
 
 # As many as a figure's full width has dots in print (170 mm at 300 dpi): no peak is lost and no line moves.
 _BUCKETS: Final = 2000
+_STRETCHES: Final = 64  # looked at at once
 
 
 def drawn_rows(*curves: Float) -> NDArray[np.intp]:
@@ -32,11 +33,33 @@ def drawn_rows(*curves: Float) -> NDArray[np.intp]:
     size = -(-count // _BUCKETS)
     if size <= 2:
         return np.arange(count)
-    starts = np.arange(0, count, size)
-    filler = np.full(starts.size * size - count, np.nan)
     found = [np.array([0, count - 1])]
-    for curve in curves:
-        stretches = np.concatenate([curve, filler]).reshape(-1, size)
-        found.append(starts + np.argmin(np.nan_to_num(stretches, nan=np.inf), axis=1))
-        found.append(starts + np.argmax(np.nan_to_num(stretches, nan=-np.inf), axis=1))
+    for first in range(0, count, size * _STRETCHES):
+        starts = np.arange(first, min(first + size * _STRETCHES, count), size)
+        for curve in curves:
+            part = curve[first : first + size * _STRETCHES]
+            filler = np.full(starts.size * size - part.size, np.nan)
+            stretches = np.concatenate([part, filler]).reshape(-1, size)
+            found.append(starts + np.argmin(np.nan_to_num(stretches, nan=np.inf), axis=1))
+            found.append(starts + np.argmax(np.nan_to_num(stretches, nan=-np.inf), axis=1))
     return np.unique(np.concatenate(found))
+
+
+def drawn_band(low: Float, high: Float) -> tuple[NDArray[np.intp], Float, Float]:
+    """Rows and edges of a band between two series (N,): of a long one, the envelope of each stretch.
+
+    A zigzag between all extremes would be the same picture, but a polygon that covers itself a thousand times.
+
+    Returns
+    -------
+    rows : ndarray of int, shape (K,)
+    low, high : ndarray, shape (K,)
+        NaN where a stretch has no value.
+    """
+    count = low.size
+    size = -(-count // _BUCKETS)
+    if size <= 2:
+        return np.arange(count), low, high
+    starts = np.arange(0, count, size)
+    lower, upper = np.fmin.reduceat(low, starts), np.fmax.reduceat(high, starts)
+    return np.append(starts, count - 1), np.append(lower, lower[-1]), np.append(upper, upper[-1])

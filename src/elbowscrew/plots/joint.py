@@ -42,9 +42,9 @@ def plot_joint_axis_in_space(ax: Axes3D, analysis: Shown) -> Axes3D:
         ax.plot_surface(
             *np.moveaxis(surface, 2, 0), color=look.get("color", look.get("facecolor")), alpha=0.25, linewidth=0.0
         )
-    path = bodies_in_space(analysis).path
-    plot_path(ax, path, unit)
-    equal_aspect(ax, np.concatenate([ends, length_in(path[np.isfinite(path).all(axis=1)], unit)]))
+    bodies = bodies_in_space(analysis)
+    plot_path(ax, bodies.path, unit)
+    equal_aspect(ax, np.concatenate([ends, length_in(bodies.corners, unit)]))
     for name, label in (("x", ax.set_xlabel), ("y", ax.set_ylabel), ("z", ax.set_zlabel)):
         label(f"{name} ({unit})", labelpad=-2)
     return ax

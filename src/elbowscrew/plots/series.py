@@ -6,12 +6,13 @@ from typing import Any, Final
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
 from numpy.typing import NDArray
 
 from elbowscrew.model.shown import Shown
 from elbowscrew.motion.phases import runs_of
 from elbowscrew.plots import style
-from elbowscrew.plots.decimation import drawn_rows
+from elbowscrew.plots.decimation import drawn_band, drawn_rows
 from elbowscrew.tables import angle_in, length_in
 
 Float = NDArray[np.float64]
@@ -27,9 +28,8 @@ def plot_theta(ax: Axes, analysis: Shown) -> Axes:
     time_s = analysis.screw.time_s
     if np.isfinite(reach).any():
         label = f"95 % interval (±{np.nanmedian(reach):.2g} {unit})"
-        low, high = angle - reach, angle + reach
-        rows = drawn_rows(low, high)
-        ax.fill_between(time_s[rows], low[rows], high[rows], label=label, **style.BAND)
+        rows, low, high = drawn_band(angle - reach, angle + reach)
+        ax.fill_between(time_s[rows], low, high, label=label, **style.BAND)
     _line(ax, time_s, angle, label="measured", **style.MEASURED)
     _line(ax, time_s, angle_in(analysis.interpolated.angle, unit), label=_model_label(analysis), **style.MODELED)
     rows = analysis.keyframes.row
@@ -75,19 +75,24 @@ def mark_tracking(ax: Axes, analysis: Shown) -> Axes:
         (~screw.valid & ~screw.filled, "not tracked", style.LOST),
         (screw.filled, "filled in", style.FILLED),
     ):
-        for k, (first, last) in enumerate(zip(*runs_of(mask), strict=True)):
-            span: dict[str, Any] = {**look, "label": label if k == 0 else None}
-            ax.axvspan(screw.time_s[first] - half, screw.time_s[last] + half, **span)
+        first, last = runs_of(mask)
+        _shade(ax, screw.time_s[first] - half, screw.time_s[last] + half, label=label, **look)
     return ax
 
 
 def mark_movements(ax: Axes, analysis: Shown) -> Axes:
     """Shade the movements between rests."""
     time_s, phases = analysis.screw.time_s, analysis.phases
-    for k, (onset, offset) in enumerate(zip(phases.onset_rows, phases.offset_rows, strict=True)):
-        label = "moving" if k == 0 else None
-        ax.axvspan(time_s[onset], time_s[offset], label=label, **style.MOVING)
+    _shade(ax, time_s[phases.onset_rows], time_s[phases.offset_rows], label="moving", **style.MOVING)
     return ax
+
+
+def _shade(ax: Axes, start: Float, end: Float, **look: Any) -> None:
+    """Shade spans of time from bottom to top: one artist, as a long recording has thousands of them."""
+    if not start.size:
+        return
+    corners = [[(a, 0.0), (a, 1.0), (b, 1.0), (b, 0.0)] for a, b in zip(start.tolist(), end.tolist(), strict=True)]
+    ax.add_collection(PolyCollection(corners, transform=ax.get_xaxis_transform(), **look), autolim=False)
 
 
 def _plot_error(ax: Axes, analysis: Shown, values: Float, name: str, unit: str) -> Axes:

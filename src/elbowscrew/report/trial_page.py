@@ -130,18 +130,19 @@ def _axis_rows(trial: FinishedTrial) -> list[dict[str, Any]]:
     screw = trial.screw
     known = np.flatnonzero(screw.axis_known & screw.valid)
     rows = known[np.unique(np.linspace(0, known.size - 1, min(known.size, _FRAMES_TOLD)).astype(np.int64))]
+    columns = {
+        "frame": screw.frame[rows],
+        "time_s": screw.time_s[rows],
+        "theta": np.degrees(screw.angle[rows]),
+        "slide": 1000.0 * screw.slide[rows],
+        "direction": screw.axis_direction[rows],
+        "point": 1000.0 * screw.axis_point[rows],
+        "cone": np.degrees(screw.axis_cone[rows]),
+        "radius": 1000.0 * screw.point_radius[rows],
+    }
     return [
-        {
-            "frame": int(screw.frame[row]),
-            "time_s": float(screw.time_s[row]),
-            "theta": float(np.degrees(screw.angle[row])),
-            "slide": float(1000.0 * screw.slide[row]),
-            "direction": screw.axis_direction[row].tolist(),
-            "point": (1000.0 * screw.axis_point[row]).tolist(),
-            "cone": float(np.degrees(screw.axis_cone[row])),
-            "radius": float(1000.0 * screw.point_radius[row]),
-        }
-        for row in rows
+        dict(zip(columns, values, strict=True))
+        for values in zip(*(column.tolist() for column in columns.values()), strict=True)
     ]
 
 
