@@ -8,14 +8,12 @@ import os
 import tempfile
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any, Final, Literal
+from typing import TYPE_CHECKING, Any, Final, Literal
 
 from elbowscrew import tables
 from elbowscrew.errors import ElbowscrewError, OutputError, UsageError
-from elbowscrew.io.comparison_summary import comparison_summary, trials_summary
 from elbowscrew.io.exporting import check_exports, write_exports
 from elbowscrew.io.joint_summary import joint_summary
-from elbowscrew.io.optitrack_writer import motive_columns_lines, row_tagged_lines
 from elbowscrew.io.reading import read_recording
 from elbowscrew.io.results_reading import as_finished
 from elbowscrew.io.staging import COMPARISON, FIGURE_FORMATS, FIGURE_NAMES, RESULT_FILES, result_folder, write_files
@@ -26,7 +24,9 @@ from elbowscrew.model.finished import FinishedTrial
 from elbowscrew.motion.analysis import analyze
 from elbowscrew.report import write_trial_page
 from elbowscrew.settings import Settings
-from elbowscrew.simulate import SimulatedTrial
+
+if TYPE_CHECKING:
+    from elbowscrew.simulate import SimulatedTrial
 
 SUMMARY: Final = "summary.json"
 
@@ -218,6 +218,8 @@ def save_simulation(
     ...     [path.name for path in save_simulation(trial, f"{folder}/trial.csv")]
     ['trial.csv', 'trial.truth.json']
     """
+    from elbowscrew.io.optitrack_writer import motive_columns_lines, row_tagged_lines
+
     export = Path(path)
     if not export.name or export.name in (".", ".."):
         msg = f"{str(path)!r} is no name of a file to write; give one such as trial.csv"
@@ -340,6 +342,8 @@ def save_comparison(
     ...     (save_comparison(found, f"{folder}/result", figure_formats=()) / "compare.csv").exists()
     True
     """
+    from elbowscrew.io.comparison_summary import comparison_summary, trials_summary
+
     target = Path(folder)
     settings = comparison.settings
     formats = _known_formats(settings.figure_formats if figure_formats is None else tuple(figure_formats))

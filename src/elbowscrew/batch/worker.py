@@ -7,6 +7,8 @@ import threading
 from contextlib import suppress
 from multiprocessing.connection import Connection
 
+from elbowscrew._process import set_up_process
+
 
 def prepare_worker(watched: Connection) -> None:
     """Set up a worker: one thread for BLAS, no windows, and an end as soon as the batch ends.
@@ -16,15 +18,13 @@ def prepare_worker(watched: Connection) -> None:
     watched : Connection
         Nothing ever comes through it: it closes when the batch stops or its process dies, be it by kill -9.
     """
-    import logging
     import signal
     import sys
     import warnings
 
     for name in ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS", "VECLIB_MAXIMUM_THREADS"):
         os.environ[name] = "1"  # the workers share the cores among them already
-    os.environ["MPLBACKEND"] = "agg"
-    logging.getLogger("matplotlib").setLevel(logging.ERROR)
+    set_up_process()
     if not sys.warnoptions:
         warnings.simplefilter("ignore")
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches all processes; the batch itself ends its workers

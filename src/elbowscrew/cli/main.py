@@ -49,15 +49,14 @@ def _run(given: list[str]) -> int:
     if given == ["--version"]:
         sys.stdout.write(f"elbowscrew {__version__}\n")
         return 0
-    import logging
+    from elbowscrew._process import set_up_process
 
+    set_up_process()
     from typer.exceptions import TyperException
 
     from elbowscrew.cli.app import run
 
     _end_cleanly_when_terminated()
-    os.environ["MPLBACKEND"] = "agg"  # figures go to files, whatever the notebook or the shell prefers
-    logging.getLogger("matplotlib").setLevel(logging.ERROR)  # its words on fonts and caches are not the result
     try:
         code = run(given or ["--help"])
     except TyperException as error:

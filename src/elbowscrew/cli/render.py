@@ -13,11 +13,11 @@ from rich.table import Table
 from rich.text import Text
 
 from elbowscrew.cli.text import NobodyReads, one_line, printable
-from elbowscrew.paper import Comparison
 
 if TYPE_CHECKING:
     from elbowscrew.batch.study import StudyResult
     from elbowscrew.batch.trials import Skipped
+    from elbowscrew.paper import Comparison
 
 _MARKERS_TOLD = 24
 _FRAMES_TOLD = 12

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -91,7 +91,7 @@ def lowpass_poses(
     poses = continuous_signs(poses)
     poses[~np.isfinite(poses).all(axis=1)] = np.nan
     for run in _runs(poses, elapsed, rate_hz, broken_rows, FEWEST_FRAMES):
-        poses[run] = lowpass(poses[run])
+        poses[run] = lowpass(_Spectrum.of(poses[run], lowpass.settling))
     return poses
 
 
@@ -167,9 +167,14 @@ def automatic_cutoff(
     grid = np.geomspace(_LOWEST_HZ, highest_hz, count)
     points = points_from_radius(radius)
     square = np.zeros(count)
+    longest = _Lowpass(rate_hz, grid[0]).settling
+    spectra = [_Spectrum.of(series[run], longest) for run in runs]
     for k, cutoff_hz in enumerate(grid):
         lowpass = _Lowpass(rate_hz, cutoff_hz)
-        errors = [rms_displacement(series[run], lowpass(series[run]), points) for run in runs]
+        errors = [
+            rms_displacement(series[run], lowpass(spectrum), points)
+            for run, spectrum in zip(runs, spectra, strict=True)
+        ]
         square[k] = np.mean(np.concatenate(errors) ** 2)
     gain, gain_square = np.transpose([_white_gains(rate_hz, cutoff_hz) for cutoff_hz in grid])
     hidden = 2.0 * gain - gain_square
@@ -200,6 +205,28 @@ def _longest(runs: list[slice]) -> int:
     return max((run.stop - run.start for run in runs), default=0)
 
 
+class _Spectrum(NamedTuple):
+    """A run of poses by frequencies: continued beyond its ends, and seen from its own first pose.
+
+    Seen from there, digits go to the motion and not to the place in the laboratory.
+    """
+
+    first: Float
+    frames: int
+    beyond: int
+    length: int
+    components: list[NDArray[np.complex128]]
+
+    @classmethod
+    def of(cls, run: Float, settling: int) -> _Spectrum:
+        """Transform a run (N, 8) with so many frames more at either end."""
+        # A length of small factors only, which the transform is fast at, by going on farther than need be.
+        count = _fast_length(len(run) + 2 * settling)
+        beyond = (count - len(run) + 1) // 2
+        local = _continued(multiply(conjugate(run[0]), run), beyond)[:count]
+        return cls(run[0].copy(), len(run), beyond, count, [np.fft.rfft(component) for component in local.T])
+
+
 class _Lowpass:
     """The two passes together, for one rate and one cut-off, by their frequency response.
 
@@ -211,25 +238,21 @@ class _Lowpass:
         self._tangent = _designed_tangent(rate_hz, cutoff_hz)
         w = self._tangent
         squared_radius = (1.0 - np.sqrt(2.0) * w + w**2) / (1.0 + np.sqrt(2.0) * w + w**2)
-        self._settling = int(np.ceil(-2.0 * _SETTLED / np.log(squared_radius)))
+        self.settling = int(np.ceil(-2.0 * _SETTLED / np.log(squared_radius)))
 
-    def __call__(self, run: Float) -> Float:
-        """Filter one run of poses."""
-        # A length of small factors only, which the transform is fast at, by going on farther than need be.
-        count = _fast_length(len(run) + 2 * self._settling)
-        settling = (count - len(run) + 1) // 2
-        # Seen from its own first pose, so that digits go to the motion and not to the place in the laboratory.
-        local = _continued(multiply(conjugate(run[0]), run), settling)[:count]
-        ratio = np.tan(np.pi * np.arange(len(local) // 2 + 1) / len(local)) / self._tangent
+    def __call__(self, run: _Spectrum) -> Float:
+        """Filter one run of poses (N, 8), continued until the filter has settled, or farther."""
+        ratio = np.tan(np.pi * np.arange(run.length // 2 + 1) / run.length) / self._tangent
         attenuation = 1.0 + ratio**4
-        for component in local.T:  # one by one, which takes an eighth of the memory
-            component[...] = np.fft.irfft(np.fft.rfft(component) / attenuation, len(local))
-        filtered = np.empty_like(run)
-        for start in range(0, len(run), _BLOCK):  # which takes no memory but the result's
-            part = slice(start, min(start + _BLOCK, len(run)))
-            inner = local[settling + part.start : settling + part.stop]
-            filtered[part] = multiply(run[0], normalize(inner))
-        return filtered
+        inner = slice(run.beyond, run.beyond + run.frames)
+        filtered = np.empty((8, run.frames))
+        for row, component in zip(filtered, run.components, strict=True):
+            row[...] = np.fft.irfft(component / attenuation, run.length)[inner]
+        poses: Float = filtered.T
+        for start in range(0, run.frames, _BLOCK):  # which takes no memory but the result's
+            part = slice(start, start + _BLOCK)
+            poses[part] = multiply(run.first, normalize(poses[part]))
+        return poses
 
 
 def _fast_length(least: int) -> int:

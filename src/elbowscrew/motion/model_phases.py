@@ -77,7 +77,9 @@ def model_phases(
     bounds = np.concatenate([known[:1], turns, known[-1:]]).astype(np.int64)
     if whole:
         return ModelPhases(bound_rows=bounds, law_rows=np.column_stack([bounds[:-1], bounds[1:]]))
-    motion = _Motion(angle, elapsed, known, movements, np.abs(velocity), _least_swing(angle[known]))
+    speed = np.abs(velocity)
+    slow = ~(speed > movements.threshold)  # so is what is not known
+    motion = _Motion(angle, elapsed, known, movements, speed, slow, _least_swing(angle[known]))
     return _moving(bounds if inversion is not None else _parted(bounds, motion), motion)
 
 
@@ -131,6 +133,7 @@ class _Motion(NamedTuple):
     known: NDArray[np.intp]
     movements: MovementPhases
     speed: Float
+    slow: NDArray[np.bool_]
     least_swing: float
 
     def runs(self, first: int, last: int) -> list[tuple[int, int]]:
@@ -190,8 +193,7 @@ def _moving(bounds: Index, motion: _Motion) -> ModelPhases:
 
 def _middle_of_rest(before: int, turn: int, after: int, motion: _Motion) -> int:
     """Row of a turn: amid the rest about it, as the noise chooses the largest angle of a flat top."""
-    speed, threshold = motion.speed, motion.movements.threshold
-    slow = ~(speed > threshold)  # so is what is not known
+    speed, slow, threshold = motion.speed, motion.slow, motion.movements.threshold
     first = last = turn
     while first > before and slow[first]:
         first -= 1

@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.patches import Circle
+from mpl_toolkits.mplot3d.art3d import Line3DCollection
 from mpl_toolkits.mplot3d.axes3d import Axes3D
 from numpy.typing import NDArray
 
@@ -29,8 +30,7 @@ def plot_joint_axis_in_space(ax: Axes3D, analysis: Shown) -> Axes3D:
     bundle = _bundle(analysis)
     unit = analysis.settings.length_unit
     colors = color_scale(analysis).to_rgba(angle_in(analysis.screw.angle[bundle.rows], analysis.settings.angle_unit))
-    for segment, color in zip(bundle.segments, colors, strict=True):
-        ax.plot(*segment.T, color=color, linewidth=0.6, alpha=0.8)
+    ax.add_collection3d(Line3DCollection(list(bundle.segments), colors=colors, linewidths=0.6, alpha=0.8))
     ends = _ends(bundle)
     ax.plot(*ends.T, color="black", linewidth=1.6, label=bundle.name)
     u, v = directions_across(bundle.direction)[0]

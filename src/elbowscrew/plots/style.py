@@ -7,6 +7,7 @@ from typing import Any, Final
 
 import matplotlib as mpl
 import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
@@ -44,6 +45,7 @@ METHOD_NAMES: Final = {
 }
 
 _MM_PER_INCH: Final = 25.4
+_DOTS_PER_INCH: Final = 300
 _RC: Final[dict[Any, Any]] = {
     "font.family": "sans-serif",
     "font.sans-serif": ["DejaVu Sans"],
@@ -52,6 +54,7 @@ _RC: Final[dict[Any, Any]] = {
     "axes.titlesize": 8.0,
     "axes.titlelocation": "left",
     "axes.titleweight": "bold",
+    "axes.titley": 1.0,  # where it would come to lie, without a search for ticks above the axes
     "axes.linewidth": 0.7,
     "axes.spines.top": False,
     "axes.spines.right": False,
@@ -66,7 +69,7 @@ _RC: Final[dict[Any, Any]] = {
     "legend.fontsize": 7.5,
     "legend.frameon": False,
     "legend.handlelength": 2.6,
-    "savefig.dpi": 300,
+    "savefig.dpi": "figure",
     "pdf.fonttype": 42,
     "svg.fonttype": "path",
     "svg.hashsalt": "elbowscrew",
@@ -80,7 +83,9 @@ def publication_style() -> AbstractContextManager[None]:
 
 def new_figure(width_mm: float, height_mm: float) -> Figure:
     """Return an empty figure of that size on paper, without pyplot's global state; `settle` lays it out."""
-    return Figure(figsize=(width_mm / _MM_PER_INCH, height_mm / _MM_PER_INCH))
+    figure = Figure(figsize=(width_mm / _MM_PER_INCH, height_mm / _MM_PER_INCH), dpi=_DOTS_PER_INCH)
+    FigureCanvasAgg(figure)  # so that laying out and drawing share a renderer
+    return figure
 
 
 def settle(figure: Figure) -> None:

@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import io
 from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
 from functools import partial
 from typing import Any, Final
 
+import numpy as np
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
+from PIL import Image
 
 from elbowscrew.model.shown import Shown
 from elbowscrew.plots.figures import FIGURES, WIDTH_MM, MakeFigure
@@ -16,12 +20,10 @@ from elbowscrew.plots.style import publication_style, settle
 
 # Without dates and program versions the same analysis gives the same bytes.
 _METADATA: Final[dict[str, dict[str, Any]]] = {
-    "png": {"Software": None},
     "svg": {"Date": None, "Creator": None},
     "pdf": {"CreationDate": None, "Creator": None, "Producer": None},
 }
-# A third less time for a tenth more bytes.
-_ENCODING: Final[dict[str, dict[str, Any]]] = {"png": {"pil_kwargs": {"compress_level": 3}}, "svg": {}, "pdf": {}}
+_COMPRESSION: Final = 3  # a third less time than by default, for a tenth more bytes
 _FIGURES: Final[dict[str, MakeFigure]] = {**FIGURES, **PAPER_FIGURES}
 
 
@@ -49,14 +51,32 @@ def figure_files(
 
 
 def files_of(drawings: Mapping[str, Callable[[], Figure]], formats: Sequence[str]) -> dict[str, bytes]:
-    """Draw and save figures, one at a time, in all formats."""
-    files = {}
-    with publication_style():
+    """Draw and save figures, one at a time, in all formats; a PNG is compressed while the next figure is drawn."""
+    files: dict[str, bytes] = {}
+    compressed: dict[str, Future[bytes]] = {}
+    with publication_style(), ThreadPoolExecutor(max_workers=1) as background:
         for name, draw in drawings.items():
             figure = draw()
             settle(figure)
             for kind in formats:
-                stream = io.BytesIO()
-                figure.savefig(stream, format=kind, metadata=_METADATA[kind], **_ENCODING[kind])
-                files[f"{name}.{kind}"] = stream.getvalue()
-    return files
+                if kind == "png":
+                    compressed[f"{name}.png"] = background.submit(_png, _pixels(figure), figure.dpi)
+                else:
+                    stream = io.BytesIO()
+                    figure.savefig(stream, format=kind, metadata=_METADATA[kind])
+                    files[f"{name}.{kind}"] = stream.getvalue()
+    return files | {name: content.result() for name, content in compressed.items()}
+
+
+def _pixels(figure: Figure) -> NDArray[np.uint8]:
+    """Draw a figure, shape (height, width, 3)."""
+    canvas: Any = figure.canvas
+    canvas.draw()
+    return np.ascontiguousarray(np.asarray(canvas.buffer_rgba(), dtype=np.uint8)[..., :3])
+
+
+def _png(pixels: NDArray[np.uint8], dots_per_inch: float) -> bytes:
+    stream = io.BytesIO()
+    image = Image.fromarray(pixels)
+    image.save(stream, format="png", dpi=(dots_per_inch, dots_per_inch), compress_level=_COMPRESSION)
+    return stream.getvalue()
