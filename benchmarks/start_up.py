@@ -1,37 +1,34 @@
-"""How long the command takes to start, beside what it stands on: run ``python benchmarks/start_up.py``.
-
-The yardstick for ``--help`` is ``import typer`` (at most 2.5 times as long), for ``--version`` bare Python.
-"""
+"""How long the command takes to start, beside what it stands on: ``python benchmarks/start_up.py``."""
 
 from __future__ import annotations
 
-import statistics
-import subprocess
 import sys
-import time
 
-ROUNDS = 20
-COMMANDS = {
-    "python -c pass": [sys.executable, "-c", "pass"],
-    "import typer": [sys.executable, "-c", "import typer"],
-    "elbowscrew --version": [sys.executable, "-m", "elbowscrew", "--version"],
-    "elbowscrew --help": [sys.executable, "-m", "elbowscrew", "--help"],
-}
+from rows import SCRIPT, Row, alternate, clean_environment, run, share, table
+
+BARE, TYPER = "python -c pass", "python -c 'import typer'"
 
 
-def main() -> None:
-    times: dict[str, list[float]] = {name: [] for name in COMMANDS}
-    for _ in range(ROUNDS):  # in alternation, so that a busy moment meets all alike
-        for name, command in COMMANDS.items():
-            start = time.perf_counter()
-            subprocess.run(command, stdout=subprocess.DEVNULL, check=True)
-            times[name].append(time.perf_counter() - start)
-    medians = {name: statistics.median(values) for name, values in times.items()}
-    for name, median in medians.items():
-        print(f"{name:24s} {1000 * median:7.1f} ms")
-    print(f"--help / import typer    {medians['elbowscrew --help'] / medians['import typer']:7.2f}")
-    print(f"--version / bare Python  {medians['elbowscrew --version'] / medians['python -c pass']:7.2f}")
+def measure(*, quick: bool) -> list[Row]:
+    """Measure help and version."""
+    rounds = 10 if quick else 40
+    start = alternate(
+        {
+            "ours": lambda: run(SCRIPT, "--help"),
+            TYPER: lambda: run(sys.executable, "-c", "import typer"),
+        },
+        rounds,
+    )
+    version = alternate(
+        {
+            "ours": lambda: run(SCRIPT, "--version"),
+            BARE: lambda: run(sys.executable, "-c", "pass"),
+        },
+        rounds,
+    )
+    return [share("--help", start, TYPER, 2.5), share("--version", version, BARE, 1.5)]
 
 
 if __name__ == "__main__":
-    main()
+    clean_environment()
+    print(table(measure(quick=False)))

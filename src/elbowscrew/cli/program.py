@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Sequence
 from types import FrameType
 
-from elbowscrew._version import __version__
 from elbowscrew.cli.text import NobodyReads, one_line
 from elbowscrew.errors import ElbowscrewError, OutputError, UsageError
 
@@ -22,11 +20,11 @@ class Terminated(BaseException):
         self.number = number
 
 
-def main(arguments: Sequence[str] | None = None) -> int:
+def run_program(given: list[str]) -> int:
     """Run the command line and return the exit code; a defect of the program raises."""
     _mend_streams()
     try:
-        code = _run(list(sys.argv[1:] if arguments is None else arguments))
+        code = _run(given)
         sys.stdout.flush()
     except ElbowscrewError as error:
         return _report(str(error), error.exit_code)
@@ -46,9 +44,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _run(given: list[str]) -> int:
-    if given == ["--version"]:
-        sys.stdout.write(f"elbowscrew {__version__}\n")
-        return 0
     from elbowscrew._process import set_up_process
 
     set_up_process()
