@@ -1,8 +1,7 @@
 """Batch on a large study: run ``python benchmarks/batch.py`` (a few minutes), or one of its parts by name.
 
-``speed``   200 trials with their figures: the sum of single-trial work in one process, then batch with 1 and 2 workers.
-            Yardsticks: 2 workers at least 1.8 times as fast as 1; 1 worker within 10 % of the single-trial work; memory
-            of a worker that does not grow with the number of trials.
+``speed``   200 trials with their figures: the sum of single-trial work in one process, then batch with 1 and 2 workers,
+            and without figures. Memory of a worker may not grow with the number of trials.
 ``broken``  1,000 trials, one in twenty broken in ten ways: exit code 7, the good ones there, the bad ones named; the
             same bytes with 1 worker, 2 workers and two workers of a Dask cluster.
 ``kills``   kill -9 at 20 random moments of that study: the run after that gives the bytes of an undisturbed one.
@@ -12,6 +11,7 @@ from __future__ import annotations
 
 import argparse
 import csv
+import json
 import os
 import random
 import resource
@@ -29,6 +29,7 @@ from typing import NamedTuple
 
 sys.path.insert(0, str(Path(__file__).parent.parent / "tests" / "support"))
 
+from rows import Row, clean_environment, table
 from studies import WAYS, break_trial, command, contents
 
 FAST = ("--figure-format", "none")
@@ -41,6 +42,7 @@ def main() -> None:
     parser.add_argument("--trials", type=int, help="trials of each part")
     parser.add_argument("--folder", type=Path, help="where to work; a temporary folder by default")
     given = parser.parse_args()
+    clean_environment()
     with tempfile.TemporaryDirectory() as temporary:
         folder = given.folder or Path(temporary)
         for part in given.parts or ["speed", "broken", "kills"]:
@@ -49,41 +51,71 @@ def main() -> None:
 
 
 def speed(folder: Path, trials: int | None) -> None:
-    count = trials or 200
+    print(table(measure(folder, trials or 200)))
+
+
+def measure(folder: Path, count: int) -> list[Row]:
+    """Measure a study of so many trials with 1 and 2 workers, beside the same work in one process."""
     study(folder / "speed", count, frames=450)
     script = Path(__file__).with_name("batch_single.py")
-    single = [sys.executable, *map(str, (script, folder / "speed", folder / "single"))]
     one_thread = {**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MPLBACKEND": "agg"}
-    told = subprocess.run(single, check=True, capture_output=True, text=True, env=one_thread).stdout
-    alone, processor = map(float, told.split())
-    print(f"single-trial work, one process: {alone:7.2f} s ({processor:.2f} s of processor time)")
+    command = [sys.executable, *map(str, (script, folder / "speed", folder / "single"))]
+    told = subprocess.run(command, check=True, capture_output=True, text=True, env=one_thread).stdout
+    alone = json.loads(told)
     found = {}
     for workers in (1, 2):
-        for share in (4, 1):
-            some = folder / f"speed{share}"
+        for share_of in (4, 1):
+            some = folder / f"speed{share_of}"
             shutil.rmtree(some, ignore_errors=True)
             some.mkdir()
-            for path in sorted((folder / "speed").iterdir())[: count // share]:
+            for path in sorted((folder / "speed").iterdir())[: count // share_of]:
                 os.link(path, some / path.name)
-            found[workers] = timed(some, folder / f"out{workers}", workers)
-            print(f"{workers} workers, {count // share:4d} trials: {found[workers]}")
-    print(f"2 workers / 1 worker: {found[1].elapsed / found[2].elapsed:.2f} x as fast (at least 1.8)")
-    for name, before, after in (
-        ("time", alone, found[1].elapsed),
-        ("processor time", processor, found[1].processor),
-    ):
-        told = f"{100 * (after / before - 1):.1f} % (at most 10)"
-        print(f"overhead of 1 worker over the single-trial work, {name}: {told}")
+            found[workers, share_of] = timed(some, folder / f"out{workers}", workers)
+    bare = timed(folder / "speed", folder / "bare", 2, *FAST)
+    one, two = found[1, 1], found[2, 1]
+    stages = " ms, ".join(f"{name} {value:.0f}" for name, value in alone["stages_ms"].items())
+    return [
+        Row(
+            what=f"batch of {count} trials, 2 workers",
+            value=one.elapsed / two.elapsed,
+            unit="x as fast as 1 worker",
+            wanted=1.85,
+            sense="at least",
+            behind=f"{two.elapsed:.1f} against {one.elapsed:.1f} s",
+        ),
+        Row(
+            what="a trial with 1 worker",
+            value=one.elapsed / alone["seconds"],
+            unit="x the time of the warm work in one process",
+            wanted=1.1,
+            behind=f"{1e3 * one.elapsed / count:.0f} against {1e3 * alone['seconds'] / count:.0f} ms",
+        ),
+        Row(
+            what="a trial with 1 worker, processor time",
+            value=one.processor / alone["processor"],
+            unit="x that of the warm work in one process",
+            wanted=1.1,
+            behind=f"{1e3 * one.processor / count:.0f} against {1e3 * alone['processor'] / count:.0f} ms",
+        ),
+        Row(
+            what="memory of a worker, 1 worker",
+            value=one.memory / 1e6,
+            unit="MB at most",
+            behind=f"{found[1, 4].memory / 1e6:.0f} MB with a quarter of the trials",
+        ),
+        Row(
+            what="batch without figures, 2 workers",
+            value=count / bare.elapsed,
+            unit="trials a second",
+            behind=f"one process: {stages} ms a trial; start-up and the study's page are in it",
+        ),
+    ]
 
 
 class Timing(NamedTuple):
     elapsed: float
     processor: float
     memory: int
-
-    def __str__(self) -> str:
-        processor = f"{self.processor:.2f} s of processor time"
-        return f"{self.elapsed:7.2f} s ({processor}); largest worker {self.memory / 1e6:.0f} MB"
 
 
 def broken(folder: Path, trials: int | None) -> None:
@@ -161,11 +193,11 @@ def run(data: Path, out: Path, *options: object, code: int) -> float:
     return time.perf_counter() - start
 
 
-def timed(data: Path, out: Path, workers: int) -> Timing:
+def timed(data: Path, out: Path, workers: int, *options: str) -> Timing:
     """Time of a batch, processor time of all its processes, and the most memory one of its workers took."""
     shutil.rmtree(out, ignore_errors=True)
     before, start = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
-    process = subprocess.Popen(command(data, "-q", "-o", out, "--workers", workers))
+    process = subprocess.Popen(command(data, "-q", "-o", out, "--workers", workers, *options))
     most: list[int] = [0]
     watcher = threading.Thread(target=watch, args=(process, most))
     watcher.start()

@@ -1,27 +1,58 @@
-"""The yardstick of ``batch.py``: seconds, and seconds of processor time, of the work on a folder in one process.
+"""The yardstick of ``batch.py``: the work on a folder in one process, ``batch_single.py DATA OUT``; JSON on the output.
 
-Reading, analyzing and writing, as ``elbowscrew analyze`` does them; imports and the first trial, which fills caches,
-are not counted, but made up for by the mean of the others.
+Reading, analyzing and writing, as ``elbowscrew analyze`` does them. Imports and the first trial, which fills caches,
+are not counted, but made up for by the mean of the others. Then the same without figures, stage by stage.
 """
 
 from __future__ import annotations
 
+import json
+import shutil
+import statistics
 import sys
 import time
+from collections import defaultdict
 from pathlib import Path
 
-from elbowscrew import Settings, save_analysis
+from elbowscrew import Settings, analyze, read_recording, save_analysis
+from elbowscrew._process import set_up_process
+from elbowscrew.report import write_trial_page
 from elbowscrew.results import analyze_file
+
+STAGED = 50
 
 
 def main(data: Path, out: Path) -> None:
+    set_up_process()
+    paths = sorted(data.glob("*.csv"))
     times, processor = [], []
-    for path in sorted(data.glob("*.csv")):
+    for path in paths:
         start, start_processor = time.perf_counter(), time.process_time()
         save_analysis(analyze_file(path, Settings()), out / path.stem, force=True)
         times.append(time.perf_counter() - start)
         processor.append(time.process_time() - start_processor)
-    print(*(sum(values[1:]) * len(values) / (len(values) - 1) for values in (times, processor)))
+    whole = [sum(values[1:]) * len(values) / (len(values) - 1) for values in (times, processor)]
+    print(json.dumps({"seconds": whole[0], "processor": whole[1], "stages_ms": stages(paths[:STAGED], out)}))
+
+
+def stages(paths: list[Path], out: Path) -> dict[str, float]:
+    """Milliseconds of a trial without figures, by what is done."""
+    found: dict[str, list[float]] = defaultdict(list)
+    for path in paths:
+        folder = out / path.stem
+        shutil.rmtree(folder)
+        marks = [time.perf_counter()]
+        recording = read_recording(path)
+        marks.append(time.perf_counter())
+        analysis = analyze(recording, Settings())
+        marks.append(time.perf_counter())
+        save_analysis(analysis, folder, figure_formats=(), report=False)
+        marks.append(time.perf_counter())
+        write_trial_page(folder)
+        marks.append(time.perf_counter())
+        for name, before, after in zip(("read", "analyze", "write", "page"), marks, marks[1:], strict=False):
+            found[name].append(1e3 * (after - before))
+    return {name: statistics.median(values) for name, values in found.items()}
 
 
 if __name__ == "__main__":

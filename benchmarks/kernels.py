@@ -1,26 +1,22 @@
-"""The kernels beside what a user would take instead: run ``python benchmarks/kernels.py [--json FILE]``.
+"""The kernels beside what a user would take instead: ``python benchmarks/kernels.py [NAME]``.
 
 Each kernel is timed in alternation with its yardsticks, so that a busy moment of the machine meets all alike: read the
 ratios, not the times. pytransform3d works on the same dual quaternions; scipy's RigidTransform is given its own
-transforms where it has the operation ("native"), else dual quaternions in and out. The table has nanoseconds a frame
-(median, and the range of the rounds), the ratios with their targets in brackets, the most memory that a kernel takes
-above its result, and its time at 450 frames.
+transforms where it has the operation ("native"), else dual quaternions in and out.
 """
 
 from __future__ import annotations
 
-import argparse
-import json
 import statistics
-import time
+import sys
 import tracemalloc
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 import pytransform3d.trajectories
 from numpy.typing import NDArray
+from rows import Row, alternate, clean_environment, faster, share, table
 from scipy.spatial.transform import RigidTransform
 
 from elbowscrew import geometry
@@ -32,6 +28,7 @@ Task = Callable[[], Any]
 
 pt: Any = pytransform3d.trajectories  # it has types in parts only
 
+COPY = "a copy of its bytes"
 SHORT = 450
 SHORT_REPEATS = 200
 SHORT_TARGET_US = 150.0
@@ -207,12 +204,6 @@ def cases(frames: int) -> dict[str, Case]:
     }
 
 
-def seconds(task: Task) -> float:
-    start = time.perf_counter()
-    task()
-    return time.perf_counter() - start
-
-
 def memory_above_result(task: Task) -> float:
     """MiB that are allocated at most at a time beside the result."""
     tracemalloc.start()
@@ -223,86 +214,50 @@ def memory_above_result(task: Task) -> float:
     return (peak - kept) / 2**20
 
 
-def measure(name: str, case: Case, frames: int, rounds: int) -> dict[str, Any]:
-    """Time a kernel, its yardsticks and a copy of its bytes in turns."""
+def long_rows(name: str, case: Case, frames: int, rounds: int) -> list[Row]:
+    """Time a kernel, its yardsticks and a copy of its bytes in turns; and its memory."""
     copies = [np.empty_like(array) for array in case.copied]
 
     def copy() -> None:
         for target, array in zip(copies, case.copied, strict=True):
             np.copyto(target, array)
 
-    tasks = {"ours": case.ours, "copy": copy, **{key: task for key, (task, _) in case.yardsticks.items()}}
-    times: dict[str, list[float]] = {key: [] for key in tasks}
-    for turn in range(rounds + 1):
-        for key, task in tasks.items():
-            taken = seconds(task)
-            if turn:  # the first of each warms up
-                times[key].append(taken)
-    per_frame = {key: [1e9 * value / frames for value in values] for key, values in times.items()}
-    medians = {key: statistics.median(values) for key, values in per_frame.items()}
-    return {
-        "kernel": name,
-        "frames": frames,
-        "ns_per_frame": medians,
-        "spread_ns": {key: [min(values), max(values)] for key, values in per_frame.items()},
-        "ratios": {key: medians[key] / medians["ours"] for key in case.yardsticks},
-        "targets": {key: target for key, (_, target) in case.yardsticks.items()},
-        "copies": medians["ours"] / medians["copy"],
-        "most_copies": case.most_copies,
-        "mib_above_result": memory_above_result(case.ours),
-    }
-
-
-def short_us(case: Case) -> float:
-    """Microseconds of a kernel at few frames."""
-    return 1e6 * statistics.median(seconds(case.ours) for _ in range(SHORT_REPEATS))
-
-
-def row(found: dict[str, Any]) -> str:
-    low, high = found["spread_ns"]["ours"]
-    told = []
-    for key, ratio in found["ratios"].items():
-        target = found["targets"][key]
-        if target is not None and target < 0.0:  # slower than this one, by no more than so much
-            told.append(f"{1.0 / ratio:.1f} x {key} [<= {-target:g}]")
+    tasks = {"ours": case.ours, COPY: copy, **{key: task for key, (task, _) in case.yardsticks.items()}}
+    times = alternate(tasks, rounds)
+    rows = []
+    for key, (_, wanted) in case.yardsticks.items():
+        if wanted is not None and wanted < 0.0:  # slower than this one, by no more than so much
+            rows.append(share(name, times, key, -wanted, per=frames))
         else:
-            told.append(f"{ratio:.1f} x faster than {key}" + ("" if target is None else f" [{target:g}]"))
-    copies = f"{found['copies']:.1f}" + ("" if found["most_copies"] is None else f" [<= {found['most_copies']:g}]")
-    cells = [
-        found["kernel"],
-        f"{found['ns_per_frame']['ours']:.1f} ({low:.1f}-{high:.1f})",
-        copies,
-        "; ".join(told),
-        f"{found['mib_above_result']:.1f}",
-        f"{found['short_us']:.0f}",
-    ]
-    return "| " + " | ".join(cells) + " |"
+            rows.append(faster(name, times, key, wanted, per=frames))
+    rows.append(share(name, times, COPY, case.most_copies, per=frames))
+    memory = memory_above_result(case.ours)
+    return [*rows, Row(what=f"{name}, memory above the result", value=memory, unit="MiB", wanted=MEMORY_TARGET_MIB)]
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
-    parser.add_argument("--frames", type=int, default=1_000_000)
-    parser.add_argument("--rounds", type=int, default=7)
-    parser.add_argument("--only", help="kernels whose name has this in it")
-    parser.add_argument("--json", type=Path)
-    wanted = parser.parse_args()
-    short = cases(SHORT)
-    results = []
-    print(
-        "| kernel | ns a frame (range) | copies of its bytes | ratios [target] "
-        f"| MiB above result [<= {MEMORY_TARGET_MIB:g}] | us at {SHORT} frames [<= {SHORT_TARGET_US:g}, but DIB] |"
+def short_row(name: str, case: Case) -> Row:
+    """Time of a kernel at few frames."""
+    taken = [1e6 * value for value in alternate({"ours": case.ours}, SHORT_REPEATS)["ours"]]
+    return Row(
+        what=f"{name}, {SHORT} frames",
+        value=statistics.median(taken),
+        unit="us",
+        low=min(taken),
+        high=float(np.percentile(taken, 95.0)),
+        wanted=None if name.startswith("DIB") else SHORT_TARGET_US,
     )
-    print("| --- | --- | --- | --- | --- | --- |")
-    for name, case in cases(wanted.frames).items():
-        if wanted.only and wanted.only not in name:
-            continue
-        found = measure(name, case, wanted.frames, 1 if "DIB" in name and wanted.rounds > 1 else wanted.rounds)
-        found["short_us"] = short_us(short[name])
-        print(row(found), flush=True)
-        results.append(found)
-    if wanted.json is not None:
-        wanted.json.write_text(json.dumps({"numpy": np.__version__, "kernels": results}, indent=1), encoding="utf-8")
+
+
+def measure(*, quick: bool, only: str = "") -> list[Row]:
+    """Measure all kernels, long and short."""
+    frames, rounds = (100_000, 5) if quick else (1_000_000, 7)
+    rows = []
+    for name, case in cases(frames).items():
+        if only in name:
+            rows += long_rows(name, case, frames, 3 if name.startswith("DIB") else rounds)
+    return [*rows, *(short_row(name, case) for name, case in cases(SHORT).items() if only in name)]
 
 
 if __name__ == "__main__":
-    main()
+    clean_environment()
+    print(table(measure(quick=False, only="".join(sys.argv[1:]))))

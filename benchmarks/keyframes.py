@@ -1,39 +1,54 @@
-"""Time of the fewest keyframes: 450 and 10,000 frames of a synthetic elbow, by tolerance.
-
-Run: python benchmarks/keyframes.py
-"""
+"""Time of the fewest keyframes, and of a comparison of models: ``python benchmarks/keyframes.py``."""
 
 from __future__ import annotations
 
-import time
+from functools import partial
 
-from elbowscrew import Settings, simulate_trial
+from rows import Row, alternate, clean_environment, table
+
+from elbowscrew import Settings, compare, simulate_trial
 from elbowscrew.motion.difference import points_from_markers
 from elbowscrew.motion.keyframe_selection import select_keyframes
-from elbowscrew.motion.measurement import measure
+from elbowscrew.motion.measurement import measure as measured_motion
 
-RUNS = {450: 5, 10_000: 1}
-TARGET_S = {450: 1.0, 10_000: 20.0}
+WANTED_S = {450: 1.0, 10_000: 20.0}
 
 
-def main() -> None:
-    print(f"{'frames':>7} {'tolerance':>10} {'method':>7} {'keyframes':>10} {'time, s':>8} {'target':>7}")
-    for frames, runs in RUNS.items():
-        recording = simulate_trial(frames=frames, inversion=frames * 211 // 450, marker_noise_mm=0.1).recording
-        measured = measure(recording, Settings())
-        offsets = measured.forearm.marker_offsets
-        assert offsets is not None
-        points = points_from_markers(offsets)
-        for tolerance in (2e-3, 5e-3):
-            for method in ("sclerp", "sdlb"):
-                times = []
-                for _ in range(runs):
-                    start = time.perf_counter()
-                    found = select_keyframes(measured.displacement, measured.elapsed, points, tolerance, method=method)
-                    times.append(time.perf_counter() - start)
-                row = f"{frames:7d} {1e3 * tolerance:7g} mm {method:>7} {found.row.size:10d} {min(times):8.2f}"
-                print(f"{row} {TARGET_S[frames]:7g}")
+def selection(frames: int, rounds: int) -> list[Row]:
+    """Fewest keyframes of a synthetic elbow, by tolerance and method."""
+    recording = simulate_trial(frames=frames, inversion=frames * 211 // 450, marker_noise_mm=0.1).recording
+    measured = measured_motion(recording, Settings())
+    offsets = measured.forearm.marker_offsets
+    assert offsets is not None
+    points = points_from_markers(offsets)
+    rows = []
+    for tolerance in (2e-3, 5e-3):
+        for method in ("sclerp", "sdlb"):
+            select = partial(
+                select_keyframes, measured.displacement, measured.elapsed, points, tolerance, method=method
+            )
+            times = alternate({"ours": select}, rounds, warm=False)["ours"]
+            rows.append(
+                Row(
+                    what=f"keyframes of {frames:,} frames, {1e3 * tolerance:g} mm, {method}",
+                    value=min(times),
+                    unit="s",
+                    wanted=WANTED_S[frames],
+                    behind=f"{select().row.size} keyframes",
+                )
+            )
+    return rows
+
+
+def measure(*, quick: bool) -> list[Row]:
+    """Measure the selection, and a comparison with the default plan."""
+    rows = [*selection(450, 5), *([] if quick else selection(10_000, 1))]
+    recording = simulate_trial(marker_noise_mm=0.1).recording
+    count = len(compare(recording).models.rank)
+    taken = alternate({"ours": lambda: compare(recording)}, 1 if quick else 3, warm=False)["ours"]
+    return [*rows, Row(what=f"compare of 450 frames, {count:,} models", value=min(taken), unit="s")]
 
 
 if __name__ == "__main__":
-    main()
+    clean_environment()
+    print(table(measure(quick=False)))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import resource
 import statistics
 import subprocess
 import sys
@@ -56,6 +55,11 @@ def table(rows: Sequence[Row]) -> str:
 def as_json(rows: Sequence[Row]) -> list[dict[str, Any]]:
     """Give rows ready for JSON."""
     return [{**asdict(row), "met": row.met} for row in rows]
+
+
+def from_json(rows: Sequence[Mapping[str, Any]]) -> list[Row]:
+    """Give back what `as_json` was given."""
+    return [Row(**{key: value for key, value in row.items() if key != "met"}) for row in rows]
 
 
 Times = Mapping[str, Sequence[float]]
@@ -125,28 +129,30 @@ class Run(NamedTuple):
     memory: int
 
 
+# A process counts as its own what the one that started it holds: so a small one starts and times it.
+_TIMED = """
+import os, sys, time
+start = time.perf_counter()
+process = os.posix_spawn(sys.argv[1], sys.argv[1:], os.environ)
+_, status, usage = os.wait4(process, 0)
+print(time.perf_counter() - start, usage.ru_maxrss, os.waitstatus_to_exitcode(status), file=sys.stderr)
+"""
+
+
 def run(*command: object) -> Run:
     """Run a command to its end; it must succeed."""
-    start = time.perf_counter()
-    process = subprocess.Popen([str(part) for part in command], stdout=subprocess.DEVNULL)
-    _, status, usage = os.wait4(process.pid, 0)
-    taken = time.perf_counter() - start
-    process.returncode = os.waitstatus_to_exitcode(status)
-    if process.returncode:
-        msg = f"{command[0]} ended with {process.returncode}"
+    timed = [sys.executable, "-c", _TIMED, *(str(part) for part in command)]
+    done = subprocess.run(timed, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, check=True)
+    seconds, memory, code = done.stderr.splitlines()[-1].split()
+    if int(code):
+        msg = f"{command[0]} ended with {code}: {done.stderr}"
         raise SystemExit(msg)
-    return Run(taken, usage.ru_maxrss * (1 if sys.platform == "darwin" else 1024))
+    return Run(float(seconds), int(memory) * (1 if sys.platform == "darwin" else 1024))
 
 
 def clean_environment() -> None:
-    """Start again without settings that make NumPy's matrix products slow, if there are any."""
-    hindering = [name for name in ("OPENBLAS_CORETYPE", "OPENBLAS_L2_SIZE") if os.environ.pop(name, None) is not None]
-    if hindering:
+    """Start again without settings that slow NumPy's matrix products, or each start of Python, if there are any."""
+    hindering = ("OPENBLAS_CORETYPE", "OPENBLAS_L2_SIZE", "PYTHONDONTWRITEBYTECODE")
+    if [name for name in hindering if os.environ.pop(name, None) is not None]:
         sys.stdout.flush()
         os.execv(sys.executable, [sys.executable, *sys.argv])  # noqa: S606
-
-
-def children_seconds() -> float:
-    """Processor time of all processes that have ended."""
-    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return usage.ru_utime + usage.ru_stime

@@ -1,4 +1,4 @@
-"""Reading an export and writing a table beside pandas, polars and a copy of the same bytes: ``python benchmarks/tables.py``."""
+"""Reading and writing beside pandas, polars and a copy of the same bytes: ``python benchmarks/tables.py``."""
 
 from __future__ import annotations
 

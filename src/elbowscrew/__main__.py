@@ -2,6 +2,6 @@
 
 import sys
 
-from elbowscrew.cli import main
+from elbowscrew.cli import command
 
-sys.exit(main())
+sys.exit(command())

@@ -362,11 +362,30 @@ def in_units(values: NDArray[Any], quantity: Quantity, angle_unit: AngleUnit, le
 
 def in_si(values: NDArray[Any], quantity: Quantity, angle_unit: AngleUnit, length_unit: LengthUnit) -> NDArray[Any]:
     """Values of a kind back in SI units and radians; a unit there and back costs the last digit."""
-    if quantity in (Quantity.ANGLE, Quantity.ANGULAR_VELOCITY):
-        return np.radians(values) if angle_unit == "deg" else values
-    if quantity in (Quantity.LENGTH, Quantity.VELOCITY) and length_unit == "mm":
-        return values * METERS["mm"]
-    return values
+    return _in_si(values, quantity, angle_unit, length_unit, out=None)
+
+
+def as_read_back(
+    values: NDArray[Any], quantity: Quantity, angle_unit: AngleUnit, length_unit: LengthUnit
+) -> NDArray[Any]:
+    """Values of a kind, SI units and radians, with the last digit that they lose in units and back."""
+    there = in_units(values, quantity, angle_unit, length_unit)
+    return _in_si(there, quantity, angle_unit, length_unit, out=None if there is values else there)
+
+
+def _in_si(
+    values: NDArray[Any],
+    quantity: Quantity,
+    angle_unit: AngleUnit,
+    length_unit: LengthUnit,
+    out: NDArray[Any] | None,
+) -> NDArray[Any]:
+    found: NDArray[Any] = values
+    if quantity in (Quantity.ANGLE, Quantity.ANGULAR_VELOCITY) and angle_unit == "deg":
+        found = np.radians(values, out=out)
+    elif quantity in (Quantity.LENGTH, Quantity.VELOCITY) and length_unit == "mm":
+        found = np.multiply(values, METERS["mm"], out=out)
+    return found
 
 
 def data_frame(

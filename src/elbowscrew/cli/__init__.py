@@ -10,20 +10,35 @@ TYPE_CHECKING = False  # typing itself would double the time of `elbowscrew --ve
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-__all__ = ["main"]
+__all__ = ["command", "main"]
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line and return the exit code; a defect of the program raises."""
-    given = list(sys.argv[1:] if arguments is None else arguments)
-    if given == ["--version"]:  # told before anything else is loaded
-        try:
-            sys.stdout.write(f"elbowscrew {__version__}\n")
-            sys.stdout.flush()
-        except (AttributeError, OSError):
-            pass  # nowhere to tell it: what becomes of that is the program's to say
-        else:
-            return 0
     from elbowscrew.cli.program import run_program
 
-    return run_program(given)
+    return run_program(list(sys.argv[1:] if arguments is None else arguments))
+
+
+def command() -> int:
+    """Run the command line as a process of its own; see `main`."""
+    if sys.argv[1:] == ["--version"] and _version_told():
+        return 0
+    import gc
+
+    from elbowscrew._process import set_up_process
+
+    set_up_process()
+    code = main()
+    gc.freeze()  # all of it ends with the process: a last search for garbage takes a tenth of a second
+    return code
+
+
+def _version_told() -> bool:
+    """Tell the version before anything else is loaded; if there is nowhere to tell it, `main` knows what to say."""
+    try:
+        sys.stdout.write(f"elbowscrew {__version__}\n")
+        sys.stdout.flush()
+    except (AttributeError, OSError):
+        return False
+    return True

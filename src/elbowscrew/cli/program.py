@@ -44,9 +44,6 @@ def run_program(given: list[str]) -> int:
 
 
 def _run(given: list[str]) -> int:
-    from elbowscrew._process import set_up_process
-
-    set_up_process()
     from typer.exceptions import TyperException
 
     from elbowscrew.cli.app import run

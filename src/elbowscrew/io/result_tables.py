@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowscrew.errors import ResultError
-from elbowscrew.tables import AngleUnit, Column, LengthUnit, Quantity, in_si, in_units, unit_suffixes
+from elbowscrew.tables import AngleUnit, Column, LengthUnit, Quantity, as_read_back, in_si, unit_suffixes
 
 _BLOCK_LINES: Final = 4096
 
@@ -41,7 +41,7 @@ class AsRead:
         quantity = self._quantities.get(name)
         if quantity in (None, Quantity.INTEGER, Quantity.NUMBER, Quantity.LABEL):
             return values
-        return in_si(in_units(values, quantity, *self._units), quantity, *self._units)
+        return as_read_back(values, quantity, *self._units)
 
 
 def read_columns(

@@ -90,11 +90,12 @@ def bodies_in_space(shown: Shown) -> Bodies:
     ]
     start = pose_from_dual_quat(at_reference)[1]
     # The displacement takes the forearm's origin along from where it is at the reference.
-    turned = rotate(shown.screw.euler_parameters, start) if start.any() else 0.0
-    path = turned + shown.screw.translation
+    path = shown.screw.translation
+    if start.any():
+        path = path + rotate(shown.screw.euler_parameters, start)
     return Bodies(
         path=path,
-        middle=np.nanmean(path, axis=0),
+        middle=np.mean(path, axis=0, where=np.isfinite(path)),
         corners=np.stack([np.fmin.reduce(path, axis=0), np.fmax.reduce(path, axis=0)]),
         start=start,
         arm=None if shown.arm is None else pose_from_dual_quat(change)[1],

@@ -240,10 +240,15 @@ class _Steps:
         return f" by up to {np.degrees(turn.max(initial=0.0)):.0f} deg and {1000 * distance.max(initial=0.0):.0f} mm"
 
     def _between(self, start: Index, end: Index) -> tuple[Float, Float]:
-        return (
-            angle_between(self._pose[start], self._pose[end]),
-            origin_distance(self._pose[start], self._pose[end]),
-        )
+        before, after = _taken(self._pose, start), _taken(self._pose, end)
+        return angle_between(before, after), origin_distance(before, after)
+
+
+def _taken(pose: Float, rows: Index) -> Float:
+    """Poses of increasing rows; a view where none is left out, as in most recordings."""
+    if rows.size and rows[-1] - rows[0] == rows.size - 1:
+        return pose[rows[0] : rows[-1] + 1]
+    return pose[rows]
 
 
 def _excursions(segments: Sequence[Index], steps: _Steps, elapsed: Float) -> tuple[Index, Index]:
@@ -284,9 +289,9 @@ def check_swaps(one: RigidBody, other: RigidBody, recording: Recording, elapsed:
     """
     rows = np.flatnonzero(one.tracked & other.tracked)
     before, after = rows[:-1], rows[1:]
-    a, b = one.dual_quat_lab_body, other.dual_quat_lab_body
-    moved = (origin_distance(a[after], a[before]), origin_distance(b[after], b[before]))
-    crossed = origin_distance(a[after], b[before]) + origin_distance(b[after], a[before])
+    starts, ends = ([_taken(body.dual_quat_lab_body, at) for body in (one, other)] for at in (before, after))
+    moved = origin_distance(ends[0], starts[0]), origin_distance(ends[1], starts[1])
+    crossed = origin_distance(ends[0], starts[1]) + origin_distance(ends[1], starts[0])
     swapped = after[
         (crossed < _CROSSED_SHARE * (moved[0] + moved[1]))
         & (np.minimum(*moved) > _LEAST_SWAP_M)
