@@ -57,7 +57,7 @@ def analysis_table(summary: Mapping[str, Any], folder: Path) -> None:
         ("Bodies", f"{_body(trial['arm'])} → {_body(trial['forearm'])}"),
         ("Frames", _frames(trial)),
         ("Angle θ", f"{motion['theta_min_deg']:.2f} to {motion['theta_max_deg']:.2f} deg"),
-        ("Inversion", ", ".join(f"frame {frame}" for frame in motion["inversion_frames"]) or "none"),
+        ("Inversion", _inversions(motion["inversion_frames"])),
         (
             "Slide",
             f"median {_number(motion['slide_median_mm'])} mm ({_number(motion['slide_min_mm'])} to "
@@ -75,8 +75,7 @@ def analysis_table(summary: Mapping[str, Any], folder: Path) -> None:
         ),
         (
             "Model",
-            f"{model['method']} {model['blend']}, {model['law']} law, keyframes "
-            f"{', '.join(map(str, model['keyframes']))}",
+            f"{model['method']} {model['blend']}, {model['law']} law, keyframes {_numbers(model['keyframes'])}",
         ),
         (
             "Model error",
@@ -145,10 +144,18 @@ def comparison_table(summary: Mapping[str, Any], folder: Path) -> None:
 
 
 def _fewest(found: Mapping[str, Any]) -> str:
-    frames = found["keyframe_frames"]
-    told = ", ".join(map(str, frames[:_FRAMES_TOLD])) + (", ..." if len(frames) > _FRAMES_TOLD else "")
     count = f"{found['keyframes']} keyframes of {found['frames']} frames (1 : {found['compression_ratio']:.1f})"
-    return f"{count} within {found['tolerance_mm']:g} mm: {told}"
+    return f"{count} within {found['tolerance_mm']:g} mm: {_numbers(found['keyframe_frames'])}"
+
+
+def _inversions(frames: Sequence[int]) -> str:
+    return f"frame{'s' if len(frames) > 1 else ''} {_numbers(frames)}" if frames else "none"
+
+
+def _numbers(frames: Sequence[int]) -> str:
+    """Frame numbers, of many the first."""
+    told = ", ".join(map(str, frames[:_FRAMES_TOLD]))
+    return told if len(frames) <= _FRAMES_TOLD else f"{told} and {len(frames) - _FRAMES_TOLD} more"
 
 
 def _mean_sd(best: Mapping[str, Any], name: str, several: bool) -> str:
