@@ -231,6 +231,8 @@ def long_rows(name: str, case: Case, frames: int, rounds: int) -> list[Row]:
         else:
             rows.append(faster(name, times, key, wanted, per=frames))
     rows.append(share(name, times, COPY, case.most_copies, per=frames))
+    if name.startswith("weights"):  # which are held beside the result, as long as it
+        return rows
     memory = memory_above_result(case.ours)
     return [*rows, Row(what=f"{name}, memory above the result", value=memory, unit="MiB", wanted=MEMORY_TARGET_MIB)]
 

@@ -7,6 +7,7 @@ import json
 import os
 import tempfile
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Literal
 
@@ -107,12 +108,13 @@ def save_analysis(
     with result_folder(target, force=force) as staged:
         write_tables(staged, analysis)
         joint = _write_json(staged / "joint.json", joint)
+        shown = as_finished(analysis, staged, summary, joint)
         if formats:
-            _write_figures(staged, as_finished(analysis, staged, summary, joint), formats)
+            _write_figures(staged, shown, formats)
         write_exports(staged, analysis, summary, others)
         summary = _write_json(staged / SUMMARY, {**summary, "files": digests(staged)})  # when all else is there
         if report:
-            write_trial_page(staged, as_finished(analysis, staged, summary, joint))
+            write_trial_page(staged, replace(shown, summary=summary))
     return target
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from elbowscrew.plots.decimation import drawn_band, drawn_rows
+from elbowscrew.plots.series import line
 
 
 def test_short_series_are_drawn_whole() -> None:
@@ -59,6 +61,20 @@ def test_the_picture_is_that_of_all_points() -> None:
         pictures.append(np.asarray(canvas.buffer_rgba(), dtype=np.float64)[..., 0])
     differing = np.abs(pictures[0] - pictures[1]) > 64.0
     assert differing.mean() < 2e-3
+
+
+@pytest.mark.parametrize("count", [1, 2, 4000, 4001, 100_003])
+def test_a_line_in_pieces_leaves_nothing_out(count: int) -> None:
+    values = np.random.default_rng(count).normal(size=count)
+    ax = line(Figure().add_subplot(), np.arange(float(count)), values, label="measured", color="black")
+    drawn = [np.asarray(piece.get_xydata()) for piece in ax.get_lines()]
+    for before, after in pairwise(drawn):
+        assert (before[-1] == after[0]).all()
+    whole = np.concatenate([drawn[0], *(piece[1:] for piece in drawn[1:])])
+    rows = drawn_rows(values)
+    assert (whole == np.column_stack([rows, values[rows]])).all()
+    assert (len(drawn) == 1) == (count <= 4000)
+    assert ax.get_legend_handles_labels()[1] == ["measured"]
 
 
 @pytest.mark.parametrize("count", [4000, 100_003])

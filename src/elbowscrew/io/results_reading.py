@@ -277,15 +277,18 @@ class _Frames:
 
     def __init__(self, frame: NDArray[np.int64]) -> None:
         self.frame = frame
-        self._order = np.argsort(frame, kind="stable")
+        increasing = bool((frame[1:] > frame[:-1]).all())
+        self._order = None if increasing else np.argsort(frame, kind="stable")
 
     def rows(self, numbers: Any) -> NDArray[np.int64]:
         wanted = np.array(numbers, dtype=np.int64)
         places = np.searchsorted(self.frame, wanted, sorter=self._order)
-        if (places == self.frame.size).any() or (self.frame[self._order[places]] != wanted).any():
-            msg = "a frame of the summary is not in screw.csv"
-            raise ValueError(msg)
-        return self._order[places].astype(np.int64)
+        if not (places == self.frame.size).any():
+            rows = places if self._order is None else self._order[places]
+            if (self.frame[rows] == wanted).all():
+                return rows.astype(np.int64)
+        msg = "a frame of the summary is not in screw.csv"
+        raise ValueError(msg)
 
 
 def _phases(movements: list[dict[str, int]], frame: _Frames) -> MovementPhases:
@@ -301,8 +304,10 @@ def _keyframes(model: Mapping[str, Any], phase: np.ma.MaskedArray[Any, Any], fra
     """Read the keyframes; a phase begins where its number first stands, and the last one ends at the last keyframe."""
     row = frame.rows(model["keyframes"])
     known = np.ma.masked_array(phase)
-    begins = np.unique(known.compressed(), return_index=True)[1]
-    bounds = np.append(np.flatnonzero(~np.ma.getmaskarray(known))[begins], row[-1])
+    rows = np.flatnonzero(~np.ma.getmaskarray(known))
+    number = known.data[rows]
+    begins = np.append(True, number[1:] != number[:-1])
+    bounds = np.append(rows[begins], row[-1])
     laws = frame.rows([[law["start_frame"], law["end_frame"]] for law in model["phase_laws"]])
     phases = ModelPhases(bound_rows=bounds.astype(np.int64), law_rows=laws)
     return Keyframes(row=row, frame=frame.frame[row], phases=phases, knots=())

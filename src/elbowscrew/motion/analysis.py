@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -99,6 +101,7 @@ def analyze(recording: Recording, settings: Settings | None = None, *, landmarks
             joint_line=None if axes.joint.best is None else axes.joint.best.line,
         )
         warnings += doubts
+    interpolated = _compared(model, measured, wanted)
     return Analysis(
         recording=recording,
         settings=wanted,
@@ -107,7 +110,7 @@ def analyze(recording: Recording, settings: Settings | None = None, *, landmarks
         joint=joint,
         elapsed=elapsed,
         displacement=measured.displacement,
-        screw=screw,
+        screw=replace(screw, axis_direction=screw.axis_direction.copy()),  # a view would keep all of the line
         mean_axis=axes.mean,
         joint_axis=axes.joint,
         instantaneous=axes.instantaneous,
@@ -120,7 +123,7 @@ def analyze(recording: Recording, settings: Settings | None = None, *, landmarks
         inversion_rows=model.inversion_rows,
         laws=model.laws,
         selection=model.selection,
-        interpolated=_compared(model, measured, wanted),
+        interpolated=interpolated,
         points=model.points,
         quality=measured.quality,
         warnings=warnings,

@@ -33,7 +33,8 @@ def _angle_figure(analysis: Shown, *, width_mm: float = WIDTH_MM, modeled: bool)
     rows = analysis.keyframes.row
     motion = analysis.interpolated if modeled else analysis.screw
     angle = angle_in(motion.angle, unit)
-    ax.plot(time_s, angle, label="modeled" if modeled else "measured", **(style.MODELED if modeled else style.MEASURED))
+    look = style.MODELED if modeled else style.MEASURED
+    series.line(ax, time_s, angle, label="modeled" if modeled else "measured", **look)
     ax.plot(time_s[rows], angle_in(analysis.screw.angle[rows], unit), label="keyframes", **style.KEYFRAME)
     if not modeled:
         series.mark_tracking(ax, analysis)
@@ -50,7 +51,8 @@ def _euler_figure(analysis: Shown, *, width_mm: float = WIDTH_MM, modeled: bool)
     time_s = analysis.screw.time_s
     motion = analysis.interpolated if modeled else analysis.screw
     for component, look in enumerate(_COMPONENTS):
-        ax.plot(time_s, motion.euler_parameters[:, component], label=f"$e_{component}$", linewidth=1.3, **look)
+        values = motion.euler_parameters[:, component]
+        series.line(ax, time_s, values, label=f"$e_{component}$", linewidth=1.3, **look)
     if not modeled:
         series.mark_tracking(ax, analysis)
     ax.set_ylabel("Modeled $e_k$ (–)" if modeled else "Measured $e_k$ (–)")

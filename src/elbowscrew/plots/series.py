@@ -18,6 +18,7 @@ from elbowscrew.tables import angle_in, length_in
 Float = NDArray[np.float64]
 
 _NORMAL_95: Final = 1.959964
+_PIECE: Final = 500
 
 
 def plot_theta(ax: Axes, analysis: Shown) -> Axes:
@@ -30,8 +31,8 @@ def plot_theta(ax: Axes, analysis: Shown) -> Axes:
         label = f"95 % interval (±{np.nanmedian(reach):.2g} {unit})"
         rows, low, high = drawn_band(angle - reach, angle + reach)
         ax.fill_between(time_s[rows], low, high, label=label, **style.BAND)
-    _line(ax, time_s, angle, label="measured", **style.MEASURED)
-    _line(ax, time_s, angle_in(analysis.interpolated.angle, unit), label=_model_label(analysis), **style.MODELED)
+    line(ax, time_s, angle, label="measured", **style.MEASURED)
+    line(ax, time_s, angle_in(analysis.interpolated.angle, unit), label=_model_label(analysis), **style.MODELED)
     rows = analysis.keyframes.row
     ax.plot(time_s[rows], angle[rows], label="keyframes", **style.KEYFRAME)
     mark_movements(ax, analysis)
@@ -44,9 +45,9 @@ def plot_euler_parameter(ax: Axes, analysis: Shown, component: int) -> Axes:
     """Draw one of e0..e3, measured and modeled, over time (the paper's figures 9 and 10)."""
     time_s = analysis.screw.time_s
     measured = analysis.screw.euler_parameters[:, component]
-    _line(ax, time_s, measured, label="measured", **style.MEASURED)
+    line(ax, time_s, measured, label="measured", **style.MEASURED)
     modeled = analysis.interpolated.euler_parameters[:, component]
-    _line(ax, time_s, modeled, label=_model_label(analysis), **style.MODELED)
+    line(ax, time_s, modeled, label=_model_label(analysis), **style.MODELED)
     rows = analysis.keyframes.row
     ax.plot(time_s[rows], measured[rows], label="keyframes", **style.KEYFRAME)
     mark_tracking(ax, analysis)
@@ -97,7 +98,7 @@ def _shade(ax: Axes, start: Float, end: Float, **look: Any) -> None:
 
 def _plot_error(ax: Axes, analysis: Shown, values: Float, name: str, unit: str) -> Axes:
     time_s = analysis.screw.time_s
-    _line(ax, time_s, values, label="model against measurement", **style.MEASURED)
+    line(ax, time_s, values, label="model against measurement", **style.MEASURED)
     if np.isfinite(values).any():
         level = float(np.sqrt(np.nanmean(values**2)))
         ax.axhline(level, **style.LEVEL)
@@ -119,9 +120,18 @@ def _plot_error(ax: Axes, analysis: Shown, values: Float, name: str, unit: str) 
     return over_time(ax, time_s)
 
 
-def _line(ax: Axes, time_s: Float, values: Float, **look: Any) -> None:
+def line(ax: Axes, time_s: Float, values: Float, *, label: str, **look: Any) -> Axes:
+    """Draw a line, a thinned one in pieces that share their ends.
+
+    Of each piece the renderer remembers every pixel that it crosses, a hundred megabytes of all. Its own way to part a
+    line, `agg.path.chunksize`, leaves out what lies between the pieces.
+    """
     rows = drawn_rows(values)
-    ax.plot(time_s[rows], values[rows], **look)
+    size = max(rows.size - 1, 1) if rows.size == values.size else _PIECE
+    for first in range(0, max(rows.size - 1, 1), size):
+        piece = rows[first : first + size + 1]
+        ax.plot(time_s[piece], values[piece], label=label if first == 0 else None, **look)
+    return ax
 
 
 def over_time(ax: Axes, time_s: Float) -> Axes:

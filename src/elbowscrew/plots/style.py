@@ -64,8 +64,6 @@ _RC: Final[dict[Any, Any]] = {
     "xtick.major.width": 0.7,
     "ytick.major.width": 0.7,
     "hatch.linewidth": 0.5,
-    # Of a long line the renderer remembers each pixel it crosses; in pieces it does not take a hundred megabytes.
-    "agg.path.chunksize": 1000,
     "legend.fontsize": 7.5,
     "legend.frameon": False,
     "legend.handlelength": 2.6,

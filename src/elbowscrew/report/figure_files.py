@@ -9,6 +9,7 @@ from functools import partial
 from typing import Any, Final
 
 import numpy as np
+from matplotlib.backend_bases import FigureCanvasBase
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from PIL import Image
@@ -65,6 +66,7 @@ def files_of(drawings: Mapping[str, Callable[[], Figure]], formats: Sequence[str
                     stream = io.BytesIO()
                     figure.savefig(stream, format=kind, metadata=_METADATA[kind])
                     files[f"{name}.{kind}"] = stream.getvalue()
+            FigureCanvasBase(figure)  # in place of the one with the pixels, which go at once and not with the garbage
     return files | {name: content.result() for name, content in compressed.items()}
 
 

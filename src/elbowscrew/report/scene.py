@@ -35,7 +35,8 @@ def scene_of(trial: FinishedTrial) -> dict[str, Any]:
         translation, applied to the forearm as it is at the reference.
     """
     screw = trial.screw
-    bundle, bodies = joint_bundle(trial).scaled(1000.0), bodies_in_space(trial)
+    bundle = joint_bundle(trial).scaled(1000.0)
+    arm, forearm = _bodies(trial)
     across, _ = directions_across(bundle.direction)
     rows = thinned(np.arange(screw.frame.size), MOST_FRAMES)
     angle = np.degrees(screw.angle)
@@ -59,10 +60,16 @@ def scene_of(trial: FinishedTrial) -> dict[str, Any]:
         "across": _rounded(np.stack(across), _PURE_DECIMALS),
         "spread": _region(bundle.spread),
         "confidence": None if bundle.confidence is None else _region(bundle.confidence),
-        "arm": _body(bodies.arm, bodies.arm_markers),
-        "forearm": _body(bodies.start, bodies.forearm_markers),
+        "arm": arm,
+        "forearm": forearm,
         "colors": list(COLORS),
     }
+
+
+def _bodies(trial: FinishedTrial) -> tuple[dict[str, Any] | None, dict[str, Any] | None]:
+    """Arm and forearm at the reference."""
+    bodies = bodies_in_space(trial)
+    return _body(bodies.arm, bodies.arm_markers), _body(bodies.start, bodies.forearm_markers)
 
 
 def _body(origin: Float | None, markers: Float | None) -> dict[str, Any] | None:

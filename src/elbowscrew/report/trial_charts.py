@@ -35,8 +35,7 @@ _METHODS: Final = {"dlb": "DLB", "sclerp": "ScLERP", "sdlb": "sDLB", "dib": "DIB
 def theta_chart(trial: FinishedTrial) -> Markup:
     """Measured and modeled angle over time, with keyframes, movements and what was lost or filled in."""
     screw = trial.screw
-    angle, modeled = np.degrees(screw.angle), np.degrees(trial.interpolated.angle)
-    reach = _NORMAL_95 * np.degrees(screw.angle_sd)
+    angle = np.degrees(screw.angle)
     motion = trial.summary["motion"]
     chart = _over_time(
         trial,
@@ -44,17 +43,15 @@ def theta_chart(trial: FinishedTrial) -> Markup:
         "Angle over time",
         f"Measured and modeled rotation angle over {screw.time_s[-1] - screw.time_s[0]:.2f} seconds; it is largest, "
         f"{motion['theta_max_deg']:.1f} degrees, at frame {motion['theta_max_frame']}.",
-        range_of(angle, modeled),
+        range_of(angle, np.degrees(trial.interpolated.angle)),
         "Angle θ (deg)",
     )
     time_s, phases = screw.time_s, trial.phases
     chart.spans(zip(time_s[phases.onset_rows], time_s[phases.offset_rows], strict=True), "fill-moving", "moving")
     _mark_tracking(chart, trial)
-    if np.isfinite(reach).any():
-        label = f"95 % interval (±{np.nanmedian(reach):.2g})"
-        chart.band(time_s, angle - reach, angle + reach, "band-known", label)
+    _mark_interval(chart, trial)
     chart.line(time_s, angle, "measured", "measured")
-    chart.line(time_s, modeled, "modeled", model_name(trial))
+    chart.line(time_s, np.degrees(trial.interpolated.angle), "modeled", model_name(trial))
     rows = trial.keyframes.row
     chart.points(time_s[rows], angle[rows], "keyframe", "keyframes")
     return chart.svg()
@@ -217,6 +214,14 @@ def _over_time(
         y_label=label,
         size=(width, height),
     )
+
+
+def _mark_interval(chart: Chart, trial: FinishedTrial) -> None:
+    screw = trial.screw
+    reach = _NORMAL_95 * np.degrees(screw.angle_sd)
+    if np.isfinite(reach).any():
+        angle, label = np.degrees(screw.angle), f"95 % interval (±{np.nanmedian(reach):.2g})"
+        chart.band(screw.time_s, angle - reach, angle + reach, "band-known", label)
 
 
 def _mark_tracking(chart: Chart, trial: FinishedTrial) -> None:

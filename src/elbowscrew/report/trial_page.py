@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from elbowscrew.io.results_reading import read_finished
 from elbowscrew.io.summary import settings_summary
@@ -140,28 +141,30 @@ def _axis_rows(trial: FinishedTrial) -> list[dict[str, Any]]:
         "cone": np.degrees(screw.axis_cone[rows]),
         "radius": 1000.0 * screw.point_radius[rows],
     }
-    return [
-        dict(zip(columns, values, strict=True))
-        for values in zip(*(column.tolist() for column in columns.values()), strict=True)
-    ]
+    return _rows(columns)
 
 
 def _repetition_rows(trial: FinishedTrial) -> list[dict[str, Any]]:
     found = trial.repetitions
-    return [
+    return _rows(
         {
-            "number": int(found.number[k]),
-            "frames": [int(part[k]) for part in (found.start_frame, found.inversion_frame, found.end_frame)],
-            "duration": float(found.duration_s[k]),
-            "top": float(np.degrees(found.top_angle[k])),
-            "range": float(np.degrees(found.angle_range[k])),
-            "slide": float(1000.0 * found.slide_range[k]),
-            "flexion": float(np.degrees(found.flexion_speed[k])),
-            "extension": float(np.degrees(found.extension_speed[k])),
-            "deviation": float(np.degrees(found.axis_deviation[k])),
+            "number": found.number,
+            "frames": np.column_stack([found.start_frame, found.inversion_frame, found.end_frame]),
+            "duration": found.duration_s,
+            "top": np.degrees(found.top_angle),
+            "range": np.degrees(found.angle_range),
+            "slide": 1000.0 * found.slide_range,
+            "flexion": np.degrees(found.flexion_speed),
+            "extension": np.degrees(found.extension_speed),
+            "deviation": np.degrees(found.axis_deviation),
         }
-        for k in range(found.number.size)
-    ]
+    )
+
+
+def _rows(columns: Mapping[str, NDArray[Any]]) -> list[dict[str, Any]]:
+    """Turn columns of equal length into rows."""
+    values = zip(*(column.tolist() for column in columns.values()), strict=True)
+    return [dict(zip(columns, row, strict=True)) for row in values]
 
 
 def _settings(settings: Settings) -> list[tuple[str, Any, str, bool]]:
