@@ -44,6 +44,20 @@ def test_help_and_version_load_no_heavy_library(arguments: list[str]) -> None:
     assert not loaded & set(HEAVY)
 
 
+def test_the_commands_version_loads_next_to_nothing() -> None:
+    told = subprocess.run(
+        [sys.executable, "-X", "importtime", "-m", "elbowscrew", "--version"],
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert told.stdout.startswith("elbowscrew ")
+    loaded = {line.rpartition("|")[2].strip() for line in told.stderr.splitlines()}
+    ours = {name for name in loaded if name.startswith("elbowscrew")}
+    assert ours <= {"elbowscrew", "elbowscrew._version", "elbowscrew.cli"}
+    assert not loaded & {*HEAVY, "typer", "typing"}
+
+
 def test_importing_the_package_loads_no_heavy_library() -> None:
     assert not loaded_after("import elbowscrew\nelbowscrew.__version__\ndir(elbowscrew)") & set(HEAVY)
 

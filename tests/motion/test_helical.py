@@ -70,6 +70,32 @@ def test_mean_axis_of_one_line_is_the_line() -> None:
     assert np.isnan(mean.deviation[3])
 
 
+@pytest.mark.parametrize("cloud", ["round", "flat", "with outliers", "on a circle", "two", "one"])
+def test_the_excursion_is_the_largest_of_all_distances(cloud: str) -> None:
+    rng = np.random.default_rng(len(cloud))
+    count = {"one": 1, "two": 2}.get(cloud, 300)
+    tilt = 0.1 * rng.normal(size=(count, 2))
+    if cloud == "flat":
+        tilt[:, 1] *= 1e-3
+    elif cloud == "with outliers":
+        tilt[::40] *= 8.0
+    elif cloud == "on a circle":
+        tilt *= 0.3 / np.linalg.norm(tilt, axis=1)[:, None]
+    directions = np.column_stack([tilt, np.ones(count)])
+    directions /= np.linalg.norm(directions, axis=1)[:, None]
+    points = np.column_stack([rng.normal(size=(count, 2)), np.zeros(count)])
+    lines = np.concatenate([directions, np.cross(points, directions)], axis=1)
+    lines = np.insert(lines, 1, np.nan, axis=0)
+    mean = mean_axis_of(np.ones(count + 1), lines, np.zeros(3))
+    angles = np.arccos(np.clip(directions @ directions.T, -1.0, 1.0))
+    assert mean.excursion == pytest.approx(angles.max(), abs=1e-7)
+    # Where each pierces the plane across the mean axis at the origin.
+    reach = -(points @ mean.direction) / (directions @ mean.direction)
+    places = points + reach[:, None] * directions
+    farthest = np.linalg.norm(places[:, None] - places[None], axis=2).max()
+    assert mean.place_excursion == pytest.approx(farthest, rel=1e-9, abs=1e-12)
+
+
 def test_mean_axis_of_a_cone_is_its_middle_and_the_dispersion_its_half_angle() -> None:
     around = np.linspace(0.0, 2.0 * np.pi, 24, endpoint=False)
     half = np.radians(5.0)
