@@ -15,7 +15,7 @@ from collections import defaultdict
 from pathlib import Path
 
 from elbowscrew import Settings, analyze, read_recording, save_analysis
-from elbowscrew._process import set_up_process
+from elbowscrew._process import collect_garbage, set_up_process
 from elbowscrew.report import write_trial_page
 from elbowscrew.results import analyze_file
 
@@ -29,6 +29,7 @@ def main(data: Path, out: Path) -> None:
     for path in paths:
         start, start_processor = time.perf_counter(), time.process_time()
         save_analysis(analyze_file(path, Settings()), out / path.stem, force=True)
+        collect_garbage()
         times.append(time.perf_counter() - start)
         processor.append(time.process_time() - start_processor)
     whole = [sum(values[1:]) * len(values) / (len(values) - 1) for values in (times, processor)]

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
+from elbowscrew._process import collect_garbage
 from elbowscrew._version import __version__
 from elbowscrew.batch.folder import at_work
 from elbowscrew.batch.outcome import DEFECT, Failure
@@ -71,6 +72,7 @@ def analyze_trial(task: TrialTask) -> Failure | None:
         with _ONE_AT_A_TIME, at_work(task.folder.parent):
             remove_damaged(task.folder)
             save_analysis(analyze_file(task.path, task.settings, landmarks=task.landmarks), task.folder, force=True)
+            collect_garbage()
     except ElbowscrewError as error:
         # What the disk does not take of one trial it will not take of the next; a folder of the user's is one trial's.
         full = isinstance(error, OutputError) and isinstance(error.__cause__, OSError)

@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from PIL import Image
 
+from elbowscrew._process import has_spare_cores
 from elbowscrew.model.shown import Shown
 from elbowscrew.plots.figures import FIGURES, WIDTH_MM, MakeFigure
 from elbowscrew.plots.paper_figures import PAPER_FIGURES
@@ -52,7 +53,10 @@ def figure_files(
 
 
 def files_of(drawings: Mapping[str, Callable[[], Figure]], formats: Sequence[str]) -> dict[str, bytes]:
-    """Draw and save figures, one at a time, in all formats; a PNG is compressed while the next figure is drawn."""
+    """Draw and save figures, one at a time, in all formats.
+
+    Where there is another core, a PNG is compressed while the next figure is drawn.
+    """
     files: dict[str, bytes] = {}
     compressed: dict[str, Future[bytes]] = {}
     with publication_style(), ThreadPoolExecutor(max_workers=1) as background:
@@ -61,7 +65,11 @@ def files_of(drawings: Mapping[str, Callable[[], Figure]], formats: Sequence[str
             settle(figure)
             for kind in formats:
                 if kind == "png":
-                    compressed[f"{name}.png"] = background.submit(_png, _pixels(figure), figure.dpi)
+                    encode = partial(_png, _pixels(figure), figure.dpi)
+                    if has_spare_cores():
+                        compressed[f"{name}.png"] = background.submit(encode)
+                    else:
+                        files[f"{name}.png"] = encode()
                 else:
                     stream = io.BytesIO()
                     figure.savefig(stream, format=kind, metadata=_METADATA[kind])
