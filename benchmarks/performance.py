@@ -59,7 +59,8 @@ PARTS: dict[str, Part] = {
     ),
     "batch": (
         "Studies",
-        "Synthetic trials of 450 frames, all figures and pages, local processes.",
+        "Synthetic trials of 450 frames, all figures and pages, local processes. With figures a study is bound by "
+        "matplotlib, without them by the analysis of each trial.",
         lambda folder, quick: batch.measure(folder, 40 if quick else 200),
     ),
     "selection": (
