@@ -360,9 +360,20 @@ def in_units(values: NDArray[Any], quantity: Quantity, angle_unit: AngleUnit, le
             return values
 
 
-def in_si(values: NDArray[Any], quantity: Quantity, angle_unit: AngleUnit, length_unit: LengthUnit) -> NDArray[Any]:
-    """Values of a kind back in SI units and radians; a unit there and back costs the last digit."""
-    return _in_si(values, quantity, angle_unit, length_unit, out=None)
+def in_si(
+    values: NDArray[Any],
+    quantity: Quantity,
+    angle_unit: AngleUnit,
+    length_unit: LengthUnit,
+    out: NDArray[Any] | None = None,
+) -> NDArray[Any]:
+    """Values of a kind back in SI units and radians, into another array if one is given for them."""
+    found: NDArray[Any] = values
+    if quantity in (Quantity.ANGLE, Quantity.ANGULAR_VELOCITY) and angle_unit == "deg":
+        found = np.radians(values, out=out)
+    elif quantity in (Quantity.LENGTH, Quantity.VELOCITY) and length_unit == "mm":
+        found = np.multiply(values, METERS["mm"], out=out)
+    return found
 
 
 def as_read_back(
@@ -370,22 +381,7 @@ def as_read_back(
 ) -> NDArray[Any]:
     """Values of a kind, SI units and radians, with the last digit that they lose in units and back."""
     there = in_units(values, quantity, angle_unit, length_unit)
-    return _in_si(there, quantity, angle_unit, length_unit, out=None if there is values else there)
-
-
-def _in_si(
-    values: NDArray[Any],
-    quantity: Quantity,
-    angle_unit: AngleUnit,
-    length_unit: LengthUnit,
-    out: NDArray[Any] | None,
-) -> NDArray[Any]:
-    found: NDArray[Any] = values
-    if quantity in (Quantity.ANGLE, Quantity.ANGULAR_VELOCITY) and angle_unit == "deg":
-        found = np.radians(values, out=out)
-    elif quantity in (Quantity.LENGTH, Quantity.VELOCITY) and length_unit == "mm":
-        found = np.multiply(values, METERS["mm"], out=out)
-    return found
+    return in_si(there, quantity, angle_unit, length_unit, out=None if there is values else there)
 
 
 def data_frame(

@@ -52,6 +52,15 @@ def test_figures_of_the_result_folder_are_made_again_to_the_byte(tmp_path: Path)
     assert len(again) == 10
 
 
+def test_figures_are_the_same_with_one_core_and_with_more(result: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    trial = read_finished(result)
+    monkeypatch.setenv("OMP_NUM_THREADS", "1")
+    alone = figure_files(trial, SINGLES, ("png",))
+    monkeypatch.delenv("OMP_NUM_THREADS")
+    assert figure_files(trial, SINGLES, ("png",)) == alone
+    assert set(alone) == {f"{name}.png" for name in SINGLES}
+
+
 def test_the_papers_figures_show_measured_and_modeled_at_one_scale(result: Path) -> None:
     trial = read_finished(result)
     drawn = {name: make(trial).axes[0] for name, make in PAPER_FIGURES.items()}

@@ -56,8 +56,8 @@ def write_csv(path: Path, columns: dict[str, NDArray[Any]], *, quoted: bool = Fa
             table.writerow(columns)
             table.writerows(zip(*(_cells(values) for values in columns.values()), strict=True))
         return
-    lengths = _blocks(len(next(iter(columns.values()))))
-    _write_blocks(path, ({name: values[rows] for name, values in columns.items()} for rows in lengths))
+    parts = _blocks(len(next(iter(columns.values()))))
+    _write_blocks(path, ({name: values[rows] for name, values in columns.items()} for rows in parts))
 
 
 def _blocks(rows: int) -> list[slice]:
