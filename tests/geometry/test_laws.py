@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from numpy.typing import NDArray
@@ -49,6 +49,9 @@ def test_norm_is_a_dual_number_that_normalizing_makes_one(Q: Float) -> None:
 
 
 @given(arrays(np.float64, 6, elements=st.floats(-1.5, 1.5)))
+@example(np.array([5e-324, 5e-324, 5e-324, 1.0, 5e-324, 5e-324]))
+@example(np.array([1.5e-323, 0.0, 0.0, 1.0, 1.0, 1.0]))
+@example(np.array([0.0, 5e-324, 0.0, 0.5, 0.25, 1.0]))
 def test_log_undoes_exp(half_twist: Float) -> None:
     # |half rotation vector| < pi is the whole range of the logarithm.
     assert dq.log(dq.exp(half_twist)) == pytest.approx(half_twist, rel=1e-12, abs=1e-12)

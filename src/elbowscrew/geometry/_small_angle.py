@@ -20,6 +20,9 @@ VANISHING_NORM: Final = 1e-12
 # A rotation smaller than this (rad) turns nothing that a double could tell, but quotients by it overflow.
 NEGLIGIBLE_ANGLE: Final = 1e-100
 
+# Sine and angle, or two lengths that differ as they do, are one number below this.
+_EQUAL_BELOW: Final = 1e-300
+
 # Within these a sum of squares has lost nothing to underflow or overflow, and no quotient by its root overflows.
 _LEAST_SQUARE: Final = 1e-250
 _LARGEST_SQUARE: Final = 1e250
@@ -48,10 +51,14 @@ def cosine_and_sine(angle: Float) -> tuple[Float, Float]:
 
 
 def ratio_of_equals(numerator: Float, denominator: Float) -> Float:
-    """``numerator / denominator`` of two that vanish together, with 1 where they do; NumPy's warnings must be off."""
+    """``numerator / denominator`` of two that vanish together, with 1 where they do; NumPy's warnings must be off.
+
+    They are equal to the last digit long before; among the smallest numbers there is, halves are lost in between.
+    """
     ratio: Float = numerator / denominator
-    if not np.fmin.reduce(denominator) > 0.0:
-        ratio[denominator == 0.0] = 1.0
+    if not np.fmin.reduce(denominator) > _EQUAL_BELOW:
+        small = (np.abs(numerator) < _EQUAL_BELOW) & (denominator < _EQUAL_BELOW)
+        ratio[small | (denominator == 0.0)] = 1.0
     return ratio
 
 
