@@ -17,7 +17,7 @@ from pathlib import Path
 from elbowscrew import Settings, analyze, read_recording, save_analysis
 from elbowscrew._process import collect_garbage, set_up_process
 from elbowscrew.report import write_trial_page
-from elbowscrew.results import analyze_file
+from elbowscrew.saving import analyze_file
 
 STAGED = 50
 

@@ -19,7 +19,7 @@ import numpy as np
 with atheris.instrument_imports(include=["elbowscrew"]):
     from elbowscrew import analyze, read_recording
     from elbowscrew.errors import ElbowscrewError, NoBodiesError
-    from elbowscrew.results import save_simulation
+    from elbowscrew.saving import save_simulation
     from elbowscrew.settings import Settings
     from elbowscrew.simulate import simulate_trial
 

@@ -8,8 +8,8 @@ from rows import Row, alternate, clean_environment, table
 
 from elbowscrew import Settings, compare, simulate_trial
 from elbowscrew.motion.difference import points_from_markers
-from elbowscrew.motion.keyframe_selection import select_keyframes
-from elbowscrew.motion.measurement import measure as measured_motion
+from elbowscrew.motion.interpolation.keyframe_selection import select_keyframes
+from elbowscrew.motion.screws.measurement import measure as measured_motion
 
 WANTED_S = {450: 1.0, 10_000: 20.0}
 

@@ -18,14 +18,13 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
+import batch
 import kernels
 import keyframes
 import start_up
 import tables
 import trial
 from rows import Row, as_json, clean_environment, from_json, table
-
-import batch
 
 LIBRARIES = ("numpy", "scipy", "pandas", "polars", "matplotlib", "pytransform3d", "orjson", "typer")
 

@@ -14,7 +14,7 @@ from rows import Row, alternate, clean_environment, share, table
 from trial import long_export
 
 from elbowscrew import read_recording
-from elbowscrew.io.writing import write_csv
+from elbowscrew.results.writing import write_csv
 
 HEADER_LINES = 7
 USED = list(range(18))

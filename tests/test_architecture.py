@@ -15,8 +15,8 @@ from elbowscrew.cli import options
 from elbowscrew.cli.analyze import analyze
 from elbowscrew.cli.batch import batch
 from elbowscrew.errors import ElbowscrewError
-from elbowscrew.motion.laws import LAWS
-from elbowscrew.motion.modeling import METHODS
+from elbowscrew.motion.interpolation.laws import LAWS
+from elbowscrew.motion.interpolation.modeling import METHODS
 from elbowscrew.settings import Settings, option_name
 
 HEAVY = ("numpy", "pandas", "matplotlib", "scipy")

@@ -11,7 +11,7 @@ import pytest
 
 from elbowscrew import Settings, Simulation, analyze, read_recording, simulate_trial
 from elbowscrew.errors import OutputError, UsageError
-from elbowscrew.results import save_simulation
+from elbowscrew.saving import save_simulation
 
 
 @pytest.mark.parametrize("express_in", ["forearm", "arm", "lab"])

@@ -17,16 +17,16 @@ if TYPE_CHECKING:
 
     from elbowscrew.comparing import compare_trials
     from elbowscrew.errors import ElbowscrewError
-    from elbowscrew.io.keyframe_table import read_keyframes
-    from elbowscrew.io.landmarks import read_landmarks
-    from elbowscrew.io.reading import read_recording
-    from elbowscrew.io.summary import summary_from_analysis
     from elbowscrew.model import Analysis, Comparison, Landmark, Landmarks, Recording, RigidBody, TrialsComparison
     from elbowscrew.motion.analysis import analyze
-    from elbowscrew.motion.comparison import compare
-    from elbowscrew.motion.rebuilding import interpolate, keyframes_of
-    from elbowscrew.motion.treatments import ComparisonPlan
-    from elbowscrew.results import save_analysis, save_comparison, save_motion, save_simulation
+    from elbowscrew.motion.interpolation.comparison import compare
+    from elbowscrew.motion.interpolation.keyframe_sources import ComparisonPlan
+    from elbowscrew.motion.interpolation.rebuilding import interpolate, keyframes_of
+    from elbowscrew.reading.landmarks import read_landmarks
+    from elbowscrew.reading.registry import read_recording
+    from elbowscrew.results.keyframe_table import read_keyframes
+    from elbowscrew.results.summary import summary_from_analysis
+    from elbowscrew.saving import save_analysis, save_comparison, save_motion, save_simulation
     from elbowscrew.settings import Settings
     from elbowscrew.simulate import Simulation, simulate_trial
 
@@ -63,7 +63,7 @@ __all__ = [
 _HOME = {
     "Analysis": "model",
     "Comparison": "model",
-    "ComparisonPlan": "motion.treatments",
+    "ComparisonPlan": "motion.interpolation.keyframe_sources",
     "ElbowscrewError": "errors",
     "Landmark": "model",
     "Landmarks": "model",
@@ -73,19 +73,19 @@ _HOME = {
     "Simulation": "simulate",
     "TrialsComparison": "model",
     "analyze": "motion.analysis",
-    "compare": "motion.comparison",
+    "compare": "motion.interpolation.comparison",
     "compare_trials": "comparing",
-    "interpolate": "motion.rebuilding",
-    "keyframes_of": "motion.rebuilding",
-    "read_keyframes": "io.keyframe_table",
-    "read_landmarks": "io.landmarks",
-    "read_recording": "io.reading",
-    "save_analysis": "results",
-    "save_comparison": "results",
-    "save_motion": "results",
-    "save_simulation": "results",
+    "interpolate": "motion.interpolation.rebuilding",
+    "keyframes_of": "motion.interpolation.rebuilding",
+    "read_keyframes": "results.keyframe_table",
+    "read_landmarks": "reading.landmarks",
+    "read_recording": "reading.registry",
+    "save_analysis": "saving",
+    "save_comparison": "saving",
+    "save_motion": "saving",
+    "save_simulation": "saving",
     "simulate_trial": "simulate",
-    "summary_from_analysis": "io.summary",
+    "summary_from_analysis": "results.summary",
 }
 
 

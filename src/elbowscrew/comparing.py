@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowscrew.errors import AnalysisError, ElbowscrewError
-from elbowscrew.io.reading import read_recording
 from elbowscrew.model import ComparedModels, ComparedOverTrials, Comparison, TrialsComparison
-from elbowscrew.motion.comparison import compare
-from elbowscrew.motion.treatments import ComparisonPlan
+from elbowscrew.motion.interpolation.comparison import compare
+from elbowscrew.motion.interpolation.keyframe_sources import ComparisonPlan
+from elbowscrew.reading.registry import read_recording
 from elbowscrew.settings import Settings
 
 _MODEL: Final = ("data", "method", "blend", "law", "knots", "keyframes_per_phase")

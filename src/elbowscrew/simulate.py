@@ -19,8 +19,8 @@ from elbowscrew.geometry.dual_quaternion import (
     transform_points,
 )
 from elbowscrew.model import Recording, RigidBody, TrackingLoss
-from elbowscrew.motion.laws import cycloidal
-from elbowscrew.motion.relative import IDENTITY
+from elbowscrew.motion.interpolation.laws import cycloidal
+from elbowscrew.motion.screws.relative import IDENTITY
 
 Float = NDArray[np.float64]
 

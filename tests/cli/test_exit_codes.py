@@ -283,7 +283,7 @@ def test_an_output_that_takes_nothing_is_exit_6(take: Path) -> None:
 def test_an_interrupted_run_leaves_nothing(tmp_path: Path, sent: signal.Signals, code: int) -> None:
     """Stopped while it writes: the trial is long enough for the temporary folder to be seen."""
     from elbowscrew import simulate_trial
-    from elbowscrew.results import save_simulation
+    from elbowscrew.saving import save_simulation
 
     save_simulation(simulate_trial(frames=20000, inversion=9000), tmp_path / "long.csv")
     process = subprocess.Popen(

@@ -15,12 +15,12 @@ from PIL import Image
 
 from elbowscrew import analyze, plots, save_analysis, simulate_trial
 from elbowscrew.errors import OutputError, SettingError, UsageError
-from elbowscrew.io.results_reading import read_finished
 from elbowscrew.plots.overlay import PERCENT, MeanCurve, mean_curve, plot_overlay
 from elbowscrew.plots.paper_figures import PAPER_FIGURES
 from elbowscrew.report.figure_files import figure_files
 from elbowscrew.report.names import FIGURE_CHOICES, figure_names, width_mm
 from elbowscrew.report.publication import save_publication_figures
+from elbowscrew.results.read_back import read_finished
 
 POINTS_PER_MM = 72.0 / 25.4
 SINGLES = tuple(name for name in FIGURE_CHOICES if name != "overlay")

@@ -23,15 +23,15 @@ from hypothesis import strategies as st
 from elbowscrew import Settings, analyze, save_analysis, simulate_trial
 from elbowscrew.errors import OutputError, ResultError
 from elbowscrew.geometry.dual_quaternion import dual_quat_from_pose, transform_points
-from elbowscrew.io.results_reading import read_finished
-from elbowscrew.io.staging import RESULT_FILES
-from elbowscrew.motion.scene import bodies_in_space
 from elbowscrew.report import write_trial_page
 from elbowscrew.report.charts import min_max_rows, path_of, ticks_between
 from elbowscrew.report.methods import methods_of
 from elbowscrew.report.pages import json_for_script, number
 from elbowscrew.report.scene import MOST_FRAMES, scene_of
 from elbowscrew.report.trial_page import trial_page
+from elbowscrew.results.read_back import read_finished
+from elbowscrew.results.staging import RESULT_FILES
+from elbowscrew.view.scene import bodies_in_space
 
 
 class Seen(HTMLParser):

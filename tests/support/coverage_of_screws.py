@@ -9,7 +9,7 @@ from trials import ARM, FOREARM, LINE, START, joint_poses, noisy_joint, pose_cov
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry import screw_from_dual_quat
 from elbowscrew.model import PoseNoise
-from elbowscrew.motion.uncertainty import errors_from_covariance, joint_covariance
+from elbowscrew.motion.screws.uncertainty import errors_from_covariance, joint_covariance
 
 Float = NDArray[np.float64]
 _NORMAL = 1.959964

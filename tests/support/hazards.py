@@ -8,7 +8,7 @@ import time
 from pathlib import Path
 from typing import NamedTuple
 
-from elbowscrew.batch.outcome import Failure
+from elbowscrew.study.outcome import Failure
 
 
 class Hazard(NamedTuple):

@@ -8,10 +8,10 @@ from trials import ARM, FOREARM, LINE, START, joint_poses, noisy_joint, pose_cov
 
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.model import PoseNoise
-from elbowscrew.motion.helical import helical_series
-from elbowscrew.motion.joint_fit import fit_joint, sara_lines
-from elbowscrew.motion.mean_axis import mean_axis_of
-from elbowscrew.motion.uncertainty import joint_covariance
+from elbowscrew.motion.axes.mean_axis import mean_axis_of
+from elbowscrew.motion.joint.joint_fit import fit_joint, sara_lines
+from elbowscrew.motion.screws.helical import helical_series
+from elbowscrew.motion.screws.uncertainty import joint_covariance
 
 Float = NDArray[np.float64]
 FRAMES = 450

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from elbowscrew.geometry import dual_quat_from_screw, line_through, pose_from_points
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry import quaternion as qn
-from elbowscrew.motion.pose_noise import covariance_from_markers
+from elbowscrew.motion.screws.pose_noise import covariance_from_markers
 
 Float = NDArray[np.float64]
 

@@ -48,10 +48,10 @@ def analyze(
     Screw axis, angle and slide of every frame, a model through a few poses, tables, a summary and figures.
     """
     from elbowscrew.cli import render
-    from elbowscrew.io.exporting import check_exports
-    from elbowscrew.io.landmarks import read_landmarks
-    from elbowscrew.io.staging import check_result_folder
-    from elbowscrew.results import analyze_file, read_summary, save_analysis
+    from elbowscrew.reading.landmarks import read_landmarks
+    from elbowscrew.results.exporting import check_exports
+    from elbowscrew.results.staging import check_result_folder
+    from elbowscrew.saving import analyze_file, read_summary, save_analysis
     from elbowscrew.settings import settings_from
 
     landmarks = given.pop("landmarks")

@@ -78,11 +78,11 @@ def batch(
 
     A result folder for each, summary.csv and failures.csv; what is up to date stays. Exit code 7: some failed.
     """
-    from elbowscrew.batch.executors import LOCAL_CLUSTER, available_cores, open_executor
-    from elbowscrew.batch.study import run_study
-    from elbowscrew.batch.trials import find_trials
     from elbowscrew.cli import render
     from elbowscrew.cli.progress import shown_progress
+    from elbowscrew.study.executors import LOCAL_CLUSTER, available_cores, open_executor
+    from elbowscrew.study.study import run_study
+    from elbowscrew.study.trials import find_trials
 
     landmarks = given.pop("landmarks")
     of_cluster = scheduler is not None and scheduler != LOCAL_CLUSTER

@@ -153,10 +153,10 @@ def compare(
     """
     from elbowscrew.cli import render
     from elbowscrew.errors import ElbowscrewError
-    from elbowscrew.io.comparison_summary import comparison_summary, trials_summary
-    from elbowscrew.io.reading import read_recording, recordings_in
-    from elbowscrew.io.staging import COMPARISON, check_result_folder
-    from elbowscrew.results import save_comparison
+    from elbowscrew.reading.registry import read_recording, recordings_in
+    from elbowscrew.results.comparison_summary import comparison_summary, trials_summary
+    from elbowscrew.results.staging import COMPARISON, check_result_folder
+    from elbowscrew.saving import save_comparison
     from elbowscrew.settings import settings_from
 
     settings = settings_from(
@@ -192,7 +192,7 @@ def compare(
         summary = trials_summary(over_trials)
         failed = bool(over_trials.failures)
     else:
-        from elbowscrew.motion.comparison import compare as compare_recording
+        from elbowscrew.motion.interpolation.comparison import compare as compare_recording
 
         recording = read_recording(trial, units=settings.units, rotation=settings.rotation, markers=settings.markers)
         try:

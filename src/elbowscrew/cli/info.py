@@ -36,8 +36,8 @@ def info(
     """
     from elbowscrew.cli import render
     from elbowscrew.errors import NoBodiesError
-    from elbowscrew.io.reading import read_recording
-    from elbowscrew.io.summary import summary_from_recording
+    from elbowscrew.reading.registry import read_recording
+    from elbowscrew.results.summary import summary_from_recording
     from elbowscrew.settings import settings_from
 
     settings = settings_from(None, {"frozen": frozen, "max_turn": max_turn, "max_speed": max_speed})

@@ -50,9 +50,9 @@ def interpolate(
     from elbowscrew.cli import render
     from elbowscrew.cli.text import printable
     from elbowscrew.errors import UsageError
-    from elbowscrew.io.keyframe_table import read_keyframes
-    from elbowscrew.motion.rebuilding import interpolate as rebuild
-    from elbowscrew.results import save_motion
+    from elbowscrew.motion.interpolation.rebuilding import interpolate as rebuild
+    from elbowscrew.results.keyframe_table import read_keyframes
+    from elbowscrew.saving import save_motion
 
     if law_peak is not None and law in (None, "linear"):
         msg = f"--law-peak: {'the linear law has no highest velocity' if law else 'give it with --law'}"

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Literal
 from elbowscrew.errors import UsageError
 
 if TYPE_CHECKING:
-    from elbowscrew.motion.treatments import ComparisonPlan
+    from elbowscrew.motion.interpolation.keyframe_sources import ComparisonPlan
 
 Units = Literal["m", "cm", "mm"]
 Rotation = Literal["quaternion", "XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX"]
@@ -71,7 +71,7 @@ def comparison_plan(words: Mapping[str, str | None], numbers: Mapping[str, str |
     UsageError
         If a list has something that is no number, or no choice.
     """
-    from elbowscrew.motion.treatments import ComparisonPlan
+    from elbowscrew.motion.interpolation.keyframe_sources import ComparisonPlan
 
     given: dict[str, tuple[str, ...] | tuple[int, ...]] = {}
     for name, text in words.items():

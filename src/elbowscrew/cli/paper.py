@@ -24,7 +24,7 @@ def paper(
 
     found = comparisons()
     if figures is not None:
-        from elbowscrew.results import save_paper_figures
+        from elbowscrew.saving import save_paper_figures
 
         save_paper_figures(figures)
     if json_output:

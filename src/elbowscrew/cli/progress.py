@@ -12,8 +12,8 @@ from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeRemaini
 from rich.progress import Progress as Bar
 from rich.text import Text
 
-from elbowscrew.batch.study import Progress
 from elbowscrew.cli.text import one_line
+from elbowscrew.study.study import Progress
 
 _SECONDS_BETWEEN_LINES = 10.0
 

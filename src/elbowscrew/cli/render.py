@@ -15,9 +15,9 @@ from rich.text import Text
 from elbowscrew.cli.text import NobodyReads, one_line, printable
 
 if TYPE_CHECKING:
-    from elbowscrew.batch.study import StudyResult
-    from elbowscrew.batch.trials import Skipped
     from elbowscrew.paper import Comparison
+    from elbowscrew.study.study import StudyResult
+    from elbowscrew.study.trials import Skipped
 
 _MARKERS_TOLD = 24
 _FRAMES_TOLD = 12

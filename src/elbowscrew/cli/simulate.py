@@ -67,7 +67,7 @@ def simulate(
     """
     from elbowscrew.cli import render
     from elbowscrew.cli.text import printable
-    from elbowscrew.results import save_simulation
+    from elbowscrew.saving import save_simulation
     from elbowscrew.simulate import Simulation, simulate_trial
 
     simulation = Simulation(

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat
 from elbowscrew.model import Analysis, InterpolatedMotion, Landmarks, QualityWarning, Recording
-from elbowscrew.motion.anatomy import anatomical_motion, arm_lines
-from elbowscrew.motion.axes import find_axes
+from elbowscrew.motion.anatomy.anatomy import anatomical_motion, arm_lines
+from elbowscrew.motion.axes.axes import find_axes
 from elbowscrew.motion.difference import (
     angle_between,
     direction_between,
@@ -18,12 +18,12 @@ from elbowscrew.motion.difference import (
     origin_distance,
     rms_displacement,
 )
-from elbowscrew.motion.helical import helical_series
-from elbowscrew.motion.measurement import Measurement, measure
-from elbowscrew.motion.model_building import JointModel, build_model
-from elbowscrew.motion.phases import find_cycles, movement_phases, velocity_everywhere
-from elbowscrew.motion.relative import expressed
-from elbowscrew.motion.repetitions import repeatability_of, repetitions_of
+from elbowscrew.motion.interpolation.model_building import JointModel, build_model
+from elbowscrew.motion.movements.phases import find_cycles, movement_phases, velocity_everywhere
+from elbowscrew.motion.movements.repetitions import repeatability_of, repetitions_of
+from elbowscrew.motion.screws.helical import helical_series
+from elbowscrew.motion.screws.measurement import Measurement, measure
+from elbowscrew.motion.screws.relative import expressed
 from elbowscrew.settings import Settings
 
 Float = NDArray[np.float64]

@@ -13,11 +13,11 @@ from mpl_toolkits.mplot3d.art3d import Line3DCollection
 from mpl_toolkits.mplot3d.axes3d import Axes3D
 from numpy.typing import NDArray
 
-from elbowscrew.model.shown import Shown
-from elbowscrew.motion.scene import Bodies, axis_segments, bodies_in_space, directions_across, half_length, thinned
 from elbowscrew.plots import style
-from elbowscrew.plots.decimation import drawn_rows
 from elbowscrew.tables import LengthUnit, angle_in, length_in
+from elbowscrew.view.decimation import drawn_rows
+from elbowscrew.view.scene import Bodies, axis_segments, bodies_in_space, directions_across, half_length, thinned
+from elbowscrew.view.shown import Shown
 
 Float = NDArray[np.float64]
 

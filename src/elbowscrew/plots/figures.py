@@ -7,8 +7,8 @@ from typing import Final, Protocol, cast
 from matplotlib.figure import Figure
 from mpl_toolkits.mplot3d.axes3d import Axes3D
 
-from elbowscrew.model.shown import Shown
 from elbowscrew.plots import axis, joint, series, style
+from elbowscrew.view.shown import Shown
 
 WIDTH_MM: Final = 170.0
 NARROW_MM: Final = 120.0  # below this panels stand one below the other

@@ -12,11 +12,11 @@ from mpl_toolkits.mplot3d.art3d import Line3DCollection
 from mpl_toolkits.mplot3d.axes3d import Axes3D
 from numpy.typing import NDArray
 
-from elbowscrew.model.shown import Shown
-from elbowscrew.motion.scene import Bundle, Region, bodies_in_space, directions_across, joint_bundle
 from elbowscrew.plots.axis import color_scale, equal_aspect, plot_path
 from elbowscrew.plots.style import CONFIDENCE, SPREAD
 from elbowscrew.tables import angle_in, length_in
+from elbowscrew.view.scene import Bundle, Region, bodies_in_space, directions_across, joint_bundle
+from elbowscrew.view.shown import Shown
 
 Float = NDArray[np.float64]
 

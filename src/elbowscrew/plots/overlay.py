@@ -10,10 +10,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from elbowscrew.model.shown import Shown
 from elbowscrew.plots import style
 from elbowscrew.plots.figures import WIDTH_MM
 from elbowscrew.tables import AngleUnit, angle_in
+from elbowscrew.view.shown import Shown
 
 Float = NDArray[np.float64]
 

@@ -10,10 +10,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from elbowscrew.model.shown import Shown
 from elbowscrew.plots import series, style
 from elbowscrew.plots.figures import NARROW_MM, WIDTH_MM, MakeFigure
 from elbowscrew.tables import angle_in
+from elbowscrew.view.shown import Shown
 
 Float = NDArray[np.float64]
 

@@ -9,11 +9,11 @@ from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from numpy.typing import NDArray
 
-from elbowscrew.model.shown import Shown
-from elbowscrew.motion.phases import runs_of
+from elbowscrew.motion.movements.phases import runs_of
 from elbowscrew.plots import style
-from elbowscrew.plots.decimation import drawn_band, drawn_rows
 from elbowscrew.tables import angle_in, length_in
+from elbowscrew.view.decimation import drawn_band, drawn_rows
+from elbowscrew.view.shown import Shown
 
 Float = NDArray[np.float64]
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from elbowscrew.errors import ResultError
 
 if TYPE_CHECKING:
-    from elbowscrew.model.finished import FinishedTrial
+    from elbowscrew.view.finished import FinishedTrial
 
 
 def write_trial_page(folder: Path, trial: FinishedTrial | None = None) -> Path:
@@ -92,7 +92,7 @@ def remake_pages(folders: Iterable[Path]) -> Remade:
     OutputError
         If something else has a page's name, or the disk does not take it.
     """
-    from elbowscrew.io.results_reading import is_result
+    from elbowscrew.results.read_back import is_result
 
     pages, errors = [], []
     for folder in folders:
@@ -114,8 +114,8 @@ def results_in(folders: Iterable[Path]) -> tuple[Path, ...]:
     ResultError
         If a folder neither is nor holds a finished result.
     """
-    from elbowscrew.io.results_reading import is_result
     from elbowscrew.report.study import result_folders
+    from elbowscrew.results.read_back import is_result
 
     found = []
     for folder in folders:

@@ -11,7 +11,7 @@ import numpy as np
 from markupsafe import Markup
 from numpy.typing import NDArray
 
-from elbowscrew.motion.phases import runs_of
+from elbowscrew.motion.movements.phases import runs_of
 
 Float = NDArray[np.float64]
 

@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from elbowscrew._process import has_spare_cores
-from elbowscrew.model.shown import Shown
 from elbowscrew.plots.figures import FIGURES, WIDTH_MM, MakeFigure
 from elbowscrew.plots.paper_figures import PAPER_FIGURES
 from elbowscrew.plots.style import publication_style, settle
+from elbowscrew.view.shown import Shown
 
 # Without dates and program versions the same analysis gives the same bytes.
 _METADATA: Final[dict[str, dict[str, Any]]] = {

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any, Final
 
-from elbowscrew.model.finished import FinishedTrial
+from elbowscrew.view.finished import FinishedTrial
 
 _FRAMES: Final = {
     "forearm": "the forearm's frame at the reference",

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Final
 
 from elbowscrew.errors import UsageError
-from elbowscrew.io.staging import FIGURE_NAMES
+from elbowscrew.results.staging import FIGURE_NAMES
 
 FIGURE_CHOICES: Final = (*FIGURE_NAMES, "fig7", "fig8", "fig9", "fig10", "overlay")
 

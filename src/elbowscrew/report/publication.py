@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import Final, NamedTuple
 
 from elbowscrew.errors import SettingError
-from elbowscrew.io.results_reading import read_finished
-from elbowscrew.io.staging import write_files
 from elbowscrew.report.figure_files import figure_files, files_of
+from elbowscrew.results.read_back import read_finished
+from elbowscrew.results.staging import write_files
 
 OVERLAY: Final = "overlay"
 _LONGEST_NAME: Final = 80

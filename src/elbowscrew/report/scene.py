@@ -7,9 +7,9 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowscrew.model.finished import FinishedTrial
-from elbowscrew.motion.scene import Region, bodies_in_space, directions_across, joint_bundle, thinned
 from elbowscrew.report.charts import COLORS
+from elbowscrew.view.finished import FinishedTrial
+from elbowscrew.view.scene import Region, bodies_in_space, directions_across, joint_bundle, thinned
 
 Float = NDArray[np.float64]
 

@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 
 from elbowscrew import tables
 from elbowscrew.errors import ResultError
-from elbowscrew.io.result_tables import read_columns
-from elbowscrew.io.results_reading import UNREADABLE, is_result, read_summary
 from elbowscrew.report.charts import min_max_rows
+from elbowscrew.results.read_back import UNREADABLE, is_result, read_summary
+from elbowscrew.results.table_reading import read_columns
 from elbowscrew.settings import Settings
 
 Float = NDArray[np.float64]

@@ -9,9 +9,7 @@ import numpy as np
 from markupsafe import Markup
 from numpy.typing import NDArray
 
-from elbowscrew.model.finished import FinishedTrial
-from elbowscrew.motion.phases import runs_of
-from elbowscrew.motion.scene import Bundle, directions_across, joint_bundle
+from elbowscrew.motion.movements.phases import runs_of
 from elbowscrew.report.charts import (
     COLORS,
     WIDTH,
@@ -24,6 +22,8 @@ from elbowscrew.report.charts import (
     ticks_between,
 )
 from elbowscrew.report.scene import WIDEST
+from elbowscrew.view.finished import FinishedTrial
+from elbowscrew.view.scene import Bundle, directions_across, joint_bundle
 
 Float = NDArray[np.float64]
 

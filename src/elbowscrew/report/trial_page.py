@@ -9,9 +9,6 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowscrew.io.results_reading import read_finished
-from elbowscrew.io.summary import settings_summary
-from elbowscrew.model.finished import FinishedTrial
 from elbowscrew.report.methods import citations_of, methods_of
 from elbowscrew.report.pages import UNSHOWABLE, render, unshowable, write_page
 from elbowscrew.report.scene import WIDEST, scene_of
@@ -23,7 +20,10 @@ from elbowscrew.report.trial_charts import (
     repetition_chart,
     theta_chart,
 )
+from elbowscrew.results.read_back import read_finished
+from elbowscrew.results.summary import settings_summary
 from elbowscrew.settings import Settings
+from elbowscrew.view.finished import FinishedTrial
 
 _FRAMES_TOLD: Final = 24
 _HARDLY_DEG: Final = 30.0  # a cone wider than this tells of no direction
@@ -62,7 +62,7 @@ def trial_page(trial: FinishedTrial) -> str:
     Parameters
     ----------
     trial : FinishedTrial
-        From `elbowscrew.io.results_reading.read_finished`.
+        From `elbowscrew.results.read_back.read_finished`.
 
     Returns
     -------

@@ -1,0 +1,283 @@
+"""The elbow in the bones' own frames: flexion, carrying angle, pronation, and the screw axis beside the epicondyles.
+
+Frames and sequence are the ISB's (Wu and others 2005, J Biomech 38:981-992): X forward, Y proximal, Z to the subject's
+right, and ``R = Rz(flexion) Rx(carrying) Ry(pronation)`` of the forearm seen from the humerus. For left arms the ISB
+mirrors the data, z to -z; the same angles come without mirroring if the second and third change their sign.
+"""
+
+from __future__ import annotations
+
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from elbowscrew.errors import SettingError
+from elbowscrew.geometry import line_through
+from elbowscrew.geometry._small_angle import divide, length
+from elbowscrew.geometry.dual_quaternion import (
+    conjugate,
+    dual_quat_from_pose,
+    multiply,
+    transform_lines,
+    transform_points,
+)
+from elbowscrew.geometry.quaternion import quat_from_rotation_matrix, rotation_matrix_from_quat
+from elbowscrew.model import JointMotion, LineEstimate, QualityWarning, Recording, RigidBody
+from elbowscrew.model.anatomy import AnatomicalMotion, Landmarks, Side
+from elbowscrew.motion.anatomy.landmarks import landmark_places
+from elbowscrew.motion.screws.relative import ExpressIn, frame_change
+
+Float = NDArray[np.float64]
+
+# Noise of flexion and pronation grows as 1/cos(carrying): here 11.5 times, as that of an axis at 10 deg of rotation.
+_GIMBAL_LOCK: Final = np.radians(5.0)
+# Sine of an angle: landmarks nearer to one line than this give no plane.
+_FLATNESS: Final = 0.02
+# No elbow is overextended or oversupinated so far in the middle of its motion.
+_LEAST_MEDIAN_FLEXION: Final = np.radians(-30.0)
+_LEAST_MEDIAN_PRONATION: Final = np.radians(-60.0)
+
+
+class ElbowAngles(NamedTuple):
+    """Angles of the ISB's sequence Z-X-Y, radians, shape (...).
+
+    Attributes
+    ----------
+    flexion : ndarray
+        About the humerus' Z: positive in flexion, negative in hyperextension; in (-pi, pi].
+    carrying : ndarray
+        About the floating X: positive in varus, so that the usual carrying angle, in valgus, is negative; within pi/2.
+    pronation : ndarray
+        About the forearm's Y: 0 where the styloids lie as the epicondyles do, positive in pronation; in (-pi, pi].
+    """
+
+    flexion: Float
+    carrying: Float
+    pronation: Float
+
+
+def humerus_frame(GH: ArrayLike, EL: ArrayLike, EM: ArrayLike, side: Side) -> Float:
+    """Pose of the humerus' frame, shape (..., 8), in the frame that its landmarks are given in.
+
+    Origin GH; Y from the middle of EL and EM to GH; X across the plane of the three, forward; Z to the subject's right.
+
+    Parameters
+    ----------
+    GH, EL, EM : array_like, shape (..., 3)
+        Meters.
+    side : {"right", "left"}
+
+    Returns
+    -------
+    ndarray, shape (..., 8)
+        NaN where the three are nearly on one line.
+
+    References
+    ----------
+    Wu and others 2005, the first of the humerus' two options.
+
+    Examples
+    --------
+    >>> humerus_frame([0, 0, 0], [0, -0.3, 0.03], [0, -0.3, -0.03], "right")
+    array([1., 0., 0., 0., 0., 0., 0., 0.])
+    """
+    gh, el, em = (np.asarray(point, dtype=np.float64) for point in (GH, EL, EM))
+    return _frame(gh, gh - 0.5 * (el + em), el - em, side)
+
+
+def forearm_frame(US: ArrayLike, RS: ArrayLike, EL: ArrayLike, EM: ArrayLike, side: Side) -> Float:
+    """Pose of the forearm's frame, shape (..., 8), in the frame that its landmarks are given in.
+
+    Origin US; Y from US to the middle of EL and EM; X across the plane of US, RS and that middle, forward in
+    supination; Z to the subject's right.
+
+    Parameters
+    ----------
+    US, RS, EL, EM : array_like, shape (..., 3)
+        Meters.
+    side : {"right", "left"}
+
+    Returns
+    -------
+    ndarray, shape (..., 8)
+        NaN where the three points are nearly on one line.
+
+    References
+    ----------
+    Wu and others 2005, the frame of the forearm.
+    """
+    us, rs, el, em = (np.asarray(point, dtype=np.float64) for point in (US, RS, EL, EM))
+    return _frame(us, 0.5 * (el + em) - us, rs - us, side)
+
+
+def elbow_angles(dual_quat_humerus_forearm: ArrayLike, side: Side) -> ElbowAngles:
+    """Angles of the forearm's frame seen from the humerus', each for itself.
+
+    Flexion and pronation are NaN where the carrying angle is within 5 deg of a right angle (gimbal lock): there only
+    their sum or difference is known.
+
+    Parameters
+    ----------
+    dual_quat_humerus_forearm : array_like, shape (..., 8)
+    side : {"right", "left"}
+
+    References
+    ----------
+    Wu and others 2005, 3.4.1, the elbow.
+    """
+    R = rotation_matrix_from_quat(np.asarray(dual_quat_humerus_forearm, dtype=np.float64)[..., :4])
+    cosine = np.hypot(R[..., 0, 1], R[..., 1, 1])
+    locked = cosine < np.sin(_GIMBAL_LOCK)
+    flexion = np.where(locked, np.nan, np.arctan2(-R[..., 0, 1], R[..., 1, 1]))
+    pronation = np.where(locked, np.nan, np.arctan2(-R[..., 2, 0], R[..., 2, 2]))
+    mirrored = _mirrored(side)
+    return ElbowAngles(flexion, mirrored * np.arctan2(R[..., 2, 1], cosine), mirrored * pronation)
+
+
+def angle_to_epicondyles(axis_direction: ArrayLike, epicondyle_line: ArrayLike) -> Float:
+    """Angle between screw axes and the epicondyle line, either way round: radians, shape (...), 0 to pi/2.
+
+    Parameters
+    ----------
+    axis_direction : array_like, shape (..., 3)
+        Unit vectors in the arm's frame.
+    epicondyle_line : array_like, shape (6,)
+        Plücker vector in the arm's frame.
+
+    Examples
+    --------
+    >>> float(np.degrees(angle_to_epicondyles([0, 0, -1], [0, 0, 1, 0, 0, 0])))
+    0.0
+    """
+    h = np.asarray(axis_direction, dtype=np.float64)
+    along = np.asarray(epicondyle_line, dtype=np.float64)[:3]
+    angle: Float = np.arctan2(length(np.cross(h, along)), np.abs(np.sum(h * along, axis=-1)))
+    return angle
+
+
+def distance_from_point(axis_line: ArrayLike, point: ArrayLike) -> Float:
+    """Distance, shape (...), of lines (..., 6) from a point (3,), as of screw axes from the epicondyles' midpoint."""
+    line = np.asarray(axis_line, dtype=np.float64)
+    return length(line[..., 3:] - np.cross(np.asarray(point, dtype=np.float64), line[..., :3]))
+
+
+def arm_lines(lines: Float, joint: JointMotion, express_in: ExpressIn) -> Float:
+    """Write lines (..., 6) of the frame that the screws are expressed in, in the arm's."""
+    return transform_lines(multiply(joint.reference, conjugate(frame_change(joint, express_in))), lines)
+
+
+def anatomical_motion(
+    landmarks: Landmarks,
+    recording: Recording,
+    arm: RigidBody | None,
+    forearm: RigidBody,
+    joint: JointMotion,
+    *,
+    axis_lines: Float,
+    joint_line: LineEstimate | None,
+) -> tuple[AnatomicalMotion, tuple[QualityWarning, ...]]:
+    """Angles of the elbow in every frame, and its screw axes beside the epicondyle line.
+
+    The epicondyles belong to the humerus. The forearm's frame needs them, too: it takes their places at the reference
+    and keeps them fixed in the forearm.
+
+    Parameters
+    ----------
+    landmarks : Landmarks
+    recording : Recording
+        Read with the landmarks' markers.
+    arm : RigidBody or None
+        None if it stands still; its frame is then the laboratory's.
+    forearm : RigidBody
+    joint : JointMotion
+    axis_lines : ndarray, shape (N, 6)
+        Finite helical axis of each frame in the arm's frame (`arm_lines`); NaN where there is none.
+    joint_line : LineEstimate or None
+        The axis of the joint as a whole; None if it has no single one.
+
+    Returns
+    -------
+    AnatomicalMotion
+    tuple of QualityWarning
+        "landmark-moves" for a marker that does not rest in its body, "landmarks-doubtful" for angles no elbow has.
+
+    Raises
+    ------
+    SettingError
+        If a marker is not in the recording or never seen together with its body, or landmarks lie on one line.
+    """
+    places, warnings = landmark_places(landmarks, recording, {"arm": arm, "forearm": forearm}, joint)
+    EL, EM = (transform_points(conjugate(joint.reference), places[name]) for name in ("EL", "EM"))
+    humerus = humerus_frame(places["GH"], places["EL"], places["EM"], landmarks.side)
+    distal = forearm_frame(places["US"], places["RS"], EL, EM, landmarks.side)
+    for frame, names in ((humerus, "GH, EL and EM"), (distal, "US, RS and the middle of EL and EM")):
+        if not np.isfinite(frame).all():
+            msg = f"{landmarks.source}: {names} lie nearly on one line, so that they give no plane; check their places"
+            raise SettingError(msg)
+    angles = elbow_angles(
+        multiply(multiply(conjugate(humerus), joint.dual_quat_proximal_distal), distal), landmarks.side
+    )
+    line = line_through(places["EM"], places["EL"] - places["EM"])
+    midpoint = 0.5 * (places["EL"] + places["EM"])
+    joint_axis = np.full(6, np.nan) if joint_line is None else _arm_line(joint_line)
+    motion = AnatomicalMotion(
+        side=landmarks.side,
+        frame=recording.frame,
+        time_s=recording.time_s,
+        flexion=_continuous(angles.flexion),
+        carrying=angles.carrying,
+        pronation=_continuous(angles.pronation),
+        axis_angle=angle_to_epicondyles(axis_lines[:, :3], line),
+        axis_distance=distance_from_point(axis_lines, midpoint),
+        joint_axis_angle=float(angle_to_epicondyles(joint_axis[:3], line)),
+        joint_axis_distance=float(distance_from_point(joint_axis, midpoint)),
+        epicondyle_line=line,
+        epicondyle_midpoint=midpoint,
+        dual_quat_arm_humerus=humerus,
+        dual_quat_forearm_isb=distal,
+        places=places,
+        landmarks=landmarks,
+    )
+    return motion, (*warnings, *_doubts(motion, landmarks))
+
+
+def _mirrored(side: Side) -> float:
+    return 1.0 if side == "right" else -1.0
+
+
+def _frame(origin: Float, proximal: Float, radial: Float, side: Side) -> Float:
+    """Pose of the frame with Y along `proximal` and Z, as near as may be, along `radial`, or against it on the left."""
+    Y, outward = (divide(vector, length(vector)[..., None]) for vector in (proximal, _mirrored(side) * radial))
+    across = np.cross(Y, outward)
+    sine = length(across)[..., None]
+    X = divide(across, np.where(sine < _FLATNESS, np.nan, sine))
+    R = np.stack([X, Y, np.cross(X, Y)], axis=-1)
+    return dual_quat_from_pose(quat_from_rotation_matrix(R), origin)
+
+
+def _continuous(angle: Float) -> Float:
+    """Make angles (N,) continuous in time; across a gap they go the shorter way."""
+    known = np.isfinite(angle)
+    unwrapped = angle.copy()
+    unwrapped[known] = np.unwrap(angle[known])
+    return unwrapped
+
+
+def _arm_line(line: LineEstimate) -> Float:
+    return np.concatenate([line.direction_arm, np.cross(line.point_arm, line.direction_arm)])
+
+
+def _doubts(motion: AnatomicalMotion, landmarks: Landmarks) -> tuple[QualityWarning, ...]:
+    """Warn of angles that come of landmarks or sides taken for each other."""
+    known = np.isfinite(motion.flexion)
+    if not known.any():
+        return ()
+    flexion, pronation = (float(np.median(angle[known])) for angle in (motion.flexion, motion.pronation))
+    if flexion >= _LEAST_MEDIAN_FLEXION and pronation >= _LEAST_MEDIAN_PRONATION:
+        return ()
+    message = (
+        f"{landmarks.source}: flexion is {np.degrees(flexion):.0f} deg and pronation {np.degrees(pronation):.0f} deg "
+        "in the median, which no elbow does: look whether the side is right and EL and EM, or US and RS, are exchanged"
+    )
+    return (QualityWarning(code="landmarks-doubtful", message=message),)

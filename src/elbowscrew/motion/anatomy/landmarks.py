@@ -1,0 +1,99 @@
+"""Where anatomical landmarks lie in the bodies they rest in."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowscrew.errors import SettingError
+from elbowscrew.geometry.dual_quaternion import conjugate, multiply, transform_points
+from elbowscrew.model import JointMotion, Marker, QualityWarning, Recording, RigidBody
+from elbowscrew.model.anatomy import Landmark, Landmarks
+from elbowscrew.motion.screws.relative import IDENTITY
+
+Float = NDArray[np.float64]
+
+_LARGEST_RMS: Final = 0.020
+_BODY_OF: Final = {"EL": "arm", "EM": "arm", "GH": "arm", "US": "forearm", "RS": "forearm"}
+
+
+def landmark_places(
+    landmarks: Landmarks, recording: Recording, bodies: dict[str, RigidBody | None], joint: JointMotion
+) -> tuple[dict[str, Float], tuple[QualityWarning, ...]]:
+    """Find each landmark in the frame of its own body, shape (3,).
+
+    Raises
+    ------
+    SettingError
+        Naming all that cannot be found.
+    """
+    arm_from = {
+        "arm": IDENTITY,
+        "forearm": joint.reference,
+        "lab": conjugate(joint.dual_quat_lab_proximal),
+    }
+    places: dict[str, Float] = {}
+    faults: list[str] = []
+    warnings: list[QualityWarning] = []
+    for name, landmark in landmarks.by_name.items():
+        role = _BODY_OF[name]
+        if landmark.point is not None and landmark.frame is not None:
+            change = multiply(conjugate(arm_from[role]), arm_from[landmark.frame])
+            places[name] = transform_points(change, landmark.point)
+            continue
+        try:
+            places[name], moving = _place_of_markers(recording, landmark, bodies[role], name, role)
+            warnings += moving
+        except SettingError as error:
+            faults.append(f"{name}: {error}")
+    if faults:
+        msg = (
+            f"{landmarks.source}: {'; '.join(faults)}: name other markers or give coordinates, "
+            '{ body = "arm", mm = [x, y, z] }'
+        )
+        raise SettingError(msg)
+    return places, tuple(warnings)
+
+
+def _place_of_markers(
+    recording: Recording, landmark: Landmark, body: RigidBody | None, name: str, role: str
+) -> tuple[Float, list[QualityWarning]]:
+    """Middle of the places, shape (3,), that markers have in their body in the median of the frames that see both."""
+    places, warnings = [], []
+    for wanted in landmark.markers:
+        seen = _marker(recording, wanted).position
+        # The very origin is what some systems write for a marker that they do not see.
+        seen = np.where((seen == 0.0).all(axis=1, keepdims=True), np.nan, seen)
+        inside = seen
+        if body is not None:
+            inside = transform_points(conjugate(body.dual_quat_lab_body), seen)[body.tracked]
+        inside = inside[np.isfinite(inside).all(axis=1)]
+        if not len(inside):
+            msg = f"marker {wanted!r} is never seen together with the {role}"
+            raise SettingError(msg)
+        place = np.median(inside, axis=0)
+        places.append(place)
+        rms = float(np.sqrt(np.mean(np.sum((inside - place) ** 2, axis=1))))
+        if rms > _LARGEST_RMS:
+            message = (
+                f"the marker {wanted!r} of landmark {name} moves in the {role} by {1000.0 * rms:.0f} mm RMS: it sits "
+                "loosely or on another segment, or is mistaken for another; its median place is taken"
+            )
+            warnings.append(QualityWarning(code="landmark-moves", message=message))
+    return np.mean(places, axis=0), warnings
+
+
+def _marker(recording: Recording, wanted: str) -> Marker:
+    """Find a marker by its exact name, or by its name in any case."""
+    exact = [marker for marker in recording.markers if marker.name == wanted]
+    found = exact or [marker for marker in recording.markers if marker.name.casefold() == wanted.casefold()]
+    if len(found) == 1:
+        return found[0]
+    if found:
+        msg = f"{len(found)} markers of the recording are named {wanted!r}"
+        raise SettingError(msg)
+    there = ", ".join(marker.name for marker in recording.markers[:8]) or "none"
+    msg = f"the recording has no marker {wanted!r} (markers read: {there})"
+    raise SettingError(msg)

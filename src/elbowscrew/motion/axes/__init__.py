@@ -1,0 +1,1 @@
+"""Axes of moments and means: mean, from step to step, instantaneous."""

@@ -1,0 +1,1 @@
+"""The model: phases, laws, keyframes, what lies between them, and its comparison with others."""

@@ -1,0 +1,307 @@
+"""Models of one motion beside each other: methods, laws, keyframes, and what the keyframes are taken from."""
+
+from __future__ import annotations
+
+import itertools
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import fields
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowscrew.errors import AnalysisError, SettingError
+from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat
+from elbowscrew.model import (
+    BodyPoints,
+    ComparedModels,
+    Comparison,
+    Keyframes,
+    ModelPhases,
+    PhaseLaw,
+    Recording,
+    Selection,
+)
+from elbowscrew.motion.difference import (
+    angle_between,
+    direction_between,
+    distance_across,
+    origin_distance,
+    rms_displacement,
+)
+from elbowscrew.motion.interpolation.keyframe_selection import select_keyframes
+from elbowscrew.motion.interpolation.keyframe_sources import ComparisonPlan, Treatment, treatments
+from elbowscrew.motion.interpolation.keyframes import KnotChoice, keyframes_at, spread_rows
+from elbowscrew.motion.interpolation.law_fit import FittedLaw, laws_of
+from elbowscrew.motion.interpolation.model_building import body_points, movements_of, phases_of
+from elbowscrew.motion.interpolation.modeling import METHODS, ModeledPoses, model_motion
+from elbowscrew.motion.interpolation.segment_errors import BASES
+from elbowscrew.motion.screws.helical import helical_series
+from elbowscrew.motion.screws.measurement import Measurement, measure
+from elbowscrew.motion.screws.relative import expressed
+from elbowscrew.settings import Settings
+
+Float = NDArray[np.float64]
+Bool = NDArray[np.bool_]
+
+_TIMED: Final = 3
+_LONG_ENOUGH_S: Final = 0.003
+_DEFAULT_TOLERANCE: Final = 2e-3
+
+
+def compare(recording: Recording, settings: Settings | None = None, plan: ComparisonPlan | None = None) -> Comparison:
+    """Compare models of one motion.
+
+    Each model's keyframes stand evenly in time in each phase of the motion. The difference is that from the measured
+    motion, unfiltered and at its own rate, whatever the keyframes were taken from, so that all models have the same
+    yardstick. Combinations that are the same model by definition are there once: between two poses DLB is sDLB, and
+    DIB and Catmull-Rom are ScLERP; with the law's knots ScLERP and sDLB do not know of the blend.
+
+    Parameters
+    ----------
+    recording : Recording
+    settings : Settings, optional
+        What does not belong to the plan: bodies, phases, points, and so on. Its tolerance is that of the selection,
+        2 mm by default, and its low-pass that of the filtered keyframes, found by residual analysis by default.
+    plan : ComparisonPlan, optional
+        Which models.
+
+    Returns
+    -------
+    Comparison
+
+    Raises
+    ------
+    SettingError, AnalysisError, RecordingError
+        As `elbowscrew.analyze`.
+
+    Examples
+    --------
+    >>> import elbowscrew
+    >>> recording = elbowscrew.simulate_trial(marker_noise_mm=0).recording
+    >>> found = compare(recording, plan=ComparisonPlan(laws=("linear", "polynomial-345"), counts=(2,), data=("raw",)))
+    >>> str(found.models.law[0])
+    'polynomial-345'
+    """
+    wanted, plan = settings or Settings(), plan or ComparisonPlan()
+    raw = wanted.model_copy(update={"lowpass_hz": None, "resample_hz": None, "keyframes": None, "tolerance_mm": None})
+    measured = measure(recording, raw)
+    movements, velocity = movements_of(measured, raw)
+    phases = phases_of(measured, movements, velocity, raw)
+    points = body_points(measured.forearm, raw)
+    yardstick = _Yardstick.of(measured, points, raw)
+    rows: list[dict[str, Any]] = []
+    laws: dict[str, tuple[PhaseLaw, ...]] = {}
+    for treatment in treatments(measured, phases, plan, wanted):
+        fitted = {name: _laws_of(name, treatment, measured, points) for name in plan.laws}
+        if treatment.name == "raw" or not laws:
+            laws = {
+                name: () if isinstance(found, str) else tuple(one.law for one in found)
+                for name, found in fitted.items()
+            }
+        rows += [_row(model, treatment, fitted[model.law], measured, yardstick) for model in models_of(plan)]
+    tolerance = _DEFAULT_TOLERANCE if wanted.tolerance_mm is None else 1e-3 * wanted.tolerance_mm
+    return Comparison(
+        recording=measured.recording,
+        settings=wanted,
+        models=_ranked(rows),
+        phases=phases,
+        frame=measured.screw.frame,
+        laws=laws,
+        selections={
+            method: _selection(measured, phases, points, tolerance, method)
+            for method in plan.methods
+            if method in BASES
+        },
+        points=points,
+        warnings=measured.warnings,
+    )
+
+
+class PlannedModel(NamedTuple):
+    """One combination of a plan."""
+
+    method: str
+    blend: str
+    law: str
+    knots: str
+    keyframes: int
+
+
+def models_of(plan: ComparisonPlan) -> Iterator[PlannedModel]:
+    """Give every combination once that is a model of its own."""
+    seen = set()
+    for model in itertools.starmap(
+        PlannedModel, itertools.product(plan.methods, plan.blends, plan.laws, plan.knots, plan.counts)
+    ):
+        method, blend = model.method, model.blend
+        if model.keyframes == 2 and blend == "piecewise":
+            method = {"dlb": "sdlb", "dib": "sclerp", "catmull-rom": "sclerp"}.get(method, method)
+        if method in BASES and model.knots == "law":
+            blend = "piecewise"
+        # Of knots that are but the phase's ends there is one choice.
+        knots = "law" if model.keyframes == 2 and blend == "piecewise" else model.knots
+        same = model._replace(method=method, blend=blend, knots=knots)
+        if same not in seen:
+            seen.add(same)
+            yield model
+
+
+def _laws_of(name: str, treatment: Treatment, measured: Measurement, points: BodyPoints) -> tuple[FittedLaw, ...] | str:
+    """Laws of the phases, or why there are none."""
+    try:
+        return laws_of(
+            name,
+            None,
+            treatment.pose,
+            treatment.usable,
+            measured.elapsed,
+            measured.screw.frame,
+            treatment.phases,
+            points,
+        )
+    except SettingError as error:
+        return str(error)
+
+
+class _Yardstick(NamedTuple):
+    """The measured motion that every model is held against."""
+
+    pose: Float
+    measured: Bool
+    line: Float
+    near: Float
+    points: BodyPoints
+    min_angle: float
+    express: Callable[[Float], Float]
+    angle: Float
+
+    @classmethod
+    def of(cls, measured: Measurement, points: BodyPoints, settings: Settings) -> _Yardstick:
+        joint = measured.joint
+        return cls(
+            measured.displacement,
+            joint.measured,
+            measured.line,
+            pose_from_dual_quat(measured.change)[1],
+            points,
+            float(np.radians(settings.min_angle_deg)),
+            lambda pose: expressed(pose, joint, settings.express_in),
+            measured.screw.angle,
+        )
+
+    def errors(self, modeled: Float, keyframes: Keyframes) -> dict[str, Float]:
+        bounds = keyframes.phases.bound_rows
+        anchor = int(bounds[np.argmax(np.abs(self.angle[bounds]))])
+        line = helical_series(self.express(modeled), self.min_angle, anchor, self.angle[anchor]).line
+        found = {
+            "displacement": rms_displacement(self.pose, modeled, self.points),
+            "angle_error": angle_between(self.pose, modeled),
+            "translation_error": origin_distance(self.pose, modeled),
+            "axis_error": direction_between(self.line, line),
+            "axis_distance": distance_across(self.line, line, self.near),
+        }
+        for values in found.values():
+            values[~self.measured] = np.nan
+        return found
+
+
+def _row(
+    model: PlannedModel,
+    treatment: Treatment,
+    laws: tuple[FittedLaw, ...] | str,
+    measured: Measurement,
+    yardstick: _Yardstick,
+) -> dict[str, Any]:
+    row: dict[str, Any] = {
+        "data": treatment.name,
+        "method": model.method,
+        "blend": model.blend,
+        "law": model.law,
+        "knots": model.knots,
+        "keyframes_per_phase": model.keyframes,
+        "note": "",
+    }
+    rows = spread_rows(treatment.phases, treatment.usable, measured.elapsed, model.keyframes)
+    row["keyframes"] = rows.size
+    if isinstance(laws, str):
+        return {**row, "note": laws}
+    functions = [law.function for law in laws]
+    try:
+        keyframes = keyframes_at(
+            rows,
+            treatment.phases,
+            measured.screw.frame,
+            measured.elapsed,
+            treatment.pose,
+            choice=_knot_choice(model.knots),
+            laws=functions,
+            piecewise=model.blend == "piecewise",
+        )
+        modeled, seconds = _timed(
+            lambda: model_motion(treatment.pose, measured.elapsed, keyframes, METHODS[model.method], functions)
+        )
+    except SettingError as error:
+        return {**row, "note": str(error)}
+    if not np.isfinite(modeled.dual_quat[~modeled.phase.mask]).all():
+        return {**row, "note": "the blended poses cancel in some frames"}
+    errors = yardstick.errors(modeled.dual_quat, keyframes)
+    for name, values in errors.items():
+        known = np.isfinite(values).any()
+        row[f"rms_{name}"] = float(np.sqrt(np.nanmean(values**2))) if known else np.nan
+        row[f"max_{name}"] = float(np.nanmax(values)) if known else np.nan
+    row["max_displacement_frame"] = int(measured.screw.frame[int(np.nanargmax(errors["displacement"]))])
+    row["ns_per_frame"] = 1e9 * seconds / int((~modeled.phase.mask).sum())
+    return row
+
+
+def _knot_choice(name: str) -> KnotChoice:
+    choice: dict[str, KnotChoice] = {"law": "law", "chord": "chord", "uniform": "uniform", "angle": "angle"}
+    return choice[name]
+
+
+def _timed(make: Callable[[], ModeledPoses]) -> tuple[ModeledPoses, float]:
+    """Result, and the shortest of some times (s) that making it takes."""
+    best = total = 0.0
+    for run in range(_TIMED):
+        start = time.perf_counter()
+        result = make()
+        seconds = time.perf_counter() - start
+        best, total = seconds if run == 0 else min(best, seconds), total + seconds
+        if total > _LONG_ENOUGH_S:
+            break
+    return result, best
+
+
+def _ranked(rows: list[dict[str, Any]]) -> ComparedModels:
+    order = sorted(range(len(rows)), key=lambda k: (rows[k].get("rms_displacement", np.inf), k))
+    arranged = [rows[k] for k in order]
+
+    def column(name: str) -> NDArray[Any]:
+        if name == "rank":
+            return np.arange(1, len(rows) + 1)
+        if name == "max_displacement_frame":
+            frames = [row.get(name) for row in arranged]
+            return np.ma.array(
+                [0 if frame is None else frame for frame in frames],
+                mask=[frame is None for frame in frames],
+                dtype=np.int64,
+            )
+        return np.array([row.get(name, np.nan) for row in arranged])
+
+    columns: dict[str, Any] = {field.name: column(field.name) for field in fields(ComparedModels)}
+    return ComparedModels(**columns)
+
+
+def _selection(
+    measured: Measurement, phases: ModelPhases, points: BodyPoints, tolerance: float, method: str
+) -> Selection:
+    """Fewest keyframes of the movement, in time itself."""
+    rows = np.arange(phases.bound_rows[0], phases.bound_rows[-1] + 1)
+    rows = rows[measured.joint.measured[rows]]
+    if rows.size < 2:
+        msg = "fewer than two measured poses in the movement: there is nothing to choose keyframes from"
+        raise AnalysisError(msg)
+    found = select_keyframes(measured.displacement[rows], measured.elapsed[rows], points, tolerance, method=method)
+    return found.of_rows(rows)

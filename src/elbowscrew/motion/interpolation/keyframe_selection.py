@@ -1,0 +1,339 @@
+"""The smallest set of measured poses between which a model stays within a tolerance."""
+
+from __future__ import annotations
+
+import itertools
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowscrew.errors import SettingError
+from elbowscrew.model import BodyPoints, Selection
+from elbowscrew.motion.interpolation.segment_errors import BASES, PoseTrack, displacement_along, squares_along
+
+Float = NDArray[np.float64]
+Index = NDArray[np.int64]
+Bool = NDArray[np.bool_]
+
+# Up to so many frames every pair of them is looked at, and so the best set of each size is known.
+MOST_FRAMES_COMPLETE: Final = 600
+_BLOCK: Final = 64
+# Where along a segment it is probed before all of it is: most segments that fail do so in the middle.
+_PROBES: Final = (0.5, 0.25, 0.75, 0.125, 0.375, 0.625, 0.875)
+_ROUND_OFF: Final = 1e-9
+# To this (m) the sums of squares over all pairs are exact.
+_NANOMETERS: Final = 2e-8
+# Frames among which the smaller sets of a long recording are looked for.
+_THINNED: Final = 400
+
+
+def select_keyframes(
+    pose: Float,
+    parameter: Float,
+    points: BodyPoints,
+    tolerance: float,
+    *,
+    method: str = "sclerp",
+    required: Index | None = None,
+) -> Selection:
+    """Fewest poses between which the RMS displacement stays within a tolerance in every frame.
+
+    The set is optimal: no smaller one stays within the tolerance (dynamic programming over all pairs of poses). Up to
+    600 frames it is also, among the sets of its size, one with the least largest error, and among those the one with
+    the least RMS error; and the best set of each smaller size is known. Beyond, the smaller sets are the best that 400
+    frames, evenly spread, have; their errors are those over all frames.
+
+    Parameters
+    ----------
+    pose : ndarray, shape (N, 8)
+        Sign-continuous unit dual quaternions, all known. The first and the last are keyframes in any case.
+    parameter : ndarray, shape (N,)
+        Not decreasing: between two keyframes the model is where the parameter is between theirs. Where it stands still
+        the model rests, and there is one keyframe at most.
+    points : BodyPoints
+        What the displacement is averaged over.
+    tolerance : float
+        Meters.
+    method : {"sclerp", "sdlb"}
+        How the model goes from one keyframe to the next.
+    required : ndarray of int, optional
+        Rows that must be keyframes.
+
+    Returns
+    -------
+    Selection
+        Rows of `pose`.
+
+    Raises
+    ------
+    SettingError
+        If the motion does not rest where the parameter does, so that no set stays within the tolerance.
+
+    References
+    ----------
+    Bellman 1961 (best approximation by segments); Imai and Iri 1988 (fewest vertices of a polygonal line).
+
+    Examples
+    --------
+    >>> from elbowscrew.geometry import dual_quat_from_screw
+    >>> from elbowscrew.motion.difference import points_from_radius
+    >>> time = np.linspace(0.0, 1.0, 101)
+    >>> there_and_back = dual_quat_from_screw(1.0 - np.abs(2.0 * time - 1.0), 0.0, [0, 0, 1], [0, 0, 0])
+    >>> select_keyframes(there_and_back, time, points_from_radius(0.05), 1e-4).row.tolist()
+    [0, 50, 100]
+    """
+    stops = np.unique(np.concatenate([[0, len(pose) - 1], [] if required is None else required])).astype(np.int64)
+    track = _Track(PoseTrack.of(pose, points), parameter, points, method, stops)
+    complete = len(pose) <= MOST_FRAMES_COMPLETE
+    found = _best_of_each_size(track, tolerance) if complete else _thinned_and_fewest(track, tolerance)
+    if not found or _errors(track, found[-1]).max() > tolerance * (1.0 + _ROUND_OFF) + _NANOMETERS:
+        raise _no_set(tolerance)
+    errors = [_errors(track, row) for row in found]
+    return Selection(
+        row=found[-1],
+        tolerance=tolerance,
+        frames=len(pose),
+        count=np.array([row.size for row in found], dtype=np.int64),
+        largest=np.array([error.max() for error in errors]),
+        rms=np.array([np.sqrt(np.mean(error**2)) for error in errors]),
+        complete=complete,
+    )
+
+
+class _Track(NamedTuple):
+    poses: PoseTrack
+    parameter: Float
+    points: BodyPoints
+    method: str
+    stops: Index
+
+    def fraction(self, first: int, last: Index | int, rows: Index | int) -> Float:
+        """How far rows are from one keyframe to the next; at the first where the parameter stands still."""
+        span = np.asarray(self.parameter[last] - self.parameter[first])
+        moves = span > 0.0
+        return np.where(moves, (self.parameter[rows] - self.parameter[first]) / np.where(moves, span, 1.0), 0.0)
+
+    def reach(self, first: int) -> int:
+        """Give the last row that a segment from a row may end at: the next one that must be a keyframe."""
+        return int(self.stops[np.searchsorted(self.stops, first, side="right")])
+
+
+def _errors(track: _Track, keyframes: Index) -> Float:
+    """RMS displacement of every frame, shape (N,)."""
+    error = np.zeros(track.parameter.size)
+    for first, last in itertools.pairwise(keyframes.tolist()):
+        rows = np.arange(first + 1, last)
+        if rows.size:
+            segment = track.poses.segments_from(first, [last])
+            seen = track.poses.seen_from(first, rows)
+            error[rows] = displacement_along(seen, segment, track.fraction(first, last, rows), BASES[track.method])
+    return error
+
+
+# Every pair of frames: the best set of each size.
+
+
+def _best_of_each_size(track: _Track, tolerance: float) -> list[Index]:
+    """Best sets from the smallest on, until one is within the tolerance; of some frames alone none may be."""
+    largest, total = _all_pairs(track)
+    count = track.parameter.size
+    reached = [largest[0]]  # least largest error of a way to each row in so many segments
+    last = count - 1
+    while reached[-1][last] > tolerance and len(reached) < last:
+        reached.append(np.maximum(reached[-1][:, None], largest).min(axis=0))
+    found = []
+    for segments, errors in enumerate(reached, start=1):
+        if np.isfinite(errors[last]):
+            limit = errors[last] * (1.0 + _ROUND_OFF) + _ROUND_OFF**2
+            found.append(_least_total(np.where(largest <= limit, total, np.inf), segments))
+    return found
+
+
+def _all_pairs(track: _Track) -> tuple[Float, Float]:
+    """Largest error and sum of squared errors of the frames between every two rows, shape (N, N); inf backward."""
+    count = track.parameter.size
+    largest, total = np.full((count, count), np.inf), np.full((count, count), np.inf)
+    basis = BASES[track.method]
+    for first in range(count - 1):
+        reach = track.reach(first)
+        every = slice(first, reach + 1)
+        seen, segments = track.poses.seen_from(first, every), track.poses.segments_from(first, every)
+        for start in range(first + 1, reach + 1, _BLOCK):
+            ends = np.arange(start, min(start + _BLOCK, reach + 1))
+            rows = np.arange(first + 1, ends[-1])
+            if not rows.size:
+                largest[first, ends], total[first, ends] = 0.0, 0.0
+                continue
+            part = segments._replace(angle=segments.angle[ends - first], vectors=segments.vectors[:, ends - first])
+            square = squares_along(seen[rows - first], part, track.fraction(first, ends, rows[:, None]), basis)
+            square[rows[:, None] >= ends] = 0.0
+            largest[first, ends] = np.sqrt(square.max(axis=0))
+            total[first, ends] = square.sum(axis=0)
+    stands = track.parameter[None, :] <= track.parameter[:, None]
+    largest[stands], total[stands] = np.inf, np.inf
+    return largest, total
+
+
+def _least_total(cost: Float, segments: int) -> Index:
+    """Rows from the first to the last in so many segments whose costs (N, N) add up to the least."""
+    count = len(cost)
+    sums = cost[0].copy()
+    before = []
+    for _ in range(segments - 1):
+        ways = sums[:, None] + cost
+        before.append(ways.argmin(axis=0))
+        sums = ways[before[-1], np.arange(count)]
+    rows = [count - 1]
+    for step in reversed(before):
+        rows.append(int(step[rows[-1]]))
+    return np.array([0, *rows[::-1]], dtype=np.int64)
+
+
+def _thinned_and_fewest(track: _Track, tolerance: float) -> list[Index]:
+    """Smaller sets from some of the frames, and the fewest of all of them."""
+    fewest = _fewest(track, tolerance)
+    kept = np.unique(
+        np.concatenate([track.stops, np.linspace(0, track.parameter.size - 1, _THINNED).round().astype(np.int64)])
+    )
+    thinned = track._replace(
+        poses=PoseTrack.of(track.poses.pose[kept], track.points),
+        parameter=track.parameter[kept],
+        stops=np.searchsorted(kept, track.stops),
+    )
+    smaller = [kept[rows] for rows in _best_of_each_size(thinned, tolerance)]
+    return [*(rows for rows in smaller if rows.size < fewest.size), fewest]
+
+
+# Long recordings: whom the first row reaches within the tolerance in one segment, in two, and so on.
+
+
+def _fewest(track: _Track, tolerance: float) -> Index:
+    """Fewest rows within a tolerance, by breadth-first search: each row is reached in as few segments as can be."""
+    count = track.parameter.size
+    before = np.full(count, -1, dtype=np.int64)
+    before[0] = 0
+    frontier: Index = np.zeros(1, dtype=np.int64)
+    screen = _Screen.of(track, tolerance)
+    while before[-1] < 0:
+        reached = []
+        for first in frontier[::-1].tolist():  # the farthest first: it reaches most of what there is to reach
+            open_rows = np.flatnonzero(before[first + 1 : track.reach(first) + 1] < 0) + first + 1
+            open_rows = open_rows[track.parameter[open_rows] > track.parameter[first]]
+            new = _reached_from(track, screen, first, open_rows, tolerance)
+            before[new] = first
+            reached.append(new)
+            if before[-1] >= 0:
+                break
+        frontier = np.sort(np.concatenate(reached))
+        if not frontier.size:
+            raise _no_set(tolerance)
+    rows = [count - 1]
+    while rows[-1]:
+        rows.append(int(before[rows[-1]]))
+    return np.array(rows[::-1], dtype=np.int64)
+
+
+def _reached_from(track: _Track, screen: _Screen, first: int, ends: Index, tolerance: float) -> Index:
+    """Those of the rows (increasing) to which a segment from a row stays within the tolerance."""
+    ends = ends[screen.may_hold(track, first, ends)]
+    if not ends.size:
+        return ends
+    poses, basis = track.poses, BASES[track.method]
+    segments = poses.segments_from(first, ends)
+
+    def keep(good: Bool) -> None:
+        nonlocal ends, segments
+        ends = ends[good]
+        segments = segments._replace(angle=segments.angle[good], vectors=segments.vectors[:, good])
+
+    for share in _PROBES:
+        rows = _row_at(track, first, ends, share)
+        seen = poses.seen_from(first, rows)
+        keep(displacement_along(seen, segments, track.fraction(first, ends, rows), basis) <= tolerance)
+        if not ends.size:
+            return ends
+    seen = poses.seen_from(first, slice(first, ends[-1] + 1))
+    holds = np.ones(ends.size, dtype=np.bool_)
+    for k in range(ends.size - 1, -1, -1):
+        if not holds[k]:
+            continue
+        rows = np.arange(first + 1, ends[k])
+        one = segments._replace(angle=segments.angle[k], vectors=segments.vectors[:, k : k + 1])
+        error = displacement_along(seen[1 : rows.size + 1], one, track.fraction(first, ends[k], rows), basis)
+        if error.max(initial=0.0) <= tolerance:
+            continue
+        # What fails in one row mostly fails there for the nearer ends, too.
+        row = first + 1 + int(error.argmax())
+        rest = np.flatnonzero(holds[: k + 1] & (ends[: k + 1] > row))
+        others = segments._replace(angle=segments.angle[rest], vectors=segments.vectors[:, rest])
+        at_row = displacement_along(seen[row - first], others, track.fraction(first, ends[rest], row), basis)
+        holds[rest] = at_row <= tolerance
+        holds[k] = False
+    return ends[holds]
+
+
+def _row_at(track: _Track, first: int, ends: Index, share: float) -> Index:
+    """Rows between a row and others where about so much of the parameter has passed."""
+    wanted = (1.0 - share) * track.parameter[first] + share * track.parameter[ends]
+    rows: Index = np.searchsorted(track.parameter, wanted).clip(first, ends)
+    return rows
+
+
+def _no_set(tolerance: float) -> SettingError:
+    return SettingError(
+        f"--tolerance {1000.0 * tolerance:g}mm: where the law rests the motion itself moves by more than that, so that "
+        "no keyframes keep to it; give a larger tolerance, or leave --law out"
+    )
+
+
+class _Screen(NamedTuple):
+    """What no segment can hold, told without making it.
+
+    About half way, at a fraction u, sDLB turns the body as the quaternions' sum ``(1 - u) q1 + u q2`` does. ScLERP is
+    there to the angle: both turn about one axis, are at one place half way, and go at most ``2 tan(theta/4)`` and
+    exactly ``theta/2`` in half-angle per u. The pose that is measured there may be turned from it by no more than the
+    tolerance allows the points.
+
+    Attributes
+    ----------
+    quat : ndarray, shape (N, 4)
+    half_turn : float
+        Half the largest turn (rad) that the tolerance allows the points about whatever axis.
+    lags : bool
+        Whether the method is not the quaternions' sum.
+    """
+
+    quat: Float
+    half_turn: float
+    lags: bool
+
+    @classmethod
+    def of(cls, track: _Track, tolerance: float) -> _Screen:
+        spread = np.linalg.eigvalsh(track.points.covariance)
+        # E^2 >= 4 sin^2(delta/2) a^2, a the least RMS distance of the points from an axis through their centroid.
+        arm = float(np.sqrt(max(spread[0] + spread[1], 0.0)))
+        sine = (tolerance + _ROUND_OFF) / max(2.0 * arm, _ROUND_OFF)
+        half_turn = float(np.arcsin(sine)) if sine < 1.0 else np.pi
+        return cls(np.ascontiguousarray(track.poses.pose[:, :4]), half_turn, track.method == "sclerp")
+
+    def may_hold(self, track: _Track, first: int, ends: Index) -> Bool:
+        """Whether the middle allows a segment to each of the rows, shape (J,); never False where one holds."""
+        if self.half_turn >= 0.5 * np.pi:
+            return np.ones(ends.size, dtype=np.bool_)
+        middle = _row_at(track, first, ends, 0.5)
+        u = track.fraction(first, ends, middle)
+        along = self.quat @ self.quat[first]
+        c = along[ends]
+        across = np.einsum("ij,ij->i", self.quat[middle], self.quat[ends])
+        mixed = (1.0 - u) * along[middle] + u * across
+        square = (1.0 - u) ** 2 + u**2 + 2.0 * u * (1.0 - u) * c
+        allowed = np.full(ends.size, self.half_turn)
+        if self.lags:
+            half_angle = np.arccos(c.clip(-1.0, 1.0))
+            speed = 2.0 * np.sqrt((1.0 - c).clip(0.0) / (1.0 + c).clip(_ROUND_OFF))
+            allowed += np.abs(u - 0.5) * (speed - half_angle).clip(0.0)
+        bound = np.cos(np.minimum(allowed, 0.5 * np.pi))
+        holds: Bool = mixed**2 >= bound**2 * square - _ROUND_OFF
+        holds |= c < _ROUND_OFF - 1.0
+        return holds

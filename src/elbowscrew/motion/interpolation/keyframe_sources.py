@@ -1,0 +1,138 @@
+"""What models are compared, and what their keyframes are taken from: the recording as it is, filtered, or thinned."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowscrew.errors import SettingError, UsageError
+from elbowscrew.model import ModelPhases
+from elbowscrew.motion.axes.axes import smoothed_displacement, twist_smoothing
+from elbowscrew.motion.interpolation.laws import LAWS
+from elbowscrew.motion.interpolation.modeling import METHODS
+from elbowscrew.motion.screws.measurement import Measurement
+from elbowscrew.settings import Settings
+
+Float = NDArray[np.float64]
+Bool = NDArray[np.bool_]
+
+_KNOTS: Final = ("law", "chord", "uniform", "angle")
+_BLENDS: Final = ("piecewise", "global")
+_MOST_PER_PHASE: Final = 20
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ComparisonPlan:
+    """Which models are compared: every combination of these.
+
+    Attributes
+    ----------
+    methods : tuple of {"dlb", "sclerp", "sdlb", "dib", "catmull-rom"}
+    laws : tuple of str
+        Of the laws of motion, "best" and "empirical".
+    blends : tuple of {"piecewise", "global"}
+    knots : tuple of {"law", "chord", "uniform", "angle"}
+    counts : tuple of int
+        Keyframes of each phase, its ends among them.
+    data : tuple of {"raw", "lowpass", "decimated"}
+        What keyframes and laws are taken from.
+    decimation : tuple of int
+        Take every so many-th frame.
+    """
+
+    methods: tuple[str, ...] = tuple(METHODS)
+    laws: tuple[str, ...] = (*LAWS, "best", "empirical")
+    blends: tuple[str, ...] = _BLENDS
+    knots: tuple[str, ...] = ("law",)
+    counts: tuple[int, ...] = (2, 3, 4, 5)
+    data: tuple[str, ...] = ("raw", "lowpass", "decimated")
+    decimation: tuple[int, ...] = (2, 4)
+
+    def __post_init__(self) -> None:
+        """Check what the types cannot.
+
+        Raises
+        ------
+        UsageError
+            Naming the option.
+        """
+        choices: dict[str, tuple[str, ...]] = {
+            "methods": tuple(METHODS),
+            "laws": (*LAWS, "best", "empirical"),
+            "blends": _BLENDS,
+            "knots": _KNOTS,
+            "data": ("raw", "lowpass", "decimated"),
+        }
+        for name, allowed in choices.items():
+            given = getattr(self, name)
+            strange = [one for one in given if one not in allowed]
+            if strange or not given:
+                msg = f"--{name}: expected some of {', '.join(allowed)}, found {', '.join(strange) or 'none'}"
+                raise UsageError(msg)
+        for name, low, high in (("counts", 2, _MOST_PER_PHASE), ("decimation", 2, 1000)):
+            numbers = getattr(self, name)
+            if not numbers or not all(low <= number <= high for number in numbers):
+                found = ", ".join(map(str, numbers)) or "none"
+                msg = f"--{name}: expected whole numbers from {low} to {high}, found {found}"
+                raise UsageError(msg)
+
+
+class Treatment(NamedTuple):
+    """What keyframes and laws are taken from: poses (N, 8), which of them count, and the phases at these."""
+
+    name: str
+    pose: Float
+    usable: Bool
+    phases: ModelPhases
+
+
+def treatments(
+    measured: Measurement, phases: ModelPhases, plan: ComparisonPlan, settings: Settings
+) -> Iterator[Treatment]:
+    """Give what the plan wants keyframes to be taken from.
+
+    Raises
+    ------
+    SettingError
+        If too few frames are left of a phase.
+    """
+    usable = measured.joint.measured.copy()
+    usable[phases.bound_rows] = True
+    for data in plan.data:
+        if data == "raw":
+            yield Treatment("raw", measured.displacement, usable, phases)
+        elif data == "lowpass":
+            cutoff_hz, pose = _filtered(measured, settings)
+            yield Treatment(f"lowpass {cutoff_hz:.3g} Hz", pose, usable, phases)
+        else:
+            for factor in plan.decimation:
+                yield _decimated(factor, measured, usable, phases)
+
+
+def _filtered(measured: Measurement, settings: Settings) -> tuple[float, Float]:
+    """Cut-off, and the displacements of filtered bodies, with the signs of the unfiltered ones."""
+    smoothing = twist_smoothing(measured, settings)
+    if isinstance(settings.lowpass_hz, float):
+        smoothing = smoothing._replace(cutoff_hz=settings.lowpass_hz)
+    pose = smoothed_displacement(measured, smoothing)
+    flipped = np.sum(pose[:, :4] * measured.displacement[:, :4], axis=1) < 0.0
+    pose = np.where(flipped[:, None], -pose, pose)
+    return float(smoothing.cutoff_hz or np.inf), np.where(np.isfinite(pose), pose, measured.displacement)
+
+
+def _decimated(factor: int, measured: Measurement, usable: Bool, phases: ModelPhases) -> Treatment:
+    start = int(phases.bound_rows[0])
+    kept = usable & ((np.arange(usable.size) - start) % factor == 0)
+    rows = np.flatnonzero(kept)
+    place = rows[np.abs(rows - np.r_[phases.bound_rows, phases.law_rows.ravel()][:, None]).argmin(axis=1)]
+    bounds = place[: phases.bound_rows.size]
+    laws = place[phases.bound_rows.size :].reshape(-1, 2)
+    name = "every 2nd" if factor == 2 else "every 3rd" if factor == 3 else f"every {factor}th"
+    if (np.diff(bounds) <= 0).any() or (np.diff(laws, axis=1) <= 0).any():
+        msg = f"--decimation {factor}: a phase has less than two of the frames that are left; give a smaller one"
+        raise SettingError(msg)
+    return Treatment(name, measured.displacement, kept, ModelPhases(bound_rows=bounds, law_rows=laws))

@@ -1,0 +1,150 @@
+"""Which law a phase of the recording follows: named, fitted, or its own."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowscrew.errors import SettingError
+from elbowscrew.geometry import dual_quaternion as dq
+from elbowscrew.geometry import sclerp
+from elbowscrew.geometry._small_angle import length
+from elbowscrew.model import BodyPoints, ModelPhases, PhaseLaw
+from elbowscrew.motion.difference import rms_displacement
+from elbowscrew.motion.interpolation.laws import LAWS, Law, asymmetric, named_law
+
+Float = NDArray[np.float64]
+LawFunction = Callable[[Float], Float]
+
+_PEAKS: Final = (0.1, 0.9)
+_COARSE: Final = 17
+_PEAK_TOLERANCE: Final = 1e-4
+_LEAST_TURN: Final = 1e-3
+_GOLDEN: Final = 0.5 * (np.sqrt(5.0) - 1.0)
+
+
+class FittedLaw(NamedTuple):
+    """A phase's law and the function of tau that it is."""
+
+    law: PhaseLaw
+    function: LawFunction
+
+
+def laws_of(
+    name: str,
+    peak: float | None,
+    pose: Float,
+    measured: NDArray[np.bool_],
+    elapsed: Float,
+    frame: NDArray[np.int64],
+    phases: ModelPhases,
+    points: BodyPoints,
+) -> tuple[FittedLaw, ...]:
+    """Law of every phase, by its name, by the best fit ("best"), or the recording's own ("empirical").
+
+    How near a law is to the recording is told by the RMS displacement between the measured poses and the ScLERP from
+    the phase's first pose to its last under that law. The best law is the one of `LAWS`, with the time of its highest
+    velocity, for which this is least.
+
+    Parameters
+    ----------
+    name : str
+    peak : float or None
+        Time of the highest velocity, as a share of the phase.
+    pose : ndarray, shape (N, 8)
+        Sign-continuous; NaN where there is none.
+    measured : ndarray of bool, shape (N,)
+        The poses that count in the fit.
+    elapsed : ndarray, shape (N,)
+        Seconds.
+    frame : ndarray of int, shape (N,)
+        For messages.
+    phases : ModelPhases
+    points : BodyPoints
+
+    Raises
+    ------
+    SettingError
+        If the law is the recording's own, and a phase does not turn the joint.
+    """
+    found = []
+    for p, (first, last) in enumerate(phases.law_rows.tolist()):
+        ends = pose[phases.bound_rows[p : p + 2]]
+        rows = np.arange(first, last + 1)
+        rows = rows[measured[rows]]
+        phase = _Phase(ends, pose[rows], (elapsed[rows] - elapsed[first]) / (elapsed[last] - elapsed[first]), points)
+        if name == "empirical":
+            function = phase.own_law(f"frames {frame[first]} to {frame[last]}")
+            found.append(FittedLaw(PhaseLaw(name, None, phase.rms(function)), function))
+        elif name == "best":
+            found.append(phase.best_law())
+        else:
+            found.append(phase.named(name, peak))
+    return tuple(found)
+
+
+class _Phase(NamedTuple):
+    """First and last pose, the measured poses between and their tau."""
+
+    ends: Float
+    pose: Float
+    tau: Float
+    points: BodyPoints
+
+    def rms(self, law: LawFunction) -> float:
+        if not self.tau.size:
+            return np.nan
+        modeled = sclerp(self.ends[0], self.ends[1], law(self.tau), way="as given")
+        return float(np.sqrt(np.mean(rms_displacement(self.pose, modeled, self.points) ** 2)))
+
+    def named(self, name: str, peak: float | None) -> FittedLaw:
+        law = named_law(name, peak).position
+        return FittedLaw(PhaseLaw(name, peak, self.rms(law)), law)
+
+    def best_law(self) -> FittedLaw:
+        fits = [self._fitted(name, law) for name, law in LAWS.items()]
+        return min(fits, key=lambda fit: fit.law.rms)
+
+    def _fitted(self, name: str, law: Law) -> FittedLaw:
+        if name == "linear":
+            return self.named(name, None)
+        coarse = np.linspace(*_PEAKS, _COARSE)
+        errors = [self.rms(asymmetric(law, peak).position) for peak in coarse]
+        best = int(np.argmin(errors))
+        low, high = coarse[max(best - 1, 0)], coarse[min(best + 1, _COARSE - 1)]
+        peak = _least(lambda peak: self.rms(asymmetric(law, peak).position), float(low), float(high))
+        return self.named(name, round(float(peak), 4))
+
+    def own_law(self, place: str) -> LawFunction:
+        """Share of the phase's turn that the joint has made, about the axis of the whole turn."""
+        whole = dq.log(dq.multiply(dq.conjugate(self.ends[0]), self.ends[1]))[:3]
+        turn = float(length(whole))
+        if turn < 0.5 * _LEAST_TURN or not self.tau.size:
+            msg = f"--law empirical: the joint does not turn between {place}, so that it has no law there"
+            raise SettingError(msg)
+        step = dq.multiply(dq.conjugate(self.ends[0]), self.pose)
+        half = np.arctan2(step[:, 1:4] @ (whole / turn), step[:, 0])
+        half = np.unwrap(np.concatenate([[0.0], half]))[1:]
+        inner = (self.tau > 0.0) & (self.tau < 1.0)
+        tau = np.concatenate([[0.0], self.tau[inner], [1.0]])
+        share = np.concatenate([[0.0], half[inner] / turn, [1.0]])
+        return lambda x: np.interp(x, tau, share)
+
+
+def _least(function: Callable[[float], float], low: float, high: float) -> float:
+    """Where a function with one minimum between two points is least, by golden sections."""
+    inner = [high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)]
+    values = [function(x) for x in inner]
+    while high - low > _PEAK_TOLERANCE:
+        if values[0] < values[1]:
+            high = inner[1]
+            inner = [high - _GOLDEN * (high - low), inner[0]]
+            values = [function(inner[0]), values[0]]
+        else:
+            low = inner[0]
+            inner = [inner[1], low + _GOLDEN * (high - low)]
+            values = [values[1], function(inner[1])]
+    return 0.5 * (low + high)

@@ -1,0 +1,210 @@
+"""The model of a measured motion: phases, keyframes, laws, and the poses between."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowscrew.errors import AnalysisError
+from elbowscrew.model import (
+    BodyPoints,
+    Keyframes,
+    ModelPhases,
+    MovementPhases,
+    PhaseLaw,
+    QualityWarning,
+    RigidBody,
+    Selection,
+)
+from elbowscrew.motion.axes.axes import instantaneous_of, measured_mean_axis
+from elbowscrew.motion.difference import DEFAULT_RADIUS, points_from_markers, points_from_radius
+from elbowscrew.motion.interpolation.keyframe_selection import select_keyframes
+from elbowscrew.motion.interpolation.keyframes import keyframes_at, phase_time, rows_of_frames
+from elbowscrew.motion.interpolation.law_fit import FittedLaw, laws_of
+from elbowscrew.motion.interpolation.model_phases import model_phases, one_phase, phases_of_keyframes
+from elbowscrew.motion.interpolation.modeling import METHODS, ModeledPoses, model_motion
+from elbowscrew.motion.movements.phases import movement_phases, velocity_everywhere
+from elbowscrew.motion.screws.measurement import Measurement
+from elbowscrew.settings import Settings
+
+Float = NDArray[np.float64]
+
+
+class JointModel(NamedTuple):
+    """Result of `build_model`; the selection is None if no tolerance was given."""
+
+    keyframes: Keyframes
+    inversion_rows: NDArray[np.int64]
+    laws: tuple[PhaseLaw, ...]
+    selection: Selection | None
+    poses: ModeledPoses
+    points: BodyPoints
+    warnings: tuple[QualityWarning, ...]
+
+
+def build_model(measured: Measurement, movements: MovementPhases, velocity: Float, settings: Settings) -> JointModel:
+    """Model a measured motion as the settings say.
+
+    Parameters
+    ----------
+    measured : Measurement
+    movements : MovementPhases
+    velocity : ndarray, shape (N,)
+        Angular velocity that the movements were found from, rad/s.
+    settings : Settings
+
+    Raises
+    ------
+    SettingError
+        If the keyframes, knots or laws asked for do not fit the motion.
+    AnalysisError
+        If there is a pose in one frame only.
+    """
+    frame, elapsed, pose = measured.screw.frame, measured.elapsed, measured.displacement
+    points = body_points(measured.forearm, settings)
+    rows = None
+    if settings.keyframes is not None:
+        angle = measured.screw.angle
+        rows, inversion_row = rows_of_frames(angle, frame, settings.keyframes, settings.inversion)
+        phases = phases_of_keyframes(rows, angle, inversion_row)
+    else:
+        phases = phases_of(measured, movements, velocity, settings)
+    inversions = _inversion_rows(phases, measured.screw.angle, settings)
+    if settings.tolerance_mm is not None and settings.model_law == "linear":
+        phases = one_phase(_measured_rows(measured))  # time itself needs no turns
+    laws = model_laws(measured, phases, points, settings.model_law, settings.law_peak)
+    selection = None
+    if settings.tolerance_mm is not None:
+        selection = _selected(measured, phases, laws, points, settings)
+        rows = selection.row
+    keyframes = keyframes_at(
+        phases.bound_rows if rows is None else rows,
+        phases,
+        frame,
+        elapsed,
+        pose,
+        choice=settings.knots,
+        laws=[law.function for law in laws],
+        piecewise=settings.blend == "piecewise",
+    )
+    poses = model_motion(pose, elapsed, keyframes, METHODS[settings.model_method], [law.function for law in laws])
+    return JointModel(
+        keyframes=keyframes,
+        inversion_rows=inversions,
+        laws=tuple(law.law for law in laws),
+        selection=selection,
+        poses=poses,
+        points=points,
+        warnings=_warnings(keyframes, inversions, measured, poses),
+    )
+
+
+def movements_of(measured: Measurement, settings: Settings) -> tuple[MovementPhases, Float]:
+    """Movements between rests, and the angular velocity (N,) that they were found from."""
+    twist = instantaneous_of(measured, measured_mean_axis(measured), settings)
+    velocity = velocity_everywhere(twist.angular_velocity, measured.screw.angle, measured.elapsed)
+    return movement_phases(velocity, measured.elapsed), velocity
+
+
+def phases_of(measured: Measurement, movements: MovementPhases, velocity: Float, settings: Settings) -> ModelPhases:
+    """Phases of the model, as the settings say."""
+    return model_phases(
+        measured.screw.angle,
+        measured.screw.frame,
+        measured.elapsed,
+        movements,
+        velocity,
+        choice=settings.phases,
+        inversion=settings.inversion,
+    )
+
+
+def model_laws(
+    measured: Measurement, phases: ModelPhases, points: BodyPoints, name: str, peak: float | None = None
+) -> tuple[FittedLaw, ...]:
+    """Law of motion of every phase; see `laws_of`."""
+    return laws_of(
+        name,
+        peak,
+        measured.displacement,
+        measured.joint.measured,
+        measured.elapsed,
+        measured.screw.frame,
+        phases,
+        points,
+    )
+
+
+def body_points(forearm: RigidBody, settings: Settings) -> BodyPoints:
+    """Points that the RMS displacement is averaged over: of the radius asked for, the markers, or 50 mm."""
+    if settings.radius_mm is not None:
+        return points_from_radius(settings.radius_mm / 1000.0)
+    if forearm.marker_offsets is not None:
+        return points_from_markers(forearm.marker_offsets)
+    return points_from_radius(DEFAULT_RADIUS)
+
+
+def _measured_rows(measured: Measurement) -> NDArray[np.int64]:
+    rows = np.flatnonzero(measured.joint.measured).astype(np.int64)
+    if rows.size < 2:
+        msg = "the recording has one single frame with a pose: there is no motion to model"
+        raise AnalysisError(msg)
+    return rows
+
+
+def _selected(
+    measured: Measurement, phases: ModelPhases, laws: tuple[FittedLaw, ...], points: BodyPoints, settings: Settings
+) -> Selection:
+    """Choose the keyframes among the measured poses; the phases' bounds are keyframes in any case."""
+    bounds = phases.bound_rows
+    usable = measured.joint.measured.copy()
+    usable[bounds] = True
+    rows = np.arange(bounds[0], bounds[-1] + 1)
+    rows = rows[usable[rows]]
+    parameter = np.empty(rows.size)
+    for p, law in enumerate(laws):
+        inside = (rows >= bounds[p]) & (rows <= bounds[p + 1])
+        parameter[inside] = p + np.maximum.accumulate(
+            law.function(phase_time(phases, p, measured.elapsed, rows[inside]))
+        )
+    found = select_keyframes(
+        measured.displacement[rows],
+        parameter,
+        points,
+        1e-3 * float(settings.tolerance_mm or 0.0),
+        method=settings.model_method,
+        required=np.searchsorted(rows, bounds),
+    )
+    return found.of_rows(rows)
+
+
+def _inversion_rows(phases: ModelPhases, angle: Float, settings: Settings) -> NDArray[np.int64]:
+    """Rows where the motion turns back; a rest on the way is none, what was asked for is."""
+    inner = phases.bound_rows[1:-1]
+    if settings.inversion is not None or settings.keyframes is not None:
+        return inner
+    step = np.diff(angle[phases.bound_rows])
+    return inner[step[1:] * step[:-1] < 0.0]
+
+
+def _warnings(
+    keyframes: Keyframes, inversion_rows: NDArray[np.int64], measured: Measurement, modeled: ModeledPoses
+) -> tuple[QualityWarning, ...]:
+    warnings = []
+    if not inversion_rows.size:
+        message = "the angle is largest at an end of the motion, so it has no inversion"
+        warnings.append(QualityWarning(code="no-inversion", message=message))
+    filled = keyframes.frame[measured.joint.filled[keyframes.row]]
+    if filled.size:
+        message = f"keyframes {', '.join(map(str, filled))} are not measured but filled in from their neighbors"
+        warnings.append(QualityWarning(code="filled-keyframe", message=message))
+    vanished = int((~modeled.phase.mask & ~np.isfinite(modeled.dual_quat[:, 0])).sum())
+    if vanished:
+        message = (
+            f"in {vanished} frames the blended poses cancel, so there is no model pose; "
+            "choose keyframes closer together, or --method sclerp"
+        )
+        warnings.append(QualityWarning(code="blend-vanishes", message=message))
+    return tuple(warnings)

@@ -1,0 +1,135 @@
+"""The joint's axis by all estimators, side by side and in every frame, and whether there is one at all."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowscrew.geometry import point_nearest_origin
+from elbowscrew.geometry.dual_quaternion import conjugate, pose_from_dual_quat, transform_lines
+from elbowscrew.geometry.sensitivity import confidence_radius
+from elbowscrew.model import FittedJoint, JointAxis, JointMotion, LineEstimate, PoseNoise
+from elbowscrew.motion.joint.joint_fit import LineFit, fit_joint, sara_lines
+from elbowscrew.motion.screws.pose_noise import JointNoise
+from elbowscrew.motion.screws.relative import ExpressIn
+from elbowscrew.motion.screws.uncertainty import joint_covariance
+
+Float = NDArray[np.float64]
+
+_MOST_FRAMES: Final = 20_000
+_LARGEST_UNEXPLAINED: Final = 0.25
+_Z_AXIS: Final = np.array([0.0, 0.0, 1.0, 0.0, 0.0, 0.0])
+# Without a stated noise: a common cluster's, whose rotation and translation only have to be weighed against each other.
+_COMMON_NOISE: Final = np.diag([6e-6] * 3 + [1e-8] * 3)
+
+
+def estimate_joint_axis(
+    joint: JointMotion,
+    angle: Float,
+    mean_line: Float,
+    noise: JointNoise,
+    noise_gain: Float,
+    *,
+    express_in: ExpressIn,
+    robust: bool,
+) -> JointAxis:
+    """Estimate the joint's axis from all measured frames.
+
+    Parameters
+    ----------
+    joint : JointMotion
+    angle : ndarray, shape (N,)
+        Rotation since the reference, radians, for the sense of the axis.
+    mean_line : ndarray, shape (6,)
+        Weighted mean of the finite axes in the forearm's frame at the reference.
+    noise : JointNoise
+    noise_gain : ndarray, shape (N,)
+        Share of the noise's variance that a filter has left in each frame.
+    express_in : {"forearm", "arm", "lab"}
+    robust : bool
+        Weigh outliers down in the fits.
+    """
+    rows = np.flatnonzero(joint.measured)
+    rows = rows[np.linspace(0, rows.size - 1, min(rows.size, _MOST_FRAMES)).astype(np.int64)]
+    poses = joint.dual_quat_proximal_distal[rows]
+    assumed = PoseNoise(covariance=_COMMON_NOISE, source="assumed", marker_noise=None)
+    proximal, distal = noise.known or (assumed if noise.arm_moves else None, assumed)
+    covariance = noise_gain[rows, None, None] * joint_covariance(poses, proximal, distal)
+    start = transform_lines(joint.reference, mean_line)
+    near = pose_from_dual_quat(joint.reference)[1]
+    fits = {screw: fit_joint(poses, covariance, start, near, screw=screw, robust=robust) for screw in (False, True)}
+    hinge = fits[False]
+    about_mean = hinge.angle - np.average(hinge.angle, weights=hinge.weight)
+    spread = _rms(about_mean[:, None], hinge.weight)
+    unexplained = _rms(hinge.residual[:, :2], hinge.weight) / spread if spread > 0.0 else np.inf
+    single = bool(unexplained <= _LARGEST_UNEXPLAINED)
+    told = noise.known is not None
+    arm_line, forearm_line = sara_lines(poses, angle[rows])
+    fitted = {
+        screw: _fitted_joint(fit, joint, rows, express_in, start, noise_known=told) if single else None
+        for screw, fit in fits.items()
+    }
+    return JointAxis(
+        single=single,
+        hinge=fitted[False],
+        screw_hinge=fitted[True],
+        weighted_mean=_estimate(start, mean_line, joint, express_in),
+        sara=_estimate(arm_line, forearm_line, joint, express_in),
+        unexplained=unexplained,
+        noise={"arm": noise.arm, "forearm": noise.forearm},
+    )
+
+
+def _fitted_joint(
+    fit: LineFit, joint: JointMotion, rows: NDArray[np.int64], express_in: ExpressIn, start: Float, *, noise_known: bool
+) -> FittedJoint:
+    arm, forearm = transform_lines(fit.arm, _Z_AXIS), transform_lines(fit.forearm, _Z_AXIS)
+    if arm[:3] @ start[:3] < 0.0:
+        arm, forearm = -arm, -forearm
+    covariance = fit.covariance(noise_known=noise_known)
+    first = 4 if express_in == "forearm" else 0
+    tilt, shift = (covariance[k : k + 2, k : k + 2] for k in (first, first + 2))
+    pitched = len(covariance) > 9
+    return FittedJoint(
+        line=_estimate(arm, forearm, joint, express_in),
+        covariance=covariance,
+        axis_sd=float(np.sqrt(np.trace(tilt))),
+        point_sd=float(np.sqrt(np.trace(shift))),
+        axis_cone=float(confidence_radius(tilt)),
+        point_radius=float(confidence_radius(shift)),
+        pitch=fit.pitch,
+        pitch_sd=float(np.sqrt(covariance[9, 9])) if pitched else 0.0,
+        residual_rotation=_rms(fit.residual[:, :2], fit.weight),
+        residual_translation=_rms(fit.residual[:, 3:], fit.weight),
+        noise_ratio=fit.noise_ratio if noise_known else float("nan"),
+        correlation=fit.correlation,
+        used=rows,
+        weight=fit.weight,
+    )
+
+
+def _estimate(arm: Float, forearm: Float, joint: JointMotion, express_in: ExpressIn) -> LineEstimate:
+    shown = {
+        "forearm": forearm,
+        "arm": arm,
+        "lab": transform_lines(joint.dual_quat_lab_proximal, arm),
+    }[express_in]
+    return LineEstimate(
+        direction=shown[:3],
+        point=point_nearest_origin(shown),
+        direction_arm=arm[:3],
+        point_arm=point_nearest_origin(arm),
+        direction_forearm=forearm[:3],
+        point_forearm=point_nearest_origin(forearm),
+    )
+
+
+def forearm_line(line: Float, change: Float) -> Float:
+    """Write a line (6,) of the frame the screws are expressed in, in the forearm's at the reference."""
+    return transform_lines(conjugate(change), line)
+
+
+def _rms(residual: Float, weight: Float) -> float:
+    return float(np.sqrt(np.average(np.sum(residual**2, axis=1), weights=weight)))

@@ -1,0 +1,1 @@
+"""Movements, rests and cycles."""

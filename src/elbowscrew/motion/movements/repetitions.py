@@ -1,0 +1,197 @@
+"""Figures of every repetition, and how alike the repetitions are."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowscrew.geometry._small_angle import divide, length
+from elbowscrew.model import Repeatability, Repetitions, ScrewMotion
+from elbowscrew.motion.axes.mean_axis import mean_line_of
+
+Float = NDArray[np.float64]
+
+_POINTS: Final = 101
+
+
+def repetitions_of(
+    cycles: NDArray[np.int64], screw: ScrewMotion, line: Float, angular_velocity: Float, elapsed: Float
+) -> Repetitions:
+    """Figures of every cycle.
+
+    Parameters
+    ----------
+    cycles : ndarray of int64, shape (R, 3)
+        From `find_cycles`.
+    screw : ScrewMotion
+    line : ndarray, shape (N, 6)
+        Axes of the frames, NaN where there is none.
+    angular_velocity, elapsed : ndarray, shape (N,)
+        rad/s and seconds.
+    """
+    start, top, end = cycles.T
+    direction, point = np.full((len(cycles), 3), np.nan), np.full((len(cycles), 3), np.nan)
+    slide_range, span = np.full(len(cycles), np.nan), np.full(len(cycles), np.nan)
+    speed = np.full((len(cycles), 2), np.nan)
+    for k, (first, turn, last) in enumerate(cycles.tolist()):
+        rows = slice(first, last + 1)
+        known = first + np.flatnonzero(screw.valid[rows] & np.isfinite(line[rows]).all(axis=1))
+        span[k] = np.ptp(screw.angle[rows][np.isfinite(screw.angle[rows])])
+        speed[k] = _largest(angular_velocity[first : turn + 1]), _largest(-angular_velocity[turn : last + 1])
+        if known.size:
+            direction[k], point[k] = mean_line_of(screw.angle[known], line[known])
+            slides = screw.slide[rows]
+            slide_range[k] = np.ptp(slides[np.isfinite(slides)])
+    middle = _mean_direction(direction)
+    return Repetitions(
+        number=np.arange(1, len(cycles) + 1),
+        start_frame=screw.frame[start],
+        inversion_frame=screw.frame[top],
+        end_frame=screw.frame[end],
+        start_time_s=screw.time_s[start],
+        end_time_s=screw.time_s[end],
+        duration_s=elapsed[end] - elapsed[start],
+        start_angle=screw.angle[start],
+        top_angle=screw.angle[top],
+        angle_range=span,
+        slide_range=slide_range,
+        flexion_speed=speed[:, 0],
+        extension_speed=speed[:, 1],
+        axis_direction=direction,
+        axis_point=point,
+        axis_deviation=np.arctan2(length(np.cross(direction, middle)), direction @ middle),
+    )
+
+
+def repeatability_of(
+    cycles: NDArray[np.int64], repetitions: Repetitions, angle: Float, elapsed: Float, near: Float
+) -> Repeatability:
+    """Mean curve over normalized time, ICC, CMC, and spread of the axes, of two cycles and more.
+
+    Each cycle's time is normalized from its start to its end; the angle is interpolated linearly between frames.
+
+    Parameters
+    ----------
+    cycles : ndarray of int64, shape (R, 3)
+    repetitions : Repetitions
+    angle, elapsed : ndarray, shape (N,)
+    near : ndarray, shape (3,)
+
+    References
+    ----------
+    McGraw and Wong 1996, ICC(A,1); Kadaba and others 1989, CMC within a day.
+    """
+    percent = np.linspace(0.0, 100.0, _POINTS)
+    curves = np.array([_normalized(angle[a : b + 1], elapsed[a : b + 1], percent) for a, _, b in cycles.tolist()])
+    curves = curves.reshape(-1, _POINTS)
+    count = np.isfinite(curves).sum(axis=0)
+    total = np.where(np.isfinite(curves), curves, 0.0)
+    mean = divide(total.sum(axis=0), count.astype(np.float64))
+    square = np.where(np.isfinite(curves), (curves - mean) ** 2, 0.0).sum(axis=0)
+    whole = curves[:, np.isfinite(curves).all(axis=0)]
+    axes = repetitions.axis_direction
+    return Repeatability(
+        percent=percent,
+        mean=mean,
+        sd=np.where(count > 1, np.sqrt(square / np.maximum(count - 1, 1)), np.nan),
+        count=count.astype(np.int64),
+        icc=intraclass_correlation(whole.T),
+        cmc=multiple_correlation(whole),
+        axis_sd=_spread(repetitions.axis_deviation),
+        point_sd=_place_spread(axes, repetitions.axis_point, near),
+        top_sd=float(np.std(repetitions.top_angle, ddof=1)) if len(cycles) > 1 else float("nan"),
+    )
+
+
+def intraclass_correlation(table: Float) -> float:
+    """ICC(A,1), two-way, absolute agreement, single measures, of targets by raters.
+
+    Parameters
+    ----------
+    table : ndarray, shape (n, k)
+        Targets in rows (points of time), raters in columns (repetitions).
+
+    Returns
+    -------
+    float
+        NaN of fewer than two of either, and where nothing varies.
+
+    References
+    ----------
+    McGraw and Wong 1996; with random raters the ICC(2,1) of Shrout and Fleiss 1979.
+    """
+    n, k = table.shape
+    if n < 2 or k < 2:
+        return float("nan")
+    grand = table.mean()
+    rows, columns = table.mean(axis=1), table.mean(axis=0)
+    between_rows = k * np.sum((rows - grand) ** 2) / (n - 1)
+    between_columns = n * np.sum((columns - grand) ** 2) / (k - 1)
+    rest = np.sum((table - rows[:, None] - columns + grand) ** 2) / ((n - 1) * (k - 1))
+    whole = between_rows + (k - 1) * rest + k * (between_columns - rest) / n
+    return float((between_rows - rest) / whole) if whole > 0.0 else float("nan")
+
+
+def multiple_correlation(curves: Float) -> float:
+    """Coefficient of multiple correlation of curves within a day.
+
+    Parameters
+    ----------
+    curves : ndarray, shape (R, T)
+
+    Returns
+    -------
+    float
+        1 for curves that are one; NaN for fewer than two, where nothing varies, and where its square is negative.
+
+    References
+    ----------
+    Kadaba and others 1989, Journal of Orthopaedic Research 7.
+    """
+    repetitions, points = curves.shape
+    if repetitions < 2 or points < 2:
+        return float("nan")
+    within = np.sum((curves - curves.mean(axis=0)) ** 2) / (points * (repetitions - 1))
+    whole = np.sum((curves - curves.mean()) ** 2) / (repetitions * points - 1)
+    square = 1.0 - within / whole if whole > 0.0 else -1.0
+    return float(np.sqrt(square)) if square >= 0.0 else float("nan")
+
+
+def _normalized(angle: Float, elapsed: Float, percent: Float) -> Float:
+    """Angle at percents of the time of a cycle; NaN where a neighboring frame has none."""
+    share = 100.0 * (elapsed - elapsed[0]) / (elapsed[-1] - elapsed[0])
+    after = np.clip(np.searchsorted(share, percent), 1, share.size - 1)
+    part = (percent - share[after - 1]) / (share[after] - share[after - 1])
+    curve: Float = (1.0 - part) * angle[after - 1] + part * angle[after]
+    return curve
+
+
+def _mean_direction(directions: Float) -> Float:
+    known = directions[np.isfinite(directions[:, 0])]
+    if not len(known):
+        return np.full(3, np.nan)
+    total = known.sum(axis=0)
+    return divide(total, length(total))
+
+
+def _spread(values: Float) -> float:
+    known = values[np.isfinite(values)]
+    return float(np.sqrt(np.sum(known**2) / (known.size - 1))) if known.size > 1 else float("nan")
+
+
+def _place_spread(directions: Float, points: Float, near: Float) -> float:
+    """Standard deviation of where the axes pierce the plane across their mean at the point nearest the body."""
+    known = np.isfinite(directions[:, 0])
+    if known.sum() < 2:
+        return float("nan")
+    n, p = directions[known], points[known]
+    middle = _mean_direction(n)
+    place = p + divide((near - p) @ middle, n @ middle)[:, None] * n
+    return _spread(length(place - place.mean(axis=0)))
+
+
+def _largest(values: Float) -> float:
+    known = values[np.isfinite(values)]
+    return float(known.max()) if known.size else float("nan")

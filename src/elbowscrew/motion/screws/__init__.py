@@ -1,0 +1,1 @@
+"""The joint's motion, its screw in every frame, and their errors."""

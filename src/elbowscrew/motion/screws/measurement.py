@@ -1,0 +1,196 @@
+"""From a recording to the measured motion of the joint: poses, displacement, and the screw of every frame."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowscrew.errors import AnalysisError, SettingError
+from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat
+from elbowscrew.model import BodyQuality, JointMotion, QualityWarning, Recording, RigidBody, ScrewMotion
+from elbowscrew.motion.interpolation.keyframes import row_of_frame
+from elbowscrew.motion.screws.helical import HelicalSeries, helical_series
+from elbowscrew.motion.screws.pose_noise import JointNoise
+from elbowscrew.motion.screws.relative import displacement, expressed, frame_change, joint_from_bodies
+from elbowscrew.motion.screws.uncertainty import ScrewErrors, known_errors, least_angle, no_errors, screw_errors
+from elbowscrew.motion.smoothing.resampling import resample_recording
+from elbowscrew.motion.smoothing.smoothing import Smoothing
+from elbowscrew.motion.tracking.bodies import tracked_bodies
+from elbowscrew.motion.tracking.clock import elapsed_time
+from elbowscrew.settings import Settings
+
+Float = NDArray[np.float64]
+
+
+class Measurement(NamedTuple):
+    """What was measured, before anything is modeled.
+
+    Attributes
+    ----------
+    recording : Recording
+        As it is analyzed: resampled if that was asked for.
+    arm : RigidBody or None
+    forearm : RigidBody
+    elapsed : ndarray, shape (N,)
+        Even clock, seconds.
+    joint : JointMotion
+    displacement : ndarray, shape (N, 8)
+        Since the reference, in the forearm's frame there (P 35).
+    change : ndarray, shape (8,)
+        Pose of that frame in the one the screws are expressed in.
+    noise : JointNoise
+    smoothing : Smoothing
+        The filter that the bodies have gone through.
+    noise_gain : ndarray, shape (N,)
+        Share of the noise's variance that it has left.
+    line : ndarray, shape (N, 6)
+        Axes as Plücker vectors, as expressed.
+    screw : ScrewMotion
+    quality : tuple of BodyQuality
+    warnings : tuple of QualityWarning
+    """
+
+    recording: Recording
+    arm: RigidBody | None
+    forearm: RigidBody
+    elapsed: Float
+    joint: JointMotion
+    displacement: Float
+    change: Float
+    noise: JointNoise
+    smoothing: Smoothing
+    noise_gain: Float
+    line: Float
+    screw: ScrewMotion
+    quality: tuple[BodyQuality, ...]
+    warnings: tuple[QualityWarning, ...]
+
+
+def measure(recording: Recording, settings: Settings) -> Measurement:
+    """Measure the motion of the joint (P 35) and the screw of every frame.
+
+    Raises
+    ------
+    SettingError, AnalysisError, RecordingError
+        As `elbowscrew.analyze`.
+    """
+    arm, forearm, broken_rows, quality, warnings = tracked_bodies(recording, settings)
+    elapsed = elapsed_time(recording)
+    smoothing = Smoothing.of(arm, forearm, elapsed, recording.rate_hz, broken_rows, settings)
+    noise = JointNoise.of(arm, forearm, recording.rate_hz, settings)
+    arm, forearm = smoothing.apply(arm, forearm)
+    if settings.resample_hz is not None:
+        recording, arm, forearm, more = _resampled(recording, arm, forearm, broken_rows, settings.resample_hz)
+        folding = smoothing.cutoff_hz is None or smoothing.cutoff_hz > 0.5 * settings.resample_hz
+        warnings += tuple(warning for warning in more if folding or warning.code != "aliasing")
+        elapsed, broken_rows = elapsed_time(recording), np.empty(0, dtype=np.intp)
+        smoothing = smoothing._replace(elapsed=elapsed, rate_hz=recording.rate_hz, broken_rows=broken_rows)
+    joint = joint_from_bodies(
+        arm,
+        forearm,
+        recording.frame,
+        elapsed,
+        recording.rate_hz,
+        reference_row=None
+        if settings.reference is None
+        else row_of_frame(recording.frame, settings.reference, "reference"),
+        reference_window=settings.reference_window,
+        max_gap_s=settings.max_gap_s,
+        broken_rows=broken_rows,
+        lowpass_hz=smoothing.cutoff_hz,
+    )
+    D = displacement(joint)
+    D_expressed = expressed(D, joint, settings.express_in)
+    gain = smoothing.noise_gain(joint.measured)
+    series, errors = _measured_series(D, D_expressed, joint, noise, gain, settings)
+    screw = ScrewMotion(
+        frame=recording.frame,
+        time_s=recording.time_s,
+        valid=joint.measured,
+        filled=joint.filled,
+        arm_loss=np.zeros(recording.frame.size, dtype="U1") if arm is None else arm.loss_labels(),
+        forearm_loss=forearm.loss_labels(),
+        angle=series.angle,
+        slide=series.slide,
+        axis_direction=series.direction,
+        axis_point=series.point,
+        euler_parameters=D_expressed[:, :4],
+        translation=pose_from_dual_quat(D_expressed)[1],
+        angle_sd=errors.angle,
+        slide_sd=errors.slide,
+        axis_sd=errors.axis,
+        point_sd=errors.point,
+        axis_cone=errors.axis_cone,
+        point_radius=errors.point_radius,
+    )
+    return Measurement(
+        recording=recording,
+        arm=arm,
+        forearm=forearm,
+        elapsed=elapsed,
+        joint=joint,
+        displacement=D,
+        change=frame_change(joint, settings.express_in),
+        noise=noise,
+        smoothing=smoothing,
+        noise_gain=gain,
+        line=series.line,
+        screw=screw,
+        quality=quality,
+        warnings=warnings,
+    )
+
+
+def _resampled(
+    recording: Recording,
+    arm: RigidBody | None,
+    forearm: RigidBody,
+    broken_rows: NDArray[np.intp],
+    rate_hz: float,
+) -> tuple[Recording, RigidBody | None, RigidBody, tuple[QualityWarning, ...]]:
+    """Put the two bodies, as they are now, and the markers on another clock."""
+    chosen = (forearm,) if arm is None else (arm, forearm)
+    resampled = resample_recording(replace(recording, bodies=chosen, warnings=()), rate_hz, broken_rows)
+    proximal = None if arm is None else resampled.bodies[0]
+    warnings = resampled.warnings
+    return replace(resampled, warnings=recording.warnings), proximal, resampled.bodies[-1], warnings
+
+
+def _measured_series(
+    D: Float, D_expressed: Float, joint: JointMotion, noise: JointNoise, gain: Float, settings: Settings
+) -> tuple[HelicalSeries, ScrewErrors]:
+    """Screws of all frames, with their errors, each axis known as well as the settings want it."""
+    limit, least = np.inf, np.radians(settings.min_angle_deg)
+    errors = no_errors(len(D))
+    if noise.known is not None:
+        change = frame_change(joint, settings.express_in)
+        errors = screw_errors(D, joint, *noise.known, change, settings.reference_window, gain)
+        if settings.axis_sd_deg is not None:
+            limit = np.radians(settings.axis_sd_deg)
+            least = least_angle(limit, joint, *noise.known)
+    elif settings.axis_sd_deg is not None:
+        msg = "--axis-sd: the noise of the poses is not known here; give --marker-noise MM, or --min-angle in its place"
+        raise SettingError(msg)
+    series = helical_series(D_expressed, least, joint.reference_row)
+    unsure = errors.axis > limit
+    series.line[unsure], series.slide[unsure] = np.nan, np.nan
+    peak = int(np.nanargmax(np.abs(series.angle)))
+    if not np.isfinite(series.line[joint.measured]).any():
+        found = f"the largest rotation since the reference is {np.degrees(abs(series.angle[peak])):.3g} deg"
+        if settings.axis_sd_deg is None:
+            msg = (
+                f"{found}, less than the {settings.min_angle_deg:g} deg an axis needs: no rotation to analyze "
+                "(--min-angle sets the limit)"
+            )
+        else:
+            best = np.degrees(np.nanmin(errors.axis, initial=np.inf))
+            msg = (
+                f"{found}, and no axis is known to the {settings.axis_sd_deg:g} deg of --axis-sd: the best is known "
+                f"to {best:.3g} deg; ask for less, or give --min-angle"
+            )
+        raise AnalysisError(msg)
+    series = series.reversed() if series.angle[peak] < 0.0 else series
+    return series, known_errors(errors, series.angle, np.isfinite(series.slide))

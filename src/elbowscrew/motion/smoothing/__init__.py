@@ -1,0 +1,1 @@
+"""Filter, change of rate and gaps."""

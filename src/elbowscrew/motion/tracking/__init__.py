@@ -1,0 +1,1 @@
+"""Which bodies are the joint's, and which of their poses are no measurement."""

@@ -1,0 +1,92 @@
+"""The two bodies of the joint, chosen, and with only those poses left that are measurements."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowscrew.errors import AnalysisError, SettingError
+from elbowscrew.model import BodyQuality, QualityWarning, Recording, RigidBody, marker_matches
+from elbowscrew.motion.tracking.marker_poses import body_from_markers
+from elbowscrew.motion.tracking.quality import body_quality, check_bodies
+from elbowscrew.motion.tracking.selection import choose_bodies
+from elbowscrew.settings import Settings
+
+
+class TrackedBodies(NamedTuple):
+    """Result of `tracked_bodies`.
+
+    Attributes
+    ----------
+    arm : RigidBody or None
+        None if it stands still.
+    forearm : RigidBody
+    broken_rows : ndarray of int
+        Rows that a body reaches by a leap.
+    quality : tuple of BodyQuality
+    warnings : tuple of QualityWarning
+        Those of the recording, too.
+    """
+
+    arm: RigidBody | None
+    forearm: RigidBody
+    broken_rows: NDArray[np.intp]
+    quality: tuple[BodyQuality, ...]
+    warnings: tuple[QualityWarning, ...]
+
+
+def tracked_bodies(recording: Recording, settings: Settings) -> TrackedBodies:
+    """Choose arm and forearm and take out what is no measurement.
+
+    Raises
+    ------
+    SettingError
+        If the choice is not clear.
+    AnalysisError
+        If a body is tracked in too few frames.
+    """
+    arm, forearm = _chosen_bodies(recording, settings)
+    chosen = (forearm,) if arm is None else (arm, forearm)
+    checked, warnings = check_bodies(recording, chosen, settings)
+    for found in checked:
+        body = found.body
+        share = 100.0 * float(body.tracked.mean()) if body.loss.size else 0.0
+        if share < settings.min_tracked_percent or not body.tracked.any():
+            reasons = ", ".join(f"{count} {reason}" for reason, count in body.loss_counts().items())
+            msg = (
+                f"body {body.name!r} is tracked in {share:.1f} % of {body.loss.size} frames ({reasons}); at least "
+                f"{settings.min_tracked_percent:g} % are needed (--min-tracked; "
+                "for leaps see --max-turn and --max-speed, for frozen poses --frozen)"
+            )
+            raise AnalysisError(msg)
+    quality = tuple(body_quality(raw, found, recording) for raw, found in zip(chosen, checked, strict=True))
+    proximal = None if arm is None else checked[0].body
+    broken_rows = np.unique(np.concatenate([found.broken_rows for found in checked]))
+    return TrackedBodies(proximal, checked[-1].body, broken_rows, quality, (*recording.warnings, *warnings))
+
+
+def _chosen_bodies(recording: Recording, settings: Settings) -> tuple[RigidBody | None, RigidBody]:
+    """Choose arm and forearm among the bodies of the file and those built from markers."""
+    patterns = {"arm": settings.arm_markers, "forearm": settings.forearm_markers}
+    built = {
+        role: body_from_markers(recording, f"{role} markers", wanted, settings.pose_method)
+        for role, wanted in patterns.items()
+        if wanted is not None
+    }
+    shared = [m.name for m in recording.markers if all(marker_matches(m.name, p or ()) for p in patterns.values())]
+    if len(built) == 2 and shared:
+        msg = f"markers {', '.join(shared)} are chosen for both bodies; give each marker to one of them"
+        raise SettingError(msg)
+    for role, body in built.items():
+        if getattr(settings, role) is not None:
+            msg = f"--{role} and --{role}-markers both say what the {role} is; give one of them (for {body.name!r})"
+            raise SettingError(msg)
+    names = {role: built[role].name if role in built else getattr(settings, role) for role in ("arm", "forearm")}
+    bodies = (*recording.bodies, *built.values())
+    if not bodies:
+        msg = "the recording has no rigid bodies and no markers were chosen: give --arm-markers and --forearm-markers"
+        raise SettingError(msg)
+    return choose_bodies(replace(recording, bodies=bodies), names["arm"], names["forearm"])

@@ -1,0 +1,165 @@
+"""C3D files, through ezc3d (the extra ``[c3d]``): markers, and the poses of the ROTATION block where there is one."""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import json
+import subprocess
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowscrew.errors import NoBodiesError, RecordingError
+from elbowscrew.model import QualityWarning, Recording, RigidBody, Source, invalid_warning, out_of_reach
+from elbowscrew.reading.clock import is_rate
+from elbowscrew.reading.growing import GrowingMarker
+from elbowscrew.reading.options import ASK_FOR_MARKERS, ReadOptions, stated_unit
+from elbowscrew.tables import METERS
+
+Float = NDArray[np.float64]
+
+_LONGEST_OPENING_S: Final = 600
+
+
+class _Content(NamedTuple):
+    """What the worker found: points (3, M, N), residuals (1, M, N), rotations (4, 4, K, N'), parameters."""
+
+    points: Float
+    residuals: Float
+    rotations: Float
+    first_frame: int
+    frames: int
+    groups: dict[str, dict[str, list[Any]]]
+
+    def value(self, group: str, name: str) -> list[Any]:
+        return self.groups.get(group, {}).get(name, [])
+
+    def labels(self, group: str) -> list[str]:
+        """LABELS, LABELS2, ...: a parameter holds 255 of them at the most."""
+        names = [str(label).strip() for label in self.value(group, "LABELS")]
+        more = 2
+        while self.value(group, f"LABELS{more}"):
+            names += [str(label).strip() for label in self.value(group, f"LABELS{more}")]
+            more += 1
+        return names
+
+
+def recognizes(head: bytes) -> bool:
+    """Tell by the second byte, which is 0x50 in every C3D file, and a first that is no printable character."""
+    return len(head) >= 2 and head[1] == 0x50 and head[0] < 0x20
+
+
+def read(path: Path, options: ReadOptions) -> Recording:
+    """Read a C3D file; see `elbowscrew.reading.registry.read_recording`."""
+    content = _open(path)
+    unit = stated_unit(path, "".join(str(text) for text in content.value("POINT", "UNITS")[:1]), options)
+    rate = float((content.value("POINT", "RATE") or [0.0])[0])
+    if not is_rate(rate):
+        msg = f"{path}: POINT:RATE is {rate:g}, no possible frame rate; export the take again"
+        raise RecordingError(msg)
+    bodies, warnings = _bodies(content, METERS[unit])
+    grown = _markers(content, METERS[unit], options)
+    markers = tuple(marker.finish() for marker in grown)
+    if not bodies and not markers:
+        names = ", ".join(content.labels("POINT")[:8]) or "none"
+        msg = f"{path}: no rigid bodies (rotations) in the file (markers: {names}); {ASK_FOR_MARKERS}"
+        raise NoBodiesError(msg)
+    count = bodies[0].loss.size if bodies else len(markers[0].position)
+    if not count or content.frames not in (0, count):
+        msg = f"{path}: the file is cut: its header tells of {content.frames} frames, it has {count}; export it again"
+        raise RecordingError(msg)
+    frame = np.arange(content.first_frame, content.first_frame + count, dtype=np.int64)
+    with path.open("rb") as stream:
+        digest = hashlib.file_digest(stream, "sha256").hexdigest()
+    return Recording(
+        bodies=tuple(bodies),
+        frame=frame,
+        time_s=(frame - frame[0]) / rate,
+        rate_hz=rate,
+        markers=markers,
+        source=Source(
+            path=str(path),
+            sha256=digest,
+            layout="C3D",
+            length_unit=unit,
+            rotation_type="matrix" if bodies else "",
+        ),
+        warnings=(*warnings, *(warning for marker in grown for warning in marker.warnings())),
+    )
+
+
+def _open(path: Path) -> _Content:
+    if find_spec("ezc3d") is None:
+        msg = f"{path}: a C3D file needs ezc3d; install it with: pip install 'elbowscrew[c3d]'"
+        raise RecordingError(msg)
+    command = [sys.executable, "-m", "elbowscrew.reading.c3d_worker", str(path)]
+    reason = "the file is damaged"
+    try:
+        done = subprocess.run(command, capture_output=True, check=True, timeout=_LONGEST_OPENING_S)  # noqa: S603
+        with np.load(io.BytesIO(done.stdout)) as arrays:
+            statement = json.loads(str(arrays["statement"]))
+            points, residuals, rotations = (
+                np.asarray(arrays[name], dtype=np.float64) for name in ("points", "residuals", "rotations")
+            )
+        content = _Content(
+            points, residuals, rotations, int(statement["first_frame"]), int(statement["frames"]), statement["groups"]
+        )
+        if content.points.ndim == 3 and content.rotations.ndim == 4:
+            return content
+    except subprocess.CalledProcessError as error:
+        told = error.stderr.decode("utf-8", "replace").strip().splitlines()
+        reason = told[-1] if told and error.returncode > 0 else reason
+    except subprocess.TimeoutExpired:
+        reason = f"it is not open after {_LONGEST_OPENING_S} s"
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        reason = str(error)
+    msg = f"{path}: not a C3D file that can be read: {reason}; export the take again"
+    raise RecordingError(msg)
+
+
+def _markers(content: _Content, scale: float, options: ReadOptions) -> list[GrowingMarker]:
+    found = []
+    for k, name in enumerate(content.labels("POINT")[: content.points.shape[1]]):
+        if options.wants(name):
+            position = scale * content.points[:, k].T
+            if content.residuals.shape[-2:] == content.points.shape[-2:]:
+                # A negative residual says: not seen.
+                position = np.where((content.residuals[0, k] >= 0.0)[:, None], position, np.nan)
+            found.append(GrowingMarker(name))
+            found[-1].append(position)
+    return found
+
+
+def _bodies(content: _Content, scale: float) -> tuple[list[RigidBody], list[QualityWarning]]:
+    # Rotations may be written more often than points; the points give the clock.
+    ratio = max(1, int((content.value("ROTATION", "RATIO") or [1])[0]))
+    rotations = content.rotations[..., ::ratio]
+    if not rotations.size:
+        return [], []
+    labels = content.labels("ROTATION")
+    bodies, warnings = [], []
+    for k in range(rotations.shape[2]):
+        matrix = np.moveaxis(rotations[:, :, k], -1, 0)
+        name = labels[k] if k < len(labels) else f"rotation {k + 1}"
+        R = matrix[:, :3, :3]
+        with np.errstate(all="ignore"):
+            departure = np.abs(np.swapaxes(R, 1, 2) @ R - np.eye(3)).max(axis=(1, 2))
+            solved = (departure < _ORTHOGONAL) & (np.linalg.det(np.where(np.isfinite(R), R, 0.0)) > 0.0)
+            position = scale * matrix[:, :3, 3]
+        solved &= ~out_of_reach(position)
+        # Zeros and NaN are what is written for a body that was not solved; anything else is damage.
+        invalid = ~solved & np.isfinite(R).all(axis=(1, 2)) & R.any(axis=(1, 2))
+        if invalid.any():
+            warnings.append(invalid_warning(name, int(invalid.sum())))
+        matrix = np.where(solved[:, None, None], matrix, np.nan)
+        bodies.append(RigidBody.from_matrices(name, matrix[:, :3, :3], np.where(solved[:, None], position, np.nan)))
+    return bodies, warnings
+
+
+# Single precision leaves 1e-6; a block of zeros, or of anything else, is no rotation.
+_ORTHOGONAL: Final = 1e-3

@@ -1,0 +1,137 @@
+"""Numbers out of lines of text: only the columns in use, blank cells as NaN, anything else an error."""
+
+from __future__ import annotations
+
+import csv
+import re
+from collections.abc import Iterator, Sequence
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowscrew.errors import RecordingError
+from elbowscrew.reading.source import TextSource
+
+_NUMBER: Final = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
+
+
+def parse_number(text: str) -> float:
+    """Read the number in a cell, NaN for a blank cell.
+
+    Raises
+    ------
+    ValueError
+        For anything else, words such as "nan" and values beyond the range of a float included.
+    """
+    stripped = text.strip()
+    if not stripped:
+        return float("nan")
+    if _NUMBER.fullmatch(stripped):
+        value = float(stripped)
+        if np.isfinite(value):
+            return value
+    msg = f"expected a number, found {text.strip()[:40]!r}"
+    raise ValueError(msg)
+
+
+def read_blocks(
+    source: TextSource, first_line: int, columns: Sequence[int], width: int, *, exact: bool = False
+) -> Iterator[NDArray[np.float64]]:
+    """Read some columns of the lines from `first_line` on, many lines at a time.
+
+    Parameters
+    ----------
+    source : TextSource
+    first_line : int
+        Lines to skip.
+    columns : sequence of int
+        Counted from 0.
+    width : int
+        Cells a whole line has ...
+    exact : bool
+        ... and no more; else at the least, as behind a header that a spreadsheet cut.
+
+    Yields
+    ------
+    ndarray, shape (rows, len(columns))
+        Lines without any content are left out.
+
+    Raises
+    ------
+    RecordingError
+        For a cell that is neither blank nor a number, or a line that has been cut; with line and column.
+    """
+    number = first_line + 1
+    for block in source.blocks(first_line):
+        width, values = _parse_block(source, block, number, columns, width, exact=exact)
+        exact = exact or len(values) > 0
+        yield values
+        number += len(block)
+
+
+def _parse_block(
+    source: TextSource, block: list[str], number: int, columns: Sequence[int], width: int, *, exact: bool
+) -> tuple[int, NDArray[np.float64]]:
+    """Parse a block at once where all its cells are plain numbers, else cell by cell; give the width found, too.
+
+    A cell more or less would shift all that follow it: every line must have as many as the first, and that at least
+    as many as the header.
+    """
+    delimiter = source.delimiter
+    quoted = any('"' in line for line in block)
+    counts = {line.count(delimiter) + 1 for line in block}
+    mixed = source.decimal_comma and any("," in line for line in block) and any("." in line for line in block)
+    if (
+        not quoted
+        and not mixed
+        and len(counts) == 1
+        and ((found := counts.pop()) == width or (found > width and not exact))
+    ):
+        plain = [line.replace(",", ".") for line in block] if source.decimal_comma else block
+        try:
+            values = np.loadtxt(plain, delimiter=delimiter, usecols=columns, comments=None, ndmin=2)
+        except ValueError:
+            pass  # a blank or a faulty cell: the slow way tells which
+        else:
+            if values.shape[0] == len(block) and np.isfinite(values).all():
+                return found, np.asarray(values, dtype=np.float64)
+    rows = []
+    marks: set[str] = set()
+    for offset, line in enumerate(block):
+        place = f"{source.path}:{number + offset}"
+        try:
+            cells = source.cells(line) if quoted else line.split(delimiter)
+        except csv.Error as error:
+            msg = f"{place}: not a line of a CSV file: {error}; export the take again"
+            raise RecordingError(msg) from error
+        if not any(cell.strip() for cell in cells):
+            continue
+        while len(cells) > width and exact and not cells[-1].strip():
+            cells.pop()
+        if len(cells) < width or (exact and len(cells) != width):
+            msg = (
+                f"{place}: expected {width} cells, found {len(cells)}: the line is cut or its cells are shifted; "
+                "export the take again, or delete the line"
+            )
+            raise RecordingError(msg)
+        width, exact = len(cells), True
+        rows.append(_numbers(source, cells, columns, place))
+        if source.decimal_comma:
+            marks |= {mark for column in columns for mark in ",." if mark in cells[column]}
+            if len(marks) > 1:
+                msg = f"{place}: commas and points in numbers: which is the decimal mark is not certain; save again"
+                raise RecordingError(msg)
+    return width, np.array(rows, dtype=np.float64).reshape(len(rows), len(columns))
+
+
+def _numbers(source: TextSource, cells: list[str], columns: Sequence[int], place: str) -> list[float]:
+    row = []
+    for column in columns:
+        text = cells[column].replace(",", ".") if source.decimal_comma else cells[column]
+        try:
+            row.append(parse_number(text))
+        except ValueError as error:
+            msg = f"{place}: column {column + 1}: {error}; export the take again, or blank the cell"
+            raise RecordingError(msg) from error
+    return row

@@ -1,0 +1,108 @@
+"""Frame numbers, times and rates that a file may have."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowscrew.errors import RecordingError
+from elbowscrew.model import QualityWarning
+from elbowscrew.motion.tracking.clock import time_resolution
+from elbowscrew.reading.cells import parse_number
+from elbowscrew.reading.source import TextSource
+
+Float = NDArray[np.float64]
+
+LATEST_TIME_S: Final = 1e10
+LAST_FRAME: Final = 2**53
+_LOWEST_HZ: Final = 1e-3
+_HIGHEST_HZ: Final = 1e6
+
+
+def check_frames(source: TextSource, line: int, block: Float) -> None:
+    """Check the first two columns of a block that begins behind a line.
+
+    Raises
+    ------
+    RecordingError
+        If one is no whole frame number or no time.
+    """
+    frame, time_s = block[:, 0], block[:, 1]
+    bad = ~((np.abs(frame) < LAST_FRAME) & (np.abs(time_s) < LATEST_TIME_S)) | (np.nan_to_num(frame) % 1.0 != 0.0)
+    if bad.any():
+        row = int(np.flatnonzero(bad)[0])
+        msg = (
+            f"{source.path}:{line + row + 1}: expected a whole frame number and a time, found {frame[row]:g} and "
+            f"{time_s[row]:g} (nan is a blank cell); export the take again"
+        )
+        raise RecordingError(msg)
+
+
+def is_rate(value: float) -> bool:
+    """Whether a number can be a frame rate, in hertz."""
+    return _LOWEST_HZ <= value <= _HIGHEST_HZ
+
+
+def rate_of(frame: NDArray[np.int64], time_s: Float) -> float:
+    """Frames a second from the first row to the last; NaN if the times do not increase so."""
+    frames, span = float(frame[-1] - frame[0]), float(time_s[-1] - time_s[0])
+    # A span that no rate fits would divide to more than there are numbers.
+    return frames / span if span * _HIGHEST_HZ >= 1.0 else float("nan")
+
+
+def counted_rate(path: Path, frame: NDArray[np.int64], time_s: Float) -> float:
+    """Frames a second, of a file that states no rate.
+
+    Raises
+    ------
+    RecordingError
+        If frame numbers and times do not give a possible one.
+    """
+    rate = rate_of(frame, time_s)
+    if not is_rate(rate):
+        msg = f"{path}: frame numbers and times do not increase from the first to the last row as a clock does"
+        raise RecordingError(msg)
+    return rate
+
+
+def frame_rate(path: Path, stated: str, frame: NDArray[np.int64], time_s: Float) -> tuple[float, list[QualityWarning]]:
+    """Frames a second as a file states them, unless its times say otherwise, with a warning then.
+
+    Raises
+    ------
+    RecordingError
+        If neither gives a possible rate.
+    """
+    try:
+        rate = parse_number(stated.replace(",", "."))
+    except ValueError:
+        rate = float("nan")
+    counted = rate_of(frame, time_s)
+    if not is_rate(counted):
+        if not is_rate(rate):
+            msg = f"{path}: neither the header nor the times give a possible frame rate; export the take again"
+            raise RecordingError(msg)
+        return rate, []
+    # A time rounded at either end is no disagreement.
+    rounding_s = 2.0 * max(time_resolution(time_s), 1e-3)
+    if is_rate(rate) and abs(counted - rate) <= rate * (0.01 + rounding_s / (time_s[-1] - time_s[0])):
+        return rate, []
+    if np.isfinite(rate):
+        message = f"the header states {rate:g} frames a second, the times give {counted:.4g}: the latter is used"
+        return counted, [QualityWarning(code="frame-rate", message=message)]
+    return counted, []
+
+
+def cut_warnings(source: TextSource, stated: str, rows: int) -> list[QualityWarning]:
+    """Warnings of a file that may have been cut: by its own count of frames, and by its last line."""
+    found = []
+    if stated.isdecimal() and int(stated) != rows:
+        message = f"the file states {stated} frames and has {rows}"
+        found.append(QualityWarning(code="frame-count", message=message))
+    if not source.ends_with_newline:
+        message = "the last line has no line end: the file may have been cut, and with it the last number"
+        found.append(QualityWarning(code="no-final-newline", message=message))
+    return found

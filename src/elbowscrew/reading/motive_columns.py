@@ -1,0 +1,127 @@
+"""Motive's column layout: a header (`motive_header`), then one line a frame."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowscrew.errors import RecordingError, SettingError
+from elbowscrew.geometry import quaternion
+from elbowscrew.model import QualityWarning, Recording, Source
+from elbowscrew.reading.cells import read_blocks
+from elbowscrew.reading.clock import check_frames, cut_warnings, frame_rate
+from elbowscrew.reading.cluster_shapes import swap_warnings
+from elbowscrew.reading.growing import Growing, GrowingMarker
+from elbowscrew.reading.motive_bodies import BodyBuilder, sample_bodies
+from elbowscrew.reading.motive_header import BodyColumns, Header, body_columns, marker_columns, parse_header
+from elbowscrew.reading.options import ReadOptions, stated_unit
+from elbowscrew.reading.source import TextSource
+from elbowscrew.tables import METERS
+
+Float = NDArray[np.float64]
+
+_KNOWN_VERSIONS: Final = ("1.1", "1.2", "1.21", "1.22", "1.23", "1.24", "1.25")
+
+
+def recognizes(cells: list[str]) -> bool:
+    """Tell by the first cell."""
+    return cells[0] == "format version"
+
+
+def read(source: TextSource, options: ReadOptions) -> Recording:
+    """Read a file of the column layout; see `elbowscrew.reading.registry.read_recording`."""
+    header = parse_header(source)
+    wanted = marker_columns(header, options)
+    bodies = body_columns(source, header, needed=not wanted)
+    unit = stated_unit(source.path, header.pairs.get("Length Units", ""), options)
+    order = _rotation_type(source, header, bodies, options.rotation) if bodies else ""
+    samples = sample_bodies(source, header, bodies, METERS[unit], order)
+    builders = [BodyBuilder(body, METERS[unit], order, sample) for body, sample in zip(bodies, samples, strict=True)]
+    columns = sorted({0, 1}.union(*(builder.columns for builder in builders), *wanted.values()))
+    place = {column: k for k, column in enumerate(columns)}
+    frames, times = Growing(dtype=np.int64), Growing()
+    markers = {name: GrowingMarker(name) for name in wanted}
+    line = header.lines
+    for block in read_blocks(source, header.lines, columns, header.width, exact=header.whole):
+        check_frames(source, line, block)
+        frames.append(block[:, 0].astype(np.int64))
+        times.append(block[:, 1])
+        for name, triple in wanted.items():
+            markers[name].append(METERS[unit] * block[:, [place[k] for k in triple]])
+        for builder in builders:
+            builder.append(block, columns)
+        line += len(block)
+    frame, time_s = frames.finish(), times.finish()
+    if frame.size == 0:
+        msg = f"{source.path}:{header.lines + 1}: no frame follows the header; export the take again"
+        raise RecordingError(msg)
+    stated_rate = header.pairs.get("Export Frame Rate") or header.pairs.get("Capture Frame Rate") or ""
+    rate, warnings = frame_rate(source.path, stated_rate, frame, time_s)
+    for builder in builders:
+        warnings += builder.warnings(header.version)
+    for marker in markers.values():
+        warnings += marker.warnings()
+    warnings += swap_warnings([one for builder in builders if (one := builder.odd_shapes) is not None], frame)
+    return Recording(
+        bodies=tuple(builder.finish() for builder in builders),
+        frame=frame,
+        time_s=time_s,
+        rate_hz=rate,
+        markers=tuple(marker.finish() for marker in markers.values()),
+        source=Source(
+            path=str(source.path),
+            sha256=source.sha256,
+            layout=f"Motive columns {header.version}",
+            take_name=header.pairs.get("Take Name", ""),
+            length_unit=unit,
+            rotation_type=order,
+            metadata=header.pairs,
+        ),
+        warnings=(*warnings, *_file_warnings(source, header, frame.size)),
+    )
+
+
+def _rotation_type(source: TextSource, header: Header, bodies: tuple[BodyColumns, ...], rotation: str | None) -> str:
+    """Return "quaternion" or an Euler order; the labels have the last word on which of the two it is."""
+    if all("W" in body.rotation for body in bodies):
+        if rotation not in (None, "quaternion"):
+            msg = f"--rotation {rotation}: the file has quaternions (its columns are labeled X, Y, Z, W)"
+            raise SettingError(msg)
+        return "quaternion"
+    stated = header.pairs.get("Rotation Type", "").upper()
+    given = (rotation or "").upper()
+    order = stated or given
+    written = {"".join(sorted(body.rotation, key=lambda axis: body.rotation[axis])) for body in bodies}
+    if order in quaternion.EULER_ORDERS and written != {order}:
+        msg = (
+            f"{source.path}: the rotation columns stand in the order {', '.join(sorted(written))}, which {order} "
+            "contradicts: Motive writes them in the order of the rotation type; export the take again"
+        )
+        raise RecordingError(msg) if stated else SettingError(msg)
+    if not order:
+        msg = (
+            f"{source.path}:1: the file does not state the order of its Euler angles; give --rotation "
+            f"{', '.join(quaternion.EULER_ORDERS)}"
+        )
+        raise SettingError(msg)
+    if given and given != order:
+        msg = f"rotation: the file states {stated} itself, which {rotation!r} contradicts; leave --rotation out"
+        raise SettingError(msg)
+    if order not in quaternion.EULER_ORDERS or any("W" in body.rotation for body in bodies):
+        if not stated:
+            msg = f"rotation: expected one of {', '.join(quaternion.EULER_ORDERS)} for this file, found {rotation!r}"
+            raise SettingError(msg)
+        msg = f"{source.path}:1: Rotation Type {stated!r} does not fit the rotation columns X, Y, Z"
+        raise RecordingError(msg)
+    return order
+
+
+def _file_warnings(source: TextSource, header: Header, rows: int) -> list[QualityWarning]:
+    stated = header.pairs.get("Total Exported Frames") or header.pairs.get("Total Frames") or ""
+    warnings = cut_warnings(source, stated, rows)
+    if header.version not in _KNOWN_VERSIONS:
+        message = f"format version {header.version!r} is not known; read as {_KNOWN_VERSIONS[-1]}"
+        warnings.append(QualityWarning(code="unknown-version", message=message))
+    return warnings

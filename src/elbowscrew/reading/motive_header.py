@@ -1,0 +1,254 @@
+"""The header of Motive's column layout: what each column is, found by label and not by counting."""
+
+from __future__ import annotations
+
+import csv
+import re
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import islice
+from typing import Final
+
+from elbowscrew.errors import NoBodiesError, RecordingError
+from elbowscrew.reading.options import ASK_FOR_MARKERS, ReadOptions
+from elbowscrew.reading.source import TextSource
+
+_HEADER_LINES: Final = 25
+_LAST_NUMBER: Final = re.compile(r"\d+$", re.ASCII)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ColumnKey:
+    """What the header says of one column."""
+
+    index: int
+    kind: str
+    name: str
+    identifier: str
+    field: str
+    axis: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Header:
+    """The header: the pairs of line 1, a key for every column, its lines, and whether its rows are equally long.
+
+    They are, padding of spreadsheets included, unless somebody cut them; then lines have just as many cells.
+    """
+
+    pairs: dict[str, str]
+    columns: tuple[ColumnKey, ...]
+    lines: int
+    whole: bool
+
+    @property
+    def width(self) -> int:
+        """Cells of a whole line."""
+        return len(self.columns)
+
+    @property
+    def version(self) -> str:
+        """The number of the export format; a spreadsheet may have made its point a comma."""
+        return self.pairs.get("Format Version", "").replace(",", ".")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BodyColumns:
+    """Where one rigid body stands: its columns by label, and the X, Y, Z of its markers by number.
+
+    The fitted ones are the Rigid Body Marker columns, the seen ones the Marker columns that bear the body's name.
+    """
+
+    name: str
+    identifier: str
+    rotation: dict[str, int]
+    position: dict[str, int]
+    error: int | None
+    fitted: dict[int, tuple[int, ...]]
+    seen: dict[int, tuple[int, ...]]
+
+
+def parse_header(source: TextSource) -> Header:
+    """Find the header's rows by what they hold, not by counting: exports and spreadsheets insert and pad lines.
+
+    The axis row is the first whose first cell is `Frame`; the field row stands above it; the rows before that hold
+    types, names, ids and perhaps parents, in this order or as tagged in their second cell.
+    """
+    rows = [_cells(source, number, line) for number, line in enumerate(islice(source.lines(), _HEADER_LINES), start=1)]
+    lines = [number for number, row in enumerate(rows, start=1) if any(row)]
+    rows = [row for row in rows if any(row)]
+    axis_row = next((k for k, row in enumerate(rows) if row[0].casefold() == "frame"), None)
+    if axis_row is None or axis_row < 2:
+        msg = (
+            f"{source.path}: the header is cut: no row begins with 'Frame' in the first {_HEADER_LINES} lines; "
+            "export the take again"
+        )
+        raise RecordingError(msg)
+    cells = iter(rows[0])
+    pairs: dict[str, str] = {}
+    for key in cells:
+        if not key:
+            break
+        pairs[key] = next(cells, "")
+    labels = _label_rows(source, rows, axis_row, lines[axis_row])
+    axes, fields = rows[axis_row], rows[axis_row - 1]
+    width = max(_trimmed_width(axes), _trimmed_width(fields))
+    columns = tuple(
+        ColumnKey(
+            index=k,
+            kind=_cell(labels["type"], k),
+            name=_cell(labels["name"], k),
+            identifier=_cell(labels["id"], k),
+            field=_cell(fields, k).casefold(),
+            axis=_cell(axes, k).upper(),
+        )
+        for k in range(width)
+    )
+    nameless = next((c for c in columns[2:] if c.field == "rotation" and not (c.kind and c.name)), None)
+    if nameless is not None:
+        msg = (
+            f"{source.path}:{lines[axis_row]}: the header is cut: column {nameless.index + 1} ({nameless.field}) is "
+            "without type or name; export the take again"
+        )
+        raise RecordingError(msg)
+    whole = len({len(row) for row in (axes, fields, *labels.values()) if row}) == 1
+    padded = len(axes) if whole else width
+    columns += tuple(_blank_column(k) for k in range(width, padded))
+    return Header(pairs=pairs, columns=columns, lines=lines[axis_row], whole=whole)
+
+
+def _blank_column(index: int) -> ColumnKey:
+    return ColumnKey(index=index, kind="", name="", identifier="", field="", axis="")
+
+
+def _cells(source: TextSource, number: int, line: str) -> list[str]:
+    try:
+        return source.cells(line)
+    except csv.Error as error:
+        msg = f"{source.path}:{number}: not a line of a CSV file: {error}"
+        raise RecordingError(msg) from error
+
+
+def _trimmed_width(row: Sequence[str]) -> int:
+    """Count the columns up to the last that has a label; spreadsheets pad the rest."""
+    return max((k + 1 for k, cell in enumerate(row) if cell.strip()), default=0)
+
+
+def _cell(row: Sequence[str], k: int) -> str:
+    return row[k].strip() if k < len(row) else ""
+
+
+def _label_rows(source: TextSource, rows: list[list[str]], axis_row: int, line: int) -> dict[str, list[str]]:
+    candidates = [row for row in rows[1 : axis_row - 1] if any(cell.strip() for cell in row[1:])]
+    tagged = {row[1].strip().casefold(): row for row in candidates if row[1].strip()}
+    if "type" in tagged:
+        return {key: tagged.get(key, []) for key in ("type", "name", "id")}
+    if len(candidates) < 3:
+        msg = (
+            f"{source.path}:{line}: the header is cut: expected rows of types, names and ids above the axis "
+            f"row, found {len(candidates)}; export the take again"
+        )
+        raise RecordingError(msg)
+    return dict(zip(("type", "name", "id"), candidates, strict=False))
+
+
+def body_columns(source: TextSource, header: Header, *, needed: bool = True) -> tuple[BodyColumns, ...]:
+    """Group the columns of the rigid bodies by id and name, taking every column by its label.
+
+    Raises
+    ------
+    RecordingError
+        If there is none but one is needed, or one is not whole.
+    """
+    groups: dict[tuple[str, str], list[ColumnKey]] = {}
+    for column in header.columns:
+        if column.kind.casefold() == "rigid body":
+            groups.setdefault((column.identifier, column.name), []).append(column)
+    if not groups and needed:
+        kinds = sorted({column.kind for column in header.columns[2:] if column.kind})
+        found = ", ".join(kinds) if kinds else "no data columns at all"
+        or_markers = f", or {ASK_FOR_MARKERS}" if "Marker" in kinds else ""
+        msg = (
+            f"{source.path}: no rigid bodies in the file (found: {found}); in Motive, solve the bodies and tick "
+            f"'Rigid Bodies' in the export{or_markers}"
+        )
+        raise NoBodiesError(msg)
+    bodies = []
+    for (identifier, name), columns in groups.items():
+        rotation = _labeled(source, columns, "rotation", name)
+        position = _labeled(source, columns, "position", name)
+        if set(position) != set("XYZ") or set(rotation) not in (set("XYZ"), set("XYZW")):
+            msg = (
+                f"{source.path}:{header.lines}: body {name!r}: expected rotation X, Y, Z (W) and position X, Y, Z, "
+                f"found rotation {', '.join(rotation) or 'none'} and position {', '.join(position) or 'none'}; "
+                "export the take again"
+            )
+            raise RecordingError(msg)
+        bodies.append(
+            BodyColumns(
+                name=name,
+                identifier=identifier,
+                rotation=rotation,
+                position=position,
+                error=next((column.index for column in columns if "error" in column.field), None),
+                fitted=_marker_columns(header.columns, "rigid body marker", identifier=identifier),
+                seen=_marker_columns(header.columns, "marker", body=name),
+            )
+        )
+    return tuple(bodies)
+
+
+def marker_columns(header: Header, options: ReadOptions) -> dict[str, tuple[int, ...]]:
+    """X, Y and Z columns of the markers asked for, by name; markers of one name have their id behind it."""
+    grouped: dict[tuple[str, str], dict[str, int]] = {}
+    for column in header.columns:
+        if column.kind.casefold() == "marker" and column.field == "position":
+            grouped.setdefault((column.name, column.identifier), {})[column.axis] = column.index
+    names = Counter(name for name, _ in grouped)
+    found = {}
+    for (name, identifier), axes in grouped.items():
+        shown = name if names[name] == 1 else f"{name} ({identifier})"
+        if {"X", "Y", "Z"} <= set(axes) and (options.wants(name) or options.wants(shown)):
+            found[shown] = tuple(axes[axis] for axis in "XYZ")
+    return found
+
+
+def _marker_columns(
+    columns: tuple[ColumnKey, ...], kind: str, *, identifier: str | None = None, body: str | None = None
+) -> dict[int, tuple[int, ...]]:
+    """X, Y and Z columns of a body's markers, by the number their names end in; none if the numbers are not clear.
+
+    Fitted markers bear the body's identifier, seen ones its name.
+    """
+    by_name: dict[str, dict[str, int]] = {}
+    for column in columns:
+        if column.kind.casefold() != kind or column.field != "position":
+            continue
+        if column.identifier == identifier if body is None else _is_marker_of(body, column.name):
+            by_name.setdefault(column.name, {})[column.axis] = column.index
+    numbered = {
+        int(number[0]): tuple(axes[axis] for axis in "XYZ")
+        for name, axes in by_name.items()
+        if (number := _LAST_NUMBER.search(name)) and {"X", "Y", "Z"} <= set(axes)
+    }
+    return numbered if len(numbered) == len(by_name) else {}
+
+
+def _is_marker_of(body: str, marker: str) -> bool:
+    rest = marker.removeprefix(body)
+    return rest != marker and re.fullmatch(r"[:_\- ]\s*Marker\s*\d+", rest) is not None
+
+
+def _labeled(source: TextSource, columns: list[ColumnKey], field: str, body: str) -> dict[str, int]:
+    by_name: dict[str, int] = {}
+    for column in columns:
+        if column.field == field:
+            if column.axis in by_name:
+                msg = (
+                    f"{source.path}: body {body!r} stands twice in the file with the same id (columns "
+                    f"{by_name[column.axis] + 1} and {column.index + 1}); export the take again"
+                )
+                raise RecordingError(msg)
+            by_name[column.axis] = column.index
+    return by_name

@@ -1,0 +1,158 @@
+"""The registry of readers: which format is it, and who reads it."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from itertools import islice
+from pathlib import Path
+from typing import Final
+
+from elbowscrew.errors import RecordingError, SettingError, UsageError
+from elbowscrew.model import Recording
+from elbowscrew.reading import c3d, motive_columns, plain_table, row_tagged, trc
+from elbowscrew.reading.cells import parse_number
+from elbowscrew.reading.options import ReadOptions
+from elbowscrew.reading.source import TextSource, first_bytes, open_source
+from elbowscrew.tables import METERS
+
+_ENDINGS: Final = (".csv", ".trc", ".c3d")
+_UNITS: Final = frozenset({"units"})
+_MARKERS: Final = frozenset({"markers"})
+_ALL: Final = _UNITS | _MARKERS | {"rotation"}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Format:
+    """One entry of the registry.
+
+    Attributes
+    ----------
+    name : str
+    recognizes : callable
+        Told the cells of the first line with any content, in lower case.
+    read : callable
+    accepts : frozenset of str
+        The fields of `ReadOptions` that mean something for it.
+    """
+
+    name: str
+    recognizes: Callable[[list[str]], bool]
+    read: Callable[[TextSource, ReadOptions], Recording]
+    accepts: frozenset[str]
+
+
+FORMATS: Final = (
+    Format(name="Motive columns", recognizes=motive_columns.recognizes, read=motive_columns.read, accepts=_ALL),
+    Format(name="plain table", recognizes=plain_table.recognizes, read=plain_table.read, accepts=_MARKERS),
+    Format(name="TRC", recognizes=trc.recognizes, read=trc.read, accepts=_UNITS | _MARKERS),
+    Format(name="row-tagged", recognizes=row_tagged.recognizes, read=row_tagged.read, accepts=frozenset()),
+)
+"""A new text format is one module with `recognizes` and `read` and one entry here; the first that fits reads it."""
+
+
+def read_recording(
+    path: str | os.PathLike[str],
+    *,
+    units: str | None = None,
+    rotation: str | None = None,
+    markers: str | Sequence[str] = (),
+) -> Recording:
+    """Read a recording.
+
+    Parameters
+    ----------
+    path : path-like
+        An OptiTrack export (Motive's column layout 1.1 to 1.25, the row-tagged layout 1.0 and 1.1), a plain table, a
+        TRC file, or a C3D file (with the extra ``[c3d]``).
+    units : {"m", "cm", "mm"}, optional
+        Unit of length, for a file that states none. A file's own statement is not overruled.
+    rotation : str, optional
+        "quaternion" or an Euler order such as "XYZ", for a file that states none.
+    markers : str or sequence of str, optional
+        Names of markers to read, or patterns such as "Arm*"; none by default.
+
+    Returns
+    -------
+    Recording
+        In meters and seconds.
+
+    Raises
+    ------
+    RecordingError
+        If the file cannot be read safely; the message says where and why.
+    SettingError
+        If the file lacks a statement that `units` or `rotation` must supply, or they contradict it, or its format
+        knows no such thing.
+    UsageError
+        If `units` is no possible one.
+
+    Examples
+    --------
+    >>> import elbowscrew, tempfile
+    >>> trial = elbowscrew.simulate_trial(frames=60, inversion=30)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     read_recording(elbowscrew.save_simulation(trial, f"{folder}/trial.csv")[0]).rate_hz
+    100.0
+    """
+    if units is not None and units not in METERS:
+        msg = f"units: expected one of {', '.join(METERS)}, found {units!r}"
+        raise UsageError(msg)
+    patterns = (markers,) if isinstance(markers, str) else tuple(markers)
+    options = ReadOptions(units=units, rotation=rotation, markers=patterns)
+    place = Path(path)
+    if c3d.recognizes(first_bytes(place, 2)):
+        _check_options(place, "C3D", options, _UNITS | _MARKERS)
+        return c3d.read(place, options)
+    source = open_source(place)
+    first_line = next((line for line in islice(source.lines(), 20) if line.strip(", ;\t")), "")
+    cells = [cell.strip().strip('"').strip().casefold() for cell in first_line.split(source.delimiter)]
+    for entry in FORMATS:
+        if entry.recognizes(cells):
+            _check_options(place, entry.name, options, entry.accepts)
+            return entry.read(source, options)
+    raise RecordingError(_refusal(source, cells[0]))
+
+
+def _check_options(path: Path, name: str, options: ReadOptions, accepted: frozenset[str]) -> None:
+    given = {key for key in _ALL if getattr(options, key)}
+    strangers = sorted(given - accepted)
+    if strangers:
+        told = ", ".join(strangers)
+        msg = f"{path}: {told}: a file of this format ({name}) states or has no such thing; leave it out"
+        raise SettingError(msg)
+
+
+def _refusal(source: TextSource, first_cell: str) -> str:
+    try:
+        parse_number(first_cell)
+    except ValueError:
+        return (
+            f"{source.path}:1: no format that is read: expected 'Format Version', a row tag such as 'comment', or "
+            f"'frame,time_s' in the first cells, found {first_cell[:40]!r}"
+        )
+    return (
+        f"{source.path}:1: the header is missing (the file begins with a number), so nothing says what the columns "
+        "are; export the take again with the header on"
+    )
+
+
+def recordings_in(folder: str | os.PathLike[str]) -> tuple[Path, ...]:
+    """Files of a folder that may be recordings, by their endings, in the order of their names.
+
+    Raises
+    ------
+    RecordingError
+        If the folder cannot be read, or has none.
+    """
+    place = Path(folder)
+    try:
+        found = sorted(path for path in place.iterdir() if path.suffix.casefold() in _ENDINGS and path.is_file())
+    except OSError as error:
+        msg = f"{place}: cannot be read: {error.strerror or error}"
+        raise RecordingError(msg) from error
+    if not found:
+        msg = f"{place}: expected recordings ({', '.join(_ENDINGS)}) in the folder, found none"
+        raise RecordingError(msg)
+    return tuple(found)

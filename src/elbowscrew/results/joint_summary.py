@@ -1,0 +1,149 @@
+"""The joint's axis by all estimators, ready for ``joint.json``; units in the names, None where nothing is known."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat
+from elbowscrew.model import Analysis, AnatomicalMotion, FittedJoint, LineEstimate, PoseNoise, RigidBody
+from elbowscrew.results.statistics import known, rms, statistic
+
+Float = NDArray[np.float64]
+
+
+def joint_summary(analysis: Analysis) -> dict[str, Any]:
+    """Estimates of the joint's axis with their intervals, the dispersion about it, and the noise behind them."""
+    axis = analysis.joint_axis
+    return {
+        "expressed_in": analysis.settings.express_in,
+        "single_axis": axis.single,
+        "preferred": axis.preferred,
+        "unexplained_share": known(axis.unexplained),
+        "hinge": _fitted(axis.hinge),
+        "screw_hinge": _fitted(axis.screw_hinge),
+        "weighted_mean": _line(axis.weighted_mean),
+        "sara": _line(axis.sara),
+        "dispersion": dispersion_summary(analysis),
+        "noise": {name: _noise(noise) for name, noise in axis.noise.items()},
+        "repeatability": _repeatability(analysis),
+        "anatomy": _anatomy(analysis.anatomy),
+        "bodies": _bodies(analysis),
+    }
+
+
+def dispersion_summary(analysis: Analysis) -> dict[str, float | None]:
+    """How far the finite axes of the frames lie from their mean, in direction and in place."""
+    mean = analysis.mean_axis
+    deviation, distance = np.degrees(mean.deviation), 1000.0 * mean.distance
+    return {
+        "direction_median_deg": statistic(np.nanmedian, deviation),
+        "direction_rms_deg": statistic(rms, deviation),
+        "direction_95_deg": statistic(_high, deviation),
+        "direction_max_deg": statistic(np.nanmax, deviation),
+        "direction_excursion_deg": float(np.degrees(mean.excursion)),
+        "place_median_mm": statistic(np.nanmedian, distance),
+        "place_rms_mm": statistic(rms, distance),
+        "place_95_mm": statistic(_high, distance),
+        "place_max_mm": statistic(np.nanmax, distance),
+        "place_excursion_mm": 1000.0 * mean.place_excursion,
+    }
+
+
+def _fitted(fit: FittedJoint | None) -> dict[str, Any] | None:
+    if fit is None:
+        return None
+    figures = {
+        "axis_sd_deg": float(np.degrees(fit.axis_sd)),
+        "axis_cone95_deg": float(np.degrees(fit.axis_cone)),
+        "point_sd_mm": 1000.0 * fit.point_sd,
+        "point_radius95_mm": 1000.0 * fit.point_radius,
+        "pitch_mm_per_rad": 1000.0 * fit.pitch,
+        "pitch_sd_mm_per_rad": 1000.0 * fit.pitch_sd,
+        "residual_rotation_deg": float(np.degrees(fit.residual_rotation)),
+        "residual_translation_mm": 1000.0 * fit.residual_translation,
+        "noise_ratio": fit.noise_ratio,
+        "frames_that_count_as_one": fit.correlation,
+        "outlier_share": float(np.mean(fit.weight < 0.5)),
+    }
+    return {**_line(fit.line), "frames": int(fit.used.size), **{name: known(value) for name, value in figures.items()}}
+
+
+def _line(line: LineEstimate) -> dict[str, list[float]]:
+    return {
+        "direction": line.direction.tolist(),
+        "point_mm": (1000.0 * line.point).tolist(),
+        "direction_in_arm": line.direction_arm.tolist(),
+        "point_in_arm_mm": (1000.0 * line.point_arm).tolist(),
+        "direction_in_forearm": line.direction_forearm.tolist(),
+        "point_in_forearm_mm": (1000.0 * line.point_forearm).tolist(),
+    }
+
+
+def _repeatability(analysis: Analysis) -> dict[str, Any]:
+    found = analysis.repeatability
+    figures = {
+        "icc": found.icc,
+        "cmc": found.cmc,
+        "axis_sd_deg": float(np.degrees(found.axis_sd)),
+        "point_sd_mm": 1000.0 * found.point_sd,
+        "theta_max_sd_deg": float(np.degrees(found.top_sd)),
+    }
+    return {
+        "repetitions": int(analysis.repetitions.number.size),
+        **{name: known(value) for name, value in figures.items()},
+    }
+
+
+def _anatomy(motion: AnatomicalMotion | None) -> dict[str, Any] | None:
+    if motion is None:
+        return None
+    return {
+        "side": motion.side,
+        "axis_angle_deg": known(np.degrees(motion.joint_axis_angle)),
+        "axis_distance_mm": known(1000.0 * motion.joint_axis_distance),
+        "epicondyle_direction_in_arm": motion.epicondyle_line[:3].tolist(),
+        "epicondyle_midpoint_in_arm_mm": (1000.0 * motion.epicondyle_midpoint).tolist(),
+        "landmarks_mm": {name: (1000.0 * place).tolist() for name, place in motion.places.items()},
+    }
+
+
+def _bodies(analysis: Analysis) -> dict[str, Any]:
+    """Say where the bodies are at the reference, and where their markers: with `screw.csv`, all that figures show."""
+    joint = analysis.joint
+    return {
+        "forearm_in_arm": _pose(joint.reference),
+        "arm_in_lab": _pose(joint.dual_quat_lab_proximal),
+        "arm_markers_mm": _markers(analysis.arm),
+        "forearm_markers_mm": _markers(analysis.forearm),
+    }
+
+
+def _pose(dual_quat: Float) -> dict[str, list[float]]:
+    quat, position = pose_from_dual_quat(dual_quat)
+    return {"quaternion": quat.tolist(), "position_mm": (1000.0 * position).tolist()}
+
+
+def _markers(body: RigidBody | None) -> list[list[float]] | None:
+    if body is None or body.marker_offsets is None:
+        return None
+    offsets = 1000.0 * body.marker_offsets
+    return [place.tolist() for place in offsets if np.isfinite(place).all()]
+
+
+def _noise(noise: PoseNoise | None) -> dict[str, Any] | None:
+    if noise is None:
+        return None
+    deviation = np.sqrt(np.diag(noise.covariance))
+    return {
+        "source": noise.source,
+        "marker_noise_mm": None if noise.marker_noise is None else 1000.0 * noise.marker_noise,
+        "rotation_sd_deg": np.degrees(deviation[:3]).tolist(),
+        "position_sd_mm": (1000.0 * deviation[3:]).tolist(),
+    }
+
+
+def _high(values: Float) -> Any:
+    return np.nanpercentile(values, 95)

@@ -1,0 +1,313 @@
+"""A finished result read back from its folder, without analyzing anything again."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, NamedTuple, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowscrew import tables
+from elbowscrew.errors import ResultError
+from elbowscrew.geometry.dual_quaternion import dual_quat_from_pose
+from elbowscrew.model import (
+    Analysis,
+    InterpolatedMotion,
+    Keyframes,
+    ModelPhases,
+    MovementPhases,
+    Repetitions,
+    ScrewMotion,
+)
+from elbowscrew.results.table_reading import AsRead, read_columns
+from elbowscrew.settings import Settings
+from elbowscrew.view.finished import (
+    FinishedBody,
+    FinishedClock,
+    FinishedFit,
+    FinishedJoint,
+    FinishedJointAxis,
+    FinishedLine,
+    FinishedMean,
+    FinishedTrial,
+)
+
+Float = NDArray[np.float64]
+Columns = dict[str, NDArray[Any]]
+
+UNREADABLE = (KeyError, TypeError, ValueError, IndexError, AttributeError)
+"""What a result from elsewhere, or one that somebody edited, raises where it is not as it was written."""
+
+
+def is_result(folder: Path) -> bool:
+    """Tell whether a folder holds the result of one trial."""
+    return (folder / "summary.json").is_file() and (folder / "screw.csv").is_file()
+
+
+def read_summary(path: Path) -> dict[str, Any]:
+    """Read ``summary.json`` or ``joint.json`` of a result.
+
+    Raises
+    ------
+    ResultError
+        If there is none, or it is not what was written.
+    """
+    try:
+        content = json.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        msg = (
+            f"{path.parent}: holds no finished result: {path.name}: {error.strerror or error}; analyze the trial first"
+        )
+        raise ResultError(msg) from error
+    except (ValueError, RecursionError) as error:
+        msg = f"{path}: not JSON: {error}; analyze the trial again"
+        raise ResultError(msg) from error
+    if not isinstance(content, dict):
+        msg = f"{path}: expected an object, found {type(content).__name__}; analyze the trial again"
+        raise ResultError(msg)
+    return content
+
+
+def read_finished(folder: Path) -> FinishedTrial:
+    """Read a result folder back, without analyzing anything again.
+
+    Parameters
+    ----------
+    folder : Path
+        As `elbowscrew.save_analysis` wrote it, in whatever units.
+
+    Returns
+    -------
+    FinishedTrial
+
+    Raises
+    ------
+    ResultError
+        If the folder holds no finished result, or a damaged one.
+    """
+    summary = read_summary(folder / "summary.json")
+    joint_summary = read_summary(folder / "joint.json")
+    try:
+        return _finished(folder, summary, joint_summary, _read_tables(folder, summary))
+    except UNREADABLE as error:
+        msg = (
+            f"{folder}: not a result of this version of the program: {type(error).__name__} {error}; "
+            "analyze the trial again"
+        )
+        raise ResultError(" ".join(msg.split())) from error
+
+
+def as_finished(
+    analysis: Analysis, folder: Path, summary: Mapping[str, Any], joint_summary: Mapping[str, Any]
+) -> FinishedTrial:
+    """Give what `read_finished` reads of a folder that an analysis was just written to, without reading the tables.
+
+    Parameters
+    ----------
+    analysis : Analysis
+    folder : Path
+    summary, joint_summary : mapping
+        As the two JSON files read back.
+    """
+    units = analysis.settings.angle_unit, analysis.settings.length_unit
+    curve = None
+    if analysis.repetitions.number.size > 1:
+        read = AsRead(analysis.repeatability, tables.CURVE_COLUMNS, *units)
+        curve = {column.name: column.values(read) for column in tables.CURVE_COLUMNS}
+    given = _Tables(
+        screw=cast(ScrewMotion, AsRead(analysis.screw, tables.SCREW_COLUMNS, *units)),
+        interpolated=cast(InterpolatedMotion, AsRead(analysis.interpolated, tables.INTERPOLATION_COLUMNS, *units)),
+        repetitions=cast(Repetitions, AsRead(analysis.repetitions, tables.REPETITION_COLUMNS, *units)),
+        curve=curve,
+    )
+    return _finished(folder, summary, joint_summary, given)
+
+
+class _Tables(NamedTuple):
+    screw: ScrewMotion
+    interpolated: InterpolatedMotion
+    repetitions: Repetitions
+    curve: Columns | None
+
+
+def _read_tables(folder: Path, summary: Mapping[str, Any]) -> _Tables:
+    settings = Settings.model_validate(summary["settings"])
+    units = settings.angle_unit, settings.length_unit
+    curve = folder / "repetition_curve.csv"
+    return _Tables(
+        screw=_screw(read_columns(folder / "screw.csv", tables.SCREW_COLUMNS, *units)),
+        interpolated=_interpolated(read_columns(folder / "interpolation.csv", tables.INTERPOLATION_COLUMNS, *units)),
+        repetitions=_repetitions(read_columns(folder / "repetitions.csv", tables.REPETITION_COLUMNS, *units)),
+        curve=read_columns(curve, tables.CURVE_COLUMNS, *units) if curve.exists() else None,
+    )
+
+
+def _finished(
+    folder: Path, summary: Mapping[str, Any], joint_summary: Mapping[str, Any], read: _Tables
+) -> FinishedTrial:
+    bodies, trial = joint_summary["bodies"], summary["trial"]
+    frame = _Frames(read.screw.frame)
+    return FinishedTrial(
+        folder=folder,
+        summary=summary,
+        joint_summary=joint_summary,
+        settings=Settings.model_validate(summary["settings"]),
+        recording=FinishedClock(rate_hz=float(trial["rate_hz"])),
+        arm=None if trial["arm"] is None else _body(trial["arm"], bodies["arm_markers_mm"]),
+        forearm=_body(trial["forearm"], bodies["forearm_markers_mm"]),
+        joint=FinishedJoint(
+            reference=_pose(bodies["forearm_in_arm"]), dual_quat_lab_proximal=_pose(bodies["arm_in_lab"])
+        ),
+        screw=read.screw,
+        mean_axis=_mean(summary["motion"]["mean_axis"], joint_summary["dispersion"]),
+        joint_axis=_joint_axis(joint_summary),
+        phases=_phases(summary["motion"]["movements"], frame),
+        repetitions=read.repetitions,
+        repetition_curve=read.curve,
+        keyframes=_keyframes(summary["interpolation"], read.interpolated.phase, frame),
+        interpolated=read.interpolated,
+    )
+
+
+def _vectors(columns: Columns, *names: str) -> Float:
+    return np.stack([columns[name] for name in names], axis=1)
+
+
+def _axis(columns: Columns) -> dict[str, Any]:
+    return {
+        "axis_direction": _vectors(columns, "axis_x", "axis_y", "axis_z"),
+        "axis_point": _vectors(columns, "point_x", "point_y", "point_z"),
+    }
+
+
+def _displacement(columns: Columns) -> dict[str, Any]:
+    return {
+        "frame": columns["frame"],
+        "time_s": columns["time_s"],
+        "angle": columns["theta"],
+        "slide": columns["slide"],
+        "euler_parameters": _vectors(columns, "e0", "e1", "e2", "e3"),
+        "translation": _vectors(columns, "d_x", "d_y", "d_z"),
+    }
+
+
+def _screw(columns: Columns) -> ScrewMotion:
+    return ScrewMotion(
+        **_displacement(columns),
+        **_axis(columns),
+        valid=columns["valid"] == 1,
+        filled=columns["filled"] == 1,
+        arm_loss=columns["arm_loss"],
+        forearm_loss=columns["forearm_loss"],
+        angle_sd=columns["theta_sd"],
+        slide_sd=columns["slide_sd"],
+        axis_sd=columns["axis_sd"],
+        point_sd=columns["point_sd"],
+        axis_cone=columns["axis_cone95"],
+        point_radius=columns["point_radius95"],
+    )
+
+
+def _interpolated(columns: Columns) -> InterpolatedMotion:
+    return InterpolatedMotion(
+        **_displacement(columns),
+        phase=np.ma.asarray(columns["phase"]),
+        fraction=columns["t"],
+        angle_error=columns["angle_error"],
+        translation_error=columns["translation_error"],
+        rms_displacement=columns["rms_displacement"],
+        axis_error=columns["axis_error"],
+        axis_distance=columns["axis_distance"],
+    )
+
+
+def _repetitions(columns: Columns) -> Repetitions:
+    kept = ("number", "start_frame", "inversion_frame", "end_frame", "start_time_s", "end_time_s", "duration_s")
+    return Repetitions(
+        **{name: columns[name] for name in (*kept, "slide_range", "flexion_speed", "extension_speed")},
+        **_axis(columns),
+        start_angle=columns["theta_start"],
+        top_angle=columns["theta_max"],
+        angle_range=columns["theta_range"],
+        axis_deviation=columns["axis_deviation"],
+    )
+
+
+def _pose(pose: dict[str, Any]) -> Float:
+    return dual_quat_from_pose(np.array(pose["quaternion"], dtype=np.float64), _millimeters(pose["position_mm"]))
+
+
+def _millimeters(values: Any) -> Float:
+    """Read lengths in millimeters as meters."""
+    return np.array(values, dtype=np.float64) / 1000.0
+
+
+def _body(trial: dict[str, Any], markers: Any) -> FinishedBody:
+    offsets = None if markers is None else _millimeters(markers).reshape(-1, 3)
+    return FinishedBody(name=str(trial["name"]), marker_offsets=offsets)
+
+
+def _line(line: dict[str, Any]) -> FinishedLine:
+    return FinishedLine(direction=np.array(line["direction"], dtype=np.float64), point=_millimeters(line["point_mm"]))
+
+
+def _mean(mean: dict[str, Any], dispersion: dict[str, Any]) -> FinishedMean:
+    line = _line(mean)
+    spread = float(np.radians(dispersion["direction_95_deg"])), dispersion["place_95_mm"] / 1000.0
+    return FinishedMean(direction=line.direction, point=line.point, spread95=spread)
+
+
+def _joint_axis(joint: Mapping[str, Any]) -> FinishedJointAxis:
+    preferred = joint["preferred"]
+    best = None
+    if preferred is not None:
+        fit = joint[preferred]
+        cone, radius = (
+            np.nan if fit[name] is None else float(fit[name]) for name in ("axis_cone95_deg", "point_radius95_mm")
+        )
+        best = FinishedFit(line=_line(fit), axis_cone=float(np.radians(cone)), point_radius=radius / 1000.0)
+    return FinishedJointAxis(preferred=preferred, best=best, weighted_mean=_line(joint["weighted_mean"]))
+
+
+class _Frames:
+    """Rows of frame numbers; a number that stands twice is taken where it stands first."""
+
+    def __init__(self, frame: NDArray[np.int64]) -> None:
+        self.frame = frame
+        increasing = bool((frame[1:] > frame[:-1]).all())
+        self._order = None if increasing else np.argsort(frame, kind="stable")
+
+    def rows(self, numbers: Any) -> NDArray[np.int64]:
+        wanted = np.array(numbers, dtype=np.int64)
+        places = np.searchsorted(self.frame, wanted, sorter=self._order)
+        if not (places == self.frame.size).any():
+            rows = places if self._order is None else self._order[places]
+            if (self.frame[rows] == wanted).all():
+                return rows.astype(np.int64)
+        msg = "a frame of the summary is not in screw.csv"
+        raise ValueError(msg)
+
+
+def _phases(movements: list[dict[str, int]], frame: _Frames) -> MovementPhases:
+    onset = frame.rows([movement["onset_frame"] for movement in movements])
+    offset = frame.rows([movement["offset_frame"] for movement in movements])
+    moving = np.zeros(frame.frame.size, dtype=bool)
+    for first, last in zip(onset, offset, strict=True):
+        moving[first : last + 1] = True
+    return MovementPhases(onset_rows=onset, offset_rows=offset, moving=moving, threshold=float("nan"))
+
+
+def _keyframes(model: Mapping[str, Any], phase: np.ma.MaskedArray[Any, Any], frame: _Frames) -> Keyframes:
+    """Read the keyframes; a phase begins where its number first stands, and the last one ends at the last keyframe."""
+    row = frame.rows(model["keyframes"])
+    known = np.ma.masked_array(phase)
+    rows = np.flatnonzero(~np.ma.getmaskarray(known))
+    number = known.data[rows]
+    begins = np.append(True, number[1:] != number[:-1])
+    bounds = np.append(rows[begins], row[-1])
+    laws = frame.rows([[law["start_frame"], law["end_frame"]] for law in model["phase_laws"]])
+    phases = ModelPhases(bound_rows=bounds.astype(np.int64), law_rows=laws)
+    return Keyframes(row=row, frame=frame.frame[row], phases=phases, knots=())

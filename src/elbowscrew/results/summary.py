@@ -1,0 +1,318 @@
+"""The summary of an analysis: what stands in ``summary.json`` and on the terminal."""
+
+from __future__ import annotations
+
+import platform
+from collections.abc import Iterable
+from dataclasses import asdict
+from functools import cache
+from importlib.metadata import version
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowscrew._version import __version__
+from elbowscrew.errors import SettingError
+from elbowscrew.model import Analysis, BodyQuality, JointAxis, Landmarks, QualityWarning, Recording, Selection, Spread
+from elbowscrew.model.anatomy import LANDMARKS
+from elbowscrew.motion.tracking.quality import body_quality, check_bodies, clock_quality
+from elbowscrew.motion.tracking.selection import choose_bodies
+from elbowscrew.reading.options import ASK_FOR_MARKERS
+from elbowscrew.results.statistics import known, rms, statistic
+from elbowscrew.settings import Settings
+
+Float = NDArray[np.float64]
+
+_LIBRARIES: Final = ("numpy", "matplotlib", "pandas", "pydantic")
+
+
+def summary_from_analysis(analysis: Analysis) -> dict[str, Any]:
+    """Results, quality, settings and provenance, ready for JSON; units in the names, None where nothing is known.
+
+    Angles are degrees and lengths millimeters here, whatever the units of the tables.
+
+    Parameters
+    ----------
+    analysis : Analysis
+        From `elbowscrew.analyze`.
+
+    Returns
+    -------
+    dict
+        What stands in ``summary.json``.
+
+    Examples
+    --------
+    >>> import elbowscrew
+    >>> analysis = elbowscrew.analyze(elbowscrew.simulate_trial(marker_noise_mm=0).recording)
+    >>> summary_from_analysis(analysis)["interpolation"]["keyframes"]
+    [0, 211, 449]
+    """
+    return {
+        "elbowscrew": __version__,
+        "source": source_summary(analysis.recording),
+        "settings": settings_summary(analysis.settings),
+        "landmarks": landmarks_summary(None if analysis.anatomy is None else analysis.anatomy.landmarks),
+        "trial": {**recording_summary(analysis.recording), **_trial(analysis)},
+        "motion": _motion(analysis),
+        "interpolation": _interpolation(analysis),
+        "warnings": warnings_summary(analysis.warnings),
+        "versions": library_versions(),
+    }
+
+
+def summary_from_recording(recording: Recording, settings: Settings | None = None) -> dict[str, Any]:
+    """What a file holds, ready for JSON: source, clock, bodies with their tracking, and who is arm and forearm."""
+    checked, warnings = check_bodies(recording, recording.bodies, settings or Settings())
+    quality = [body_quality(raw, found, recording) for raw, found in zip(recording.bodies, checked, strict=True)]
+    return {
+        "elbowscrew": __version__,
+        "source": source_summary(recording),
+        "trial": {**recording_summary(recording), "bodies": [quality_summary(body) for body in quality]},
+        "markers": [
+            {"name": marker.name, "seen_share": float(np.isfinite(marker.position).all(axis=1).mean())}
+            for marker in recording.markers
+        ],
+        "roles": _roles(recording),
+        "warnings": warnings_summary((*recording.warnings, *warnings)),
+    }
+
+
+def settings_summary(settings: Settings) -> dict[str, Any]:
+    """Every setting by the name of its option."""
+    told = settings.model_dump(mode="json", by_alias=True)
+    return {**told, "method": settings.model_method, "law": settings.model_law}
+
+
+def landmarks_summary(landmarks: Landmarks | None) -> dict[str, Any] | None:
+    """The landmarks as they were asked for: markers' names, or coordinates."""
+    if landmarks is None:
+        return None
+    given = {name: getattr(landmarks, name) for name in LANDMARKS}
+    return {
+        "side": landmarks.side,
+        **{
+            name: {"markers": list(place.markers)}
+            if place.point is None
+            else {"body": place.frame, "mm": (1000.0 * place.point).tolist()}
+            for name, place in given.items()
+        },
+    }
+
+
+def library_versions() -> dict[str, str]:
+    """Versions of Python and of the libraries that results stand on."""
+    return {"python": platform.python_version(), **{name: _version_of(name) for name in _LIBRARIES}}
+
+
+@cache
+def _version_of(library: str) -> str:
+    """Looked up once: a fifth of the time of a short trial would go into it."""
+    return version(library)
+
+
+def warnings_summary(warnings: Iterable[QualityWarning]) -> list[dict[str, Any]]:
+    """Warnings, those that matter first."""
+    return [asdict(warning) for warning in sorted(warnings, key=lambda warning: warning.severity != "warning")]
+
+
+def quality_summary(quality: BodyQuality) -> dict[str, Any]:
+    """Figures of one body, units in the names."""
+    return {
+        "name": quality.name,
+        "id": quality.identifier,
+        "tracked_share": quality.tracked_share,
+        "lost_frames": dict(quality.lost_frames),
+        "sign_flips": quality.sign_flips,
+        "leaps": quality.leaps,
+        "fastest_turn_deg_s": float(np.degrees(quality.fastest_turn)),
+        "fastest_speed_m_s": quality.fastest_speed,
+        "marker_residual_mm": _spread_mm(quality.marker_residual),
+        "reported_error_mm": _spread_mm(quality.reported_error),
+        "pivot_offset_mm": None if quality.pivot_offset is None else 1000.0 * quality.pivot_offset,
+        "shape_deviation": quality.shape_deviation,
+        "markers": quality.markers,
+    }
+
+
+def _spread_mm(spread: Spread | None) -> dict[str, float] | None:
+    return None if spread is None else {name: 1000.0 * value for name, value in asdict(spread).items()}
+
+
+def _roles(recording: Recording) -> dict[str, str | None]:
+    if not recording.bodies:
+        return {"arm": None, "forearm": None, "text": f"no rigid bodies; {ASK_FOR_MARKERS} to analyze"}
+    try:
+        arm, forearm = choose_bodies(recording, None, None)
+    except SettingError as error:
+        return {"arm": None, "forearm": None, "text": str(error)}
+    name = arm.name if arm is not None else None
+    text = f"arm {name!r}, forearm {forearm.name!r}" if arm is not None else f"forearm {forearm.name!r}, still arm"
+    return {"arm": name, "forearm": forearm.name, "text": text}
+
+
+def source_summary(recording: Recording) -> dict[str, Any]:
+    """Where the recording came from."""
+    source = recording.source
+    if source is None:
+        return {"name": None, "sha256": None, "layout": None, "take": None, "length_unit": None, "rotation": None}
+    return {
+        "name": _printable(source.path.replace("\\", "/").rsplit("/", 1)[-1]),
+        "sha256": source.sha256,
+        "layout": source.layout,
+        "take": source.take_name,
+        "length_unit": source.length_unit,
+        "rotation": source.rotation_type,
+    }
+
+
+def recording_summary(recording: Recording) -> dict[str, Any]:
+    """Frames, rate and clock of a recording."""
+    return {
+        "frames": int(recording.frame.size),
+        "first_frame": int(recording.frame[0]),
+        "last_frame": int(recording.frame[-1]),
+        "rate_hz": recording.rate_hz,
+        "duration_s": float(recording.time_s[-1] - recording.time_s[0]),
+        "clock": asdict(clock_quality(recording)),
+    }
+
+
+def _trial(analysis: Analysis) -> dict[str, Any]:
+    screw = analysis.screw
+    return {
+        "bodies": [{"name": body.name, "id": body.identifier} for body in analysis.recording.bodies],
+        "arm": None if analysis.arm is None else quality_summary(analysis.quality[0]),
+        "forearm": quality_summary(analysis.quality[-1]),
+        "measured_frames": int(screw.valid.sum()),
+        "filled_frames": int(screw.filled.sum()),
+        "missing_share": float(1.0 - screw.valid.mean()),
+        "reference_frame": int(screw.frame[analysis.joint.reference_row]),
+        "lowpass_hz": analysis.joint.lowpass_hz,
+        "instantaneous_lowpass_hz": analysis.instantaneous.lowpass_hz,
+    }
+
+
+def _motion(analysis: Analysis) -> dict[str, Any]:
+    screw, axis = analysis.screw, analysis.mean_axis
+    angle = np.degrees(np.where(screw.valid, screw.angle, np.nan))
+    slide = 1000.0 * np.where(screw.valid, screw.slide, np.nan)
+    return {
+        "theta_max_deg": statistic(np.nanmax, angle),
+        "theta_min_deg": statistic(np.nanmin, angle),
+        "theta_max_frame": int(screw.frame[int(np.nanargmax(angle))]),
+        "inversion_frames": screw.frame[analysis.inversion_rows].tolist(),
+        "slide_median_mm": statistic(np.nanmedian, slide),
+        "slide_min_mm": statistic(np.nanmin, slide),
+        "slide_max_mm": statistic(np.nanmax, slide),
+        "repetitions": int(analysis.repetitions.number.size),
+        "movements": [
+            {"onset_frame": int(screw.frame[onset]), "offset_frame": int(screw.frame[offset])}
+            for onset, offset in zip(analysis.phases.onset_rows, analysis.phases.offset_rows, strict=True)
+        ],
+        "expressed_in": analysis.settings.express_in,
+        "axis_frames": int((screw.axis_known & screw.valid).sum()),
+        "mean_axis": {"direction": axis.direction.tolist(), "point_mm": (1000.0 * axis.point).tolist()},
+        "axis_dispersion_deg": statistic(np.nanmedian, np.degrees(axis.deviation)),
+        "axis_dispersion_rms_deg": statistic(rms, np.degrees(axis.deviation)),
+        "axis_dispersion_max_deg": statistic(np.nanmax, np.degrees(axis.deviation)),
+        "axis_distance_rms_mm": statistic(rms, 1000.0 * axis.distance),
+        "single_axis": analysis.joint_axis.single,
+        "joint_axis": _joint_axis(analysis.joint_axis),
+    }
+
+
+def _joint_axis(axis: JointAxis) -> dict[str, Any] | None:
+    """Say the preferred fit with its interval; the rest stands in ``joint.json``."""
+    if axis.best is None:
+        return None
+    return {
+        "model": axis.preferred,
+        "direction": axis.best.line.direction.tolist(),
+        "point_mm": (1000.0 * axis.best.line.point).tolist(),
+        "axis_cone95_deg": known(np.degrees(axis.best.axis_cone)),
+        "point_radius95_mm": known(1000.0 * axis.best.point_radius),
+        "pitch_mm_per_rad": 1000.0 * axis.best.pitch,
+    }
+
+
+def _interpolation(analysis: Analysis) -> dict[str, Any]:
+    modeled, settings = analysis.interpolated, analysis.settings
+    # A theta that was not measured is no measure of the model.
+    theta_error = np.degrees(np.where(analysis.screw.valid, modeled.angle - analysis.screw.angle, np.nan))
+    return {
+        "method": settings.model_method,
+        "blend": settings.blend,
+        "law": settings.model_law,
+        "knots": settings.knots,
+        "keyframes": analysis.keyframes.frame.tolist(),
+        "phases": analysis.keyframes.phases.count,
+        "phase_laws": _phase_laws(analysis),
+        "selection": None
+        if analysis.selection is None
+        else selection_summary(analysis.selection, analysis.screw.frame),
+        "rmse_theta_deg": statistic(rms, theta_error),
+        "max_theta_error_deg": statistic(np.nanmax, np.abs(theta_error)),
+        "max_theta_error_frame": _frame_of_max(modeled.frame, np.abs(theta_error)),
+        "rms_angle_error_deg": statistic(rms, np.degrees(modeled.angle_error)),
+        "max_angle_error_deg": statistic(np.nanmax, np.degrees(modeled.angle_error)),
+        "max_angle_error_frame": _frame_of_max(modeled.frame, modeled.angle_error),
+        "rms_translation_error_mm": statistic(rms, 1000.0 * modeled.translation_error),
+        "max_translation_error_mm": statistic(np.nanmax, 1000.0 * modeled.translation_error),
+        "max_translation_error_frame": _frame_of_max(modeled.frame, modeled.translation_error),
+        "rms_displacement_mm": statistic(rms, 1000.0 * modeled.rms_displacement),
+        "max_rms_displacement_mm": statistic(np.nanmax, 1000.0 * modeled.rms_displacement),
+        "max_rms_displacement_frame": _frame_of_max(modeled.frame, modeled.rms_displacement),
+        "rms_axis_error_deg": statistic(rms, np.degrees(modeled.axis_error)),
+        "max_axis_error_deg": statistic(np.nanmax, np.degrees(modeled.axis_error)),
+        "max_axis_error_frame": _frame_of_max(modeled.frame, modeled.axis_error),
+        "rms_axis_distance_mm": statistic(rms, 1000.0 * modeled.axis_distance),
+        "max_axis_distance_mm": statistic(np.nanmax, 1000.0 * modeled.axis_distance),
+        "max_axis_distance_frame": _frame_of_max(modeled.frame, modeled.axis_distance),
+        "points": {
+            "from": analysis.points.origin,
+            "centroid_mm": (1000.0 * analysis.points.centroid).tolist(),
+            "radius_of_gyration_mm": 1000.0 * analysis.points.radius_of_gyration,
+        },
+    }
+
+
+def _phase_laws(analysis: Analysis) -> list[dict[str, Any]]:
+    """Law of each phase, and between which frames it runs."""
+    frame = analysis.screw.frame
+    return [
+        {
+            "law": law.name,
+            "peak": law.peak,
+            "start_frame": int(frame[first]),
+            "end_frame": int(frame[last]),
+            "rms_displacement_mm": known(1000.0 * law.rms),
+        }
+        for law, (first, last) in zip(analysis.laws, analysis.keyframes.phases.law_rows, strict=True)
+    ]
+
+
+def selection_summary(found: Selection, frame: NDArray[np.int64]) -> dict[str, Any]:
+    """Keyframes that were chosen, and the error over the number of keyframes."""
+    return {
+        "tolerance_mm": 1000.0 * found.tolerance,
+        "frames": found.frames,
+        "keyframes": int(found.row.size),
+        "keyframe_frames": frame[found.row].tolist(),
+        "compression_ratio": found.compression,
+        "complete": found.complete,
+        "curve": [
+            {"keyframes": int(count), "max_rms_displacement_mm": 1000.0 * largest, "rms_displacement_mm": 1000.0 * mean}
+            for count, largest, mean in zip(found.count, found.largest.tolist(), found.rms.tolist(), strict=True)
+        ],
+    }
+
+
+def _frame_of_max(frame: NDArray[np.int64], values: Float) -> int | None:
+    return int(frame[int(np.nanargmax(values))]) if np.isfinite(values).any() else None
+
+
+def _printable(text: str) -> str:
+    """File names may hold bytes that are no text; JSON may not."""
+    return text.encode("utf-8", "replace").decode("utf-8")

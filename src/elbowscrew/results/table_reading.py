@@ -1,0 +1,117 @@
+"""Tables of a result read back: the columns of `elbowscrew.tables` in SI units and radians."""
+
+from __future__ import annotations
+
+from itertools import islice
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowscrew.errors import ResultError
+from elbowscrew.tables import AngleUnit, Column, LengthUnit, Quantity, as_read_back, in_si, unit_suffixes
+
+_BLOCK_LINES: Final = 4096
+
+
+class AsRead:
+    """A result whose numbers are those that its table gives when it is read back, to the last digit.
+
+    Only the sign of a zero is lost in a table. Each is made when it is asked for: all at once they would take as much
+    memory as the result.
+
+    Parameters
+    ----------
+    result : object
+    table : tuple of Column
+    angle_unit, length_unit : str
+        Units of the table.
+    """
+
+    def __init__(
+        self, result: object, table: tuple[Column, ...], angle_unit: AngleUnit, length_unit: LengthUnit
+    ) -> None:
+        self._result = result
+        self._quantities = {column.attribute: column.quantity for column in table}
+        self._units = angle_unit, length_unit
+
+    def __getattr__(self, name: str) -> Any:
+        values = getattr(self._result, name)
+        quantity = self._quantities.get(name)
+        if quantity in (None, Quantity.INTEGER, Quantity.NUMBER, Quantity.LABEL):
+            return values
+        return as_read_back(values, quantity, *self._units)
+
+
+def read_columns(
+    path: Path, table: tuple[Column, ...], angle_unit: AngleUnit, length_unit: LengthUnit
+) -> dict[str, NDArray[Any]]:
+    """Read columns by their names without units; the inverse of `elbowscrew.tables.columns`.
+
+    Parameters
+    ----------
+    path : Path
+        A table that `elbowscrew.results.writing` wrote.
+    table : tuple of Column
+        Those wanted; there may be more.
+    angle_unit, length_unit : str
+        Units that the table was written in.
+
+    Returns
+    -------
+    dict of str to ndarray
+        Floats are NaN, integers masked, and labels empty where the cell is empty.
+
+    Raises
+    ------
+    ResultError
+        If the table is missing, cut, or lacks a column.
+    """
+    suffixes = unit_suffixes(angle_unit, length_unit)
+    try:
+        with path.open(encoding="utf-8", newline="") as stream:
+            header = stream.readline().rstrip("\n").split(",")
+            places = [header.index(column.name + suffixes.get(column.quantity, "")) for column in table]
+            blocks: list[list[NDArray[Any]]] = [[] for _ in table]
+            while lines := list(islice(stream, _BLOCK_LINES)):
+                if not lines[-1].endswith("\n"):
+                    msg = "its last line is cut"
+                    raise ValueError(msg)
+                cells = list(zip(*(line[:-1].split(",") for line in lines), strict=True))
+                for block, place, column in zip(blocks, places, table, strict=True):
+                    block.append(_values(cells[place], column.quantity))
+                if len(cells) != len(header):
+                    msg = f"it has {len(cells)} cells where the header has {len(header)}"
+                    raise ValueError(msg)
+    except OSError as error:
+        msg = f"{path}: cannot be read: {error.strerror or error}; analyze the trial again"
+        raise ResultError(msg) from error
+    except (ValueError, IndexError) as error:
+        msg = f"{path}: not the table that was written: {error}; analyze the trial again"
+        raise ResultError(msg) from error
+    return {
+        column.name: in_si(_joined(block, column.quantity), column.quantity, angle_unit, length_unit)
+        for column, block in zip(table, blocks, strict=True)
+    }
+
+
+def _values(cells: tuple[str, ...], quantity: Quantity) -> NDArray[Any]:
+    if quantity is Quantity.LABEL:
+        return np.array(cells)
+    if quantity is Quantity.INTEGER:
+        if "" not in cells:
+            return np.array([int(cell) for cell in cells], dtype=np.int64)
+        missing = [not cell for cell in cells]
+        return np.ma.MaskedArray([int(cell or 0) for cell in cells], mask=missing, dtype=np.int64)
+    nan = float("nan")
+    return np.array([float(cell) if cell else nan for cell in cells], dtype=np.float64)
+
+
+def _joined(blocks: list[NDArray[Any]], quantity: Quantity) -> NDArray[Any]:
+    if not blocks:
+        return np.array([], dtype={Quantity.INTEGER: "i8", Quantity.LABEL: "U1"}.get(quantity, "f8"))
+    if any(isinstance(block, np.ma.MaskedArray) for block in blocks):
+        joined: NDArray[Any] = np.ma.concatenate(blocks)  # type: ignore[no-untyped-call]
+        return joined
+    return np.concatenate(blocks)

@@ -1,0 +1,374 @@
+"""Results on disk: an analysis into one folder, a synthetic trial into its two files."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import tempfile
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final, Literal
+
+from elbowscrew import tables
+from elbowscrew.errors import ElbowscrewError, OutputError, UsageError
+from elbowscrew.model import Analysis, Comparison, Landmarks, RebuiltMotion, TrialsComparison
+from elbowscrew.motion.analysis import analyze
+from elbowscrew.reading.registry import read_recording
+from elbowscrew.report import write_trial_page
+from elbowscrew.results.exporting import check_exports, write_exports
+from elbowscrew.results.joint_summary import joint_summary
+from elbowscrew.results.read_back import as_finished
+from elbowscrew.results.staging import (
+    COMPARISON,
+    FIGURE_FORMATS,
+    FIGURE_NAMES,
+    RESULT_FILES,
+    result_folder,
+    write_files,
+)
+from elbowscrew.results.summary import summary_from_analysis
+from elbowscrew.results.writing import write_csv, write_tables
+from elbowscrew.settings import Settings
+from elbowscrew.view.finished import FinishedTrial
+
+if TYPE_CHECKING:
+    from elbowscrew.simulate import SimulatedTrial
+
+SUMMARY: Final = "summary.json"
+
+
+def analyze_file(path: Path, settings: Settings, *, landmarks: Landmarks | None = None) -> Analysis:
+    """Read one recording with the markers that are asked for, and analyze it; every error names the file.
+
+    Raises
+    ------
+    RecordingError, SettingError, AnalysisError
+        As `elbowscrew.read_recording` and `elbowscrew.analyze` do.
+    """
+    markers = (*settings.markers, *(() if landmarks is None else landmarks.markers))
+    recording = read_recording(path, units=settings.units, rotation=settings.rotation, markers=markers)
+    try:
+        return analyze(recording, settings, landmarks=landmarks)
+    except ElbowscrewError as error:
+        msg = f"{path}: {error}"
+        raise type(error)(msg) from error
+
+
+def save_analysis(
+    analysis: Analysis,
+    folder: str | os.PathLike[str],
+    *,
+    force: bool = False,
+    figure_formats: Sequence[str] | None = None,
+    exports: Sequence[str] | None = None,
+    report: bool = True,
+) -> Path:
+    """Write the tables, ``summary.json``, ``joint.json``, ``figures/`` and ``report.html`` into a folder.
+
+    Whole or not at all. Figures and page are made of the numbers as the tables and JSON hold them, so that
+    ``elbowscrew report`` makes the same of the folder at any later time.
+
+    The summary says under ``files`` what else is in the folder, each with its SHA-256.
+
+    Parameters
+    ----------
+    analysis : Analysis
+        From `elbowscrew.analyze`.
+    folder : path-like
+        Where to; it is made.
+    force : bool
+        Replace an earlier result.
+    figure_formats : sequence of {"png", "svg", "pdf"}, optional
+        Those of the analysis' settings by default; may be empty.
+    exports : sequence of {"parquet", "mat", "sto"}, optional
+        Formats of other programs to write the tables in, too; those of the analysis' settings by default.
+    report : bool
+        Write the page.
+
+    Returns
+    -------
+    Path
+        The folder.
+
+    Raises
+    ------
+    OutputError
+        If a result is there already, or the disk does not take it.
+    UsageError
+        If a format is not known, or its library is not installed.
+
+    Examples
+    --------
+    >>> import elbowscrew, tempfile
+    >>> analysis = elbowscrew.analyze(elbowscrew.simulate_trial().recording)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     (save_analysis(analysis, f"{folder}/result", figure_formats=()) / "screw.csv").exists()
+    True
+    """
+    target = Path(folder)
+    formats = _known_formats(analysis.settings.figure_formats if figure_formats is None else tuple(figure_formats))
+    others = analysis.settings.export if exports is None else tuple(exports)
+    check_exports(others)
+    summary, joint = summary_from_analysis(analysis), joint_summary(analysis)
+    with result_folder(target, force=force) as staged:
+        write_tables(staged, analysis)
+        joint = _write_json(staged / "joint.json", joint)
+        shown = as_finished(analysis, staged, summary, joint)
+        if formats:
+            _write_figures(staged, shown, formats)
+        write_exports(staged, analysis, summary, others)
+        summary = _write_json(staged / SUMMARY, {**summary, "files": digests(staged)})  # when all else is there
+        if report:
+            write_trial_page(staged, replace(shown, summary=summary))
+    return target
+
+
+def _known_formats(formats: tuple[str, ...]) -> tuple[str, ...]:
+    unknown = sorted(set(formats) - set(FIGURE_FORMATS))
+    if unknown:
+        msg = f"figure formats: expected {', '.join(FIGURE_FORMATS)}, found {', '.join(unknown)}"
+        raise UsageError(msg)
+    return formats
+
+
+def read_summary(folder: str | os.PathLike[str]) -> dict[str, Any]:
+    """Read the ``summary.json`` of a result folder.
+
+    Raises
+    ------
+    OutputError
+        If there is no such result, or it is damaged.
+    """
+    path = Path(folder) / SUMMARY
+    try:
+        summary = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError, RecursionError) as error:
+        msg = f"{path}: cannot be read as a summary: {getattr(error, 'strerror', None) or error}; analyze again"
+        raise OutputError(msg) from error
+    if not isinstance(summary, dict) or "elbowscrew" not in summary:
+        msg = f"{path}: no summary of elbowscrew; give a result folder"
+        raise OutputError(msg)
+    return summary
+
+
+def digests(folder: Path) -> dict[str, str]:
+    """SHA-256 of the files of a result folder, all but the summary that holds them and the report made from it."""
+    names = (name for name in RESULT_FILES if name not in (SUMMARY, "report.html") and (folder / name).is_file())
+    return {name: _digest(folder / name) for name in names}
+
+
+def _digest(path: Path) -> str:
+    with path.open("rb") as stream:
+        return hashlib.file_digest(stream, "sha256").hexdigest()
+
+
+def _write_json(path: Path, content: Mapping[str, Any]) -> dict[str, Any]:
+    """Write an object, and give it as it reads back."""
+    text = json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False)
+    path.write_text(text + "\n", encoding="utf-8")
+    written: dict[str, Any] = json.loads(text)
+    return written
+
+
+def _write_figures(staged: Path, trial: FinishedTrial, formats: Sequence[str]) -> None:
+    from elbowscrew.report.figure_files import figure_files
+
+    _write_all(staged / "figures", figure_files(trial, FIGURE_NAMES, formats))
+
+
+def _write_all(folder: Path, files: Mapping[str, bytes]) -> None:
+    folder.mkdir()
+    for name, content in files.items():
+        (folder / name).write_bytes(content)
+
+
+def save_simulation(
+    trial: SimulatedTrial,
+    path: str | os.PathLike[str],
+    *,
+    layout: Literal["motive", "row-tagged"] = "motive",
+    length_unit: Literal["m", "cm", "mm"] = "m",
+    force: bool = False,
+) -> tuple[Path, Path]:
+    """Write a synthetic trial in an OptiTrack layout, and the truth about it beside it.
+
+    Parameters
+    ----------
+    trial : SimulatedTrial
+        From `elbowscrew.simulate_trial`.
+    path : path-like
+        The export; the truth goes to the same name with ``.truth.json``.
+    layout : {"motive", "row-tagged"}
+        Motive's columns 1.23, or the row-tagged layout 1.1.
+    length_unit : {"m", "cm", "mm"}
+        Unit in the export; the row-tagged layout has meters always.
+    force : bool
+        Replace files of an earlier simulation.
+
+    Returns
+    -------
+    tuple of Path
+        The export and the truth.
+
+    Raises
+    ------
+    UsageError
+        If the layout does not have the unit, or the path is no name of a file.
+    OutputError
+        If a file exists, or the disk does not take it.
+
+    Examples
+    --------
+    >>> import elbowscrew, tempfile
+    >>> trial = elbowscrew.simulate_trial(frames=60, inversion=30)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     [path.name for path in save_simulation(trial, f"{folder}/trial.csv")]
+    ['trial.csv', 'trial.truth.json']
+    """
+    from elbowscrew.results.optitrack_writer import motive_columns_lines, row_tagged_lines
+
+    export = Path(path)
+    if not export.name or export.name in (".", ".."):
+        msg = f"{str(path)!r} is no name of a file to write; give one such as trial.csv"
+        raise UsageError(msg)
+    truth = export.with_suffix(".truth.json")
+    if layout == "row-tagged" and length_unit != "m":
+        msg = f"--length-unit {length_unit}: the row-tagged layout has meters always; leave the option out"
+        raise UsageError(msg)
+    if layout == "motive":
+        take = " ".join(export.stem.encode("utf-8", "replace").decode("utf-8").split())
+        lines = motive_columns_lines(trial.recording, trial.markers, length_unit, take)
+    else:
+        lines = row_tagged_lines(trial.recording, trial.markers)
+    statement = {"about": "truth of a synthetic trial", **trial.truth}
+    contents: dict[Path, Iterable[str] | bytes] = {export: lines, truth: [json.dumps(statement, indent=1)]}
+    write_files(contents, replaceable="synthetic" if force else None)
+    return export, truth
+
+
+def save_paper_figures(folder: str | os.PathLike[str]) -> tuple[Path, ...]:
+    """Write the counterparts of the paper's figures 7 to 10: angle and Euler parameters, measured and modeled.
+
+    They show a synthetic trial like the paper's: 450 frames at 100 Hz with the inversion at frame 211.
+
+    Raises
+    ------
+    OutputError
+        If a file is there already, or the disk does not take them.
+    """
+    from elbowscrew.report.figure_files import figure_files
+    from elbowscrew.simulate import simulate_trial
+
+    analysis = analyze(simulate_trial(marker_noise_mm=0.1, seed=2010).recording, Settings(inversion=211))
+    names = {"figures_7_and_8.png": "theta", "figures_9_and_10.png": "euler_parameters"}
+    drawn = figure_files(analysis, tuple(names.values()), ("png",))
+    contents = {Path(folder) / file: drawn[f"{name}.png"] for file, name in names.items()}
+    write_files(contents, replaceable=None)
+    return tuple(contents)
+
+
+def save_motion(motion: RebuiltMotion, path: str | os.PathLike[str], *, force: bool = False) -> Path:
+    """Write a rebuilt motion as CSV, in degrees and millimeters.
+
+    Parameters
+    ----------
+    motion : RebuiltMotion
+        From `elbowscrew.interpolate`.
+    path : path-like
+        The file.
+    force : bool
+        Replace an earlier such file.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    OutputError
+        If a file is there, or the disk does not take it.
+
+    Examples
+    --------
+    >>> import elbowscrew, tempfile
+    >>> keyframes = elbowscrew.keyframes_of(elbowscrew.analyze(elbowscrew.simulate_trial().recording))
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     save_motion(elbowscrew.interpolate(keyframes, 20), f"{folder}/motion.csv").name
+    'motion.csv'
+    """
+    target = Path(path)
+    columns = tables.columns(motion, tables.MOTION_COLUMNS, "deg", "mm")
+    with tempfile.TemporaryDirectory() as folder:
+        staged = Path(folder) / "motion.csv"
+        write_csv(staged, columns)
+        content = staged.read_bytes()
+    write_files({target: content}, replaceable="frame,time_s,phase,t,theta" if force else None)
+    return target
+
+
+def save_comparison(
+    comparison: Comparison | TrialsComparison,
+    folder: str | os.PathLike[str],
+    *,
+    force: bool = False,
+    figure_formats: Sequence[str] | None = None,
+) -> Path:
+    """Write ``compare.csv``, ``compare.json`` and the figures of a comparison into a folder, whole or not at all.
+
+    Parameters
+    ----------
+    comparison : Comparison or TrialsComparison
+        From `elbowscrew.compare` or `elbowscrew.compare_trials`.
+    folder : path-like
+        Where to; it is made.
+    force : bool
+        Replace an earlier comparison.
+    figure_formats : sequence of {"png", "svg", "pdf"}, optional
+        Those of the settings by default; may be empty.
+
+    Returns
+    -------
+    Path
+        The folder.
+
+    Raises
+    ------
+    OutputError
+        If a result is there already, or the disk does not take it.
+    UsageError
+        If a figure format is not known.
+
+    Examples
+    --------
+    >>> import elbowscrew, tempfile
+    >>> from elbowscrew.motion.interpolation.keyframe_sources import ComparisonPlan
+    >>> plan = ComparisonPlan(laws=("linear",), counts=(2,), data=("raw",))
+    >>> found = elbowscrew.compare(elbowscrew.simulate_trial(frames=60, inversion=30).recording, plan=plan)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     (save_comparison(found, f"{folder}/result", figure_formats=()) / "compare.csv").exists()
+    True
+    """
+    from elbowscrew.results.comparison_summary import comparison_summary, trials_summary
+
+    target = Path(folder)
+    settings = comparison.settings
+    formats = _known_formats(settings.figure_formats if figure_formats is None else tuple(figure_formats))
+    units = settings.angle_unit, settings.length_unit
+    if isinstance(comparison, Comparison):
+        columns = tables.columns(comparison.models, tables.COMPARISON_COLUMNS, *units)
+        summary = comparison_summary(comparison)
+    else:
+        columns = tables.columns(comparison.models, tables.TRIALS_COMPARISON_COLUMNS, *units)
+        summary = trials_summary(comparison)
+    with result_folder(target, force=force, kind=COMPARISON) as staged:
+        write_csv(staged / "compare.csv", columns, quoted=True)
+        _write_json(staged / "compare.json", summary)
+        if formats:
+            from elbowscrew.plots.comparison import comparison_figure
+            from elbowscrew.report.figure_files import files_of
+
+            _write_all(staged / "figures", files_of({"compare": lambda: comparison_figure(comparison)}, formats))
+    return target

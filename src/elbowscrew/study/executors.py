@@ -1,0 +1,133 @@
+"""Where the work is done: this machine's cores or a Dask cluster, both by the interface of `concurrent.futures`."""
+
+from __future__ import annotations
+
+import logging
+import multiprocessing
+import os
+import sys
+import warnings
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor, ProcessPoolExecutor
+from contextlib import AbstractContextManager, contextmanager, suppress
+from functools import partial
+from importlib import import_module
+from importlib.util import find_spec
+from typing import Any, Final
+
+from elbowscrew.errors import UsageError
+from elbowscrew.study.worker import prepare_worker
+
+LOCAL_CLUSTER: Final = "local-cluster"
+
+OpenExecutor = Callable[[], AbstractContextManager[Executor]]
+"""Gives a new executor; leaving its context by an error ends the work in hand."""
+
+_LONGEST_CLOSE_S: Final = 5.0
+_LONGEST_WAIT: Final = "15s"
+
+
+def open_executor(scheduler: str | None, workers: int) -> OpenExecutor:
+    """Choose the executor: of this machine if there is no scheduler.
+
+    Parameters
+    ----------
+    scheduler : str or None
+        Address of a Dask scheduler (``tcp://host:port``), or ``local-cluster`` for one started here.
+    workers : int
+        Processes on this machine.
+
+    Raises
+    ------
+    UsageError
+        If a scheduler is asked for and Dask is not installed.
+    """
+    if scheduler is None:
+        return partial(_local_pool, workers)
+    if find_spec("distributed") is None:
+        msg = "--scheduler needs dask.distributed; install it with: pip install 'elbowscrew[cluster]'"
+        raise UsageError(msg)
+    return partial(_cluster, scheduler, workers)
+
+
+def available_cores() -> int:
+    """Cores that this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+@contextmanager
+def _local_pool(workers: int) -> Iterator[Executor]:
+    # Fresh processes: a fork of a process with threads, and matplotlib and BLAS have some, may never come to life.
+    context = multiprocessing.get_context("spawn")
+    watched, held = context.Pipe(duplex=False)
+    executor = ProcessPoolExecutor(workers, mp_context=context, initializer=prepare_worker, initargs=(watched,))
+    try:
+        yield executor
+    except BaseException:
+        held.close()  # the workers end at once, whatever they are at
+        executor.shutdown(wait=True, cancel_futures=True)
+        raise
+    else:
+        executor.shutdown(wait=True)
+    finally:
+        held.close()
+        watched.close()
+
+
+@contextmanager
+def _cluster(scheduler: str, workers: int) -> Iterator[Executor]:
+    dask: Any = import_module("dask")
+    distributed: Any = import_module("distributed")
+    quiet = {
+        "distributed.scheduler.allowed-failures": 0,  # who dies of a trial is told so, and the trial tried again alone
+        "distributed.comm.timeouts.connect": _LONGEST_WAIT,
+        "distributed.nanny.pre-spawn-environ": {
+            "OMP_NUM_THREADS": 1,
+            "MKL_NUM_THREADS": 1,
+            "OPENBLAS_NUM_THREADS": 1,
+            "MPLBACKEND": "agg",
+        },
+    }
+    with dask.config.set(quiet), _silence():
+        try:
+            if scheduler == LOCAL_CLUSTER:
+                cluster = distributed.LocalCluster(
+                    n_workers=workers, threads_per_worker=1, dashboard_address=":0", silence_logs=logging.CRITICAL
+                )
+            else:
+                cluster = None
+            client = distributed.Client(cluster or scheduler, timeout=_LONGEST_WAIT)
+        except (OSError, ValueError, TimeoutError) as error:
+            msg = f"--scheduler {scheduler}: no Dask scheduler answers there ({error}); give tcp://host:port"
+            raise UsageError(msg) from error
+        executor = client.get_executor(pure=False, retries=0)
+        try:
+            yield executor
+        except BaseException:
+            executor.shutdown(wait=False)
+            raise
+        finally:
+            # A worker that is just coming to life may keep a cluster from ever closing; it dies with this process.
+            with suppress(TimeoutError):
+                client.close()
+                if cluster is not None:
+                    cluster.close(timeout=_LONGEST_CLOSE_S)
+
+
+@contextmanager
+def _silence() -> Iterator[None]:
+    """Keep Dask's own words on ports and connections to itself: what matters comes as an error."""
+    loggers = [logging.getLogger(name) for name in logging.root.manager.loggerDict if name.startswith("distributed")]
+    levels = [logger.level for logger in loggers]
+    with warnings.catch_warnings():
+        if not sys.warnoptions:
+            warnings.simplefilter("ignore")
+        for logger in loggers:
+            logger.setLevel(logging.CRITICAL + 1)
+        try:
+            yield
+        finally:
+            for logger, level in zip(loggers, levels, strict=True):
+                logger.setLevel(level)

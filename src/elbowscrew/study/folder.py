@@ -1,0 +1,134 @@
+"""The output folder of a batch: held by one batch at a time, and swept of what a killed one has left."""
+
+from __future__ import annotations
+
+import os
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager, suppress
+from pathlib import Path
+from typing import IO, Final
+
+from elbowscrew.errors import OutputError
+from elbowscrew.results.staging import remove_leftovers
+
+MARK: Final = ".elbowscrew-batch.lock"
+"""Its presence says that a folder is the output of a batch, and the system's lock on it that one is at work there."""
+
+_WORK: Final = ".elbowscrew-work.lock"
+_LONGEST_WAIT_S: Final = 60.0
+
+
+@contextmanager
+def batch_folder(folder: Path) -> Iterator[None]:
+    """Make and hold an output folder; when the block begins and when it ends, nothing half-written is in it.
+
+    The locks are the system's own: they end with the process that holds them, however it ends.
+
+    Raises
+    ------
+    OutputError
+        If the folder is something else's, another batch is at work there, or the disk does not take it.
+    """
+    with ExitStack() as held:
+        try:
+            _check_folder(folder)
+            folder.mkdir(parents=True, exist_ok=True)
+            _hold(folder, held.enter_context((folder / MARK).open("a+b")))
+            _wait_for_workers(folder)
+            remove_leftovers(folder)
+        except OSError as error:
+            msg = f"{folder}: cannot be written: {error.strerror or error}"
+            raise OutputError(msg) from error
+        try:
+            yield
+        finally:
+            with suppress(OSError, OutputError):
+                _wait_for_workers(folder)
+                remove_leftovers(folder)
+
+
+def _hold(folder: Path, mark: IO[bytes]) -> None:
+    if not _lock(mark):
+        msg = f"{folder}: another batch is at work there{_who(mark)}; wait for it, or give another --output"
+        raise OutputError(msg)
+    mark.seek(0)
+    mark.truncate()
+    mark.write(f"process {os.getpid()}\n".encode())
+    mark.flush()
+
+
+@contextmanager
+def at_work(folder: Path) -> Iterator[None]:
+    """Tell, while a worker writes into an output folder, that it does: it may outlive its batch for a moment."""
+    if sys.platform == "win32":
+        yield
+        return
+    import fcntl
+
+    with (folder / _WORK).open("ab") as stream:
+        fcntl.flock(stream, fcntl.LOCK_SH)
+        yield
+
+
+def _wait_for_workers(folder: Path) -> None:
+    if sys.platform == "win32":
+        return
+    import fcntl
+
+    deadline = time.monotonic() + _LONGEST_WAIT_S
+    with (folder / _WORK).open("ab") as stream:
+        while True:
+            try:
+                fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError as error:
+                if time.monotonic() > deadline:
+                    msg = f"{folder}: a worker of an earlier batch still writes there; end it, or wait"
+                    raise OutputError(msg) from error
+                time.sleep(0.02)
+            else:
+                return
+
+
+def _check_folder(folder: Path) -> None:
+    if not os.path.lexists(folder):
+        return
+    if not folder.is_dir():
+        msg = f"{folder}: exists and is no folder; give another --output"
+        raise OutputError(msg)
+    if folder.resolve() == Path.cwd():
+        msg = f"{folder}: is the current folder; give --output a folder of its own"
+        raise OutputError(msg)
+    if (folder / MARK).exists():
+        return
+    stranger = next(iter(sorted(path.name for path in folder.iterdir())), None)
+    if stranger is not None:
+        msg = f"{folder}: the folder holds {stranger!r} and is no output of a batch; give another --output"
+        raise OutputError(msg)
+
+
+def _lock(stream: IO[bytes]) -> bool:
+    """Take the system's lock on a file; it is given back when the file is closed."""
+    try:
+        if sys.platform == "win32":
+            import msvcrt
+
+            stream.seek(1 << 30)  # beyond the text, which others may want to read
+            msvcrt.locking(stream.fileno(), msvcrt.LK_NBLCK, 1)
+        else:
+            import fcntl
+
+            fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except (BlockingIOError, PermissionError):
+        return False
+    return True
+
+
+def _who(stream: IO[bytes]) -> str:
+    try:
+        stream.seek(0)
+        told = stream.read(100).decode("ascii", "replace").strip()
+    except OSError:
+        return ""
+    return f" ({told})" if told else ""

@@ -1,0 +1,1 @@
+"""What figures and pages need of a trial, from memory or from disk."""

@@ -1,0 +1,124 @@
+"""A finished result as far as figures and pages show it; frozen, in SI units and radians."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowscrew.model.brief import Brief
+from elbowscrew.model.modeled import InterpolatedMotion, Keyframes
+from elbowscrew.model.repetitions import MovementPhases, Repetitions
+from elbowscrew.model.results import ScrewMotion
+
+if TYPE_CHECKING:
+    from elbowscrew.settings import Settings
+
+Float = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FinishedClock:
+    """Frames per second."""
+
+    rate_hz: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class FinishedBody(Brief):
+    """A body's name, and its markers (M, 3) in its own frame, meters, if it has any."""
+
+    name: str
+    marker_offsets: Float | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class FinishedJoint(Brief):
+    """Poses at the reference, unit dual quaternions (8,): the forearm in the arm, and the arm in the laboratory."""
+
+    reference: Float
+    dual_quat_lab_proximal: Float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class FinishedLine(Brief):
+    """A line: unit direction and the point nearest the origin, meters; shape (3,)."""
+
+    direction: Float
+    point: Float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class FinishedMean(Brief):
+    """The mean axis, and the deviation (rad) and distance (m) that 95 % of the frames' axes keep within."""
+
+    direction: Float
+    point: Float
+    spread95: tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class FinishedFit(Brief):
+    """A fitted joint with the half-angle (rad) and the radius (m) that hold 95 %; NaN where not known."""
+
+    line: FinishedLine
+    axis_cone: float
+    point_radius: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class FinishedJointAxis(Brief):
+    """The fit to believe, if there is one, and the weighted mean."""
+
+    preferred: Literal["hinge", "screw_hinge"] | None
+    best: FinishedFit | None
+    weighted_mean: FinishedLine
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class FinishedTrial(Brief):
+    """A result as it stands in its folder; what figures show (`elbowscrew.view.shown.Shown`) and the JSON itself.
+
+    Attributes
+    ----------
+    folder : Path
+    summary, joint_summary : mapping
+        ``summary.json`` and ``joint.json``, degrees and millimeters.
+    settings : Settings
+    recording : FinishedClock
+    arm : FinishedBody or None
+    forearm : FinishedBody
+    joint : FinishedJoint
+    screw : ScrewMotion
+    mean_axis : FinishedMean
+    joint_axis : FinishedJointAxis
+    phases : MovementPhases
+        `moving` is true between onset and offset; the threshold, which is not kept, is NaN.
+    repetitions : Repetitions
+    repetition_curve : mapping of str to ndarray, or None
+        Columns of ``repetition_curve.csv``, radians.
+    keyframes : Keyframes
+        The knots, which are not kept, are empty.
+    interpolated : InterpolatedMotion
+    """
+
+    folder: Path
+    summary: Mapping[str, Any]
+    joint_summary: Mapping[str, Any]
+    settings: Settings
+    recording: FinishedClock
+    arm: FinishedBody | None
+    forearm: FinishedBody
+    joint: FinishedJoint
+    screw: ScrewMotion
+    mean_axis: FinishedMean
+    joint_axis: FinishedJointAxis
+    phases: MovementPhases
+    repetitions: Repetitions
+    repetition_curve: Mapping[str, NDArray[Any]] | None
+    keyframes: Keyframes
+    interpolated: InterpolatedMotion

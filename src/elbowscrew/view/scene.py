@@ -1,0 +1,155 @@
+"""What stands in space around the joint, in the frame the screws are expressed in: axes, bodies and the path."""
+
+from __future__ import annotations
+
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowscrew.geometry.dual_quaternion import conjugate, multiply, pose_from_dual_quat, transform_points
+from elbowscrew.geometry.quaternion import rotate
+from elbowscrew.view.shown import Shown
+
+Float = NDArray[np.float64]
+
+_MOST_AXES: Final = 60
+_STEEPEST: Final = 1.4
+
+
+class Bodies(NamedTuple):
+    """Bodies in the frame shown, meters.
+
+    The path (N, 3) of the forearm's origin with its mean (3,) and the corners (2, 3) of the box about it, and where it
+    is at the reference (3,); the arm's origin (3,), None without an arm; and the markers (M, 3) of the arm and of the
+    forearm at the reference, None where the file has none.
+    """
+
+    path: Float
+    middle: Float
+    corners: Float
+    start: Float
+    arm: Float | None
+    arm_markers: Float | None
+    forearm_markers: Float | None
+
+
+class Region(NamedTuple):
+    """What holds 95 % of lines about an axis: a half-angle (rad) and a radius, meters unless scaled."""
+
+    angle: float
+    radius: float
+
+    def reach(self, along: Float) -> Float:
+        """How far from the axis it reaches: place and tilt err independently of each other."""
+        reach: Float = np.hypot(self.radius, np.tan(min(self.angle, _STEEPEST)) * along)
+        return reach
+
+
+class Bundle(NamedTuple):
+    """The joint's axis among the axes of the frames, meters unless scaled.
+
+    It passes `center` along `direction` and is drawn `half` to either side; `rows` are some of the frames with an axis
+    and `segments` (M, 2, 3) pieces of these. Its name says that it is the mean axis where the motion has no single one,
+    and then there is no `confidence`.
+    """
+
+    name: str
+    direction: Float
+    center: Float
+    half: float
+    rows: NDArray[np.int64]
+    segments: Float
+    spread: Region
+    confidence: Region | None
+
+    def scaled(self, scale: float) -> Bundle:
+        """Give the same bundle in another unit of length."""
+        spread, known = self.spread, self.confidence
+        return self._replace(
+            center=scale * self.center,
+            half=scale * self.half,
+            segments=scale * self.segments,
+            spread=Region(spread.angle, scale * spread.radius),
+            confidence=None if known is None else Region(known.angle, scale * known.radius),
+        )
+
+
+def bodies_in_space(shown: Shown) -> Bodies:
+    """Place the bodies in the frame the screws are expressed in."""
+    reference, arm = shown.joint.reference, shown.joint.dual_quat_lab_proximal
+    identity = np.array([1.0, 0, 0, 0, 0, 0, 0, 0])
+    change, at_reference = {
+        "forearm": (conjugate(reference), identity),
+        "arm": (identity, reference),
+        "lab": (arm, multiply(arm, reference)),
+    }[shown.settings.express_in]
+    markers = [
+        None if body is None or body.marker_offsets is None else transform_points(pose, body.marker_offsets)
+        for body, pose in ((shown.arm, change), (shown.forearm, at_reference))
+    ]
+    start = pose_from_dual_quat(at_reference)[1]
+    # The displacement takes the forearm's origin along from where it is at the reference.
+    path = shown.screw.translation
+    if start.any():
+        path = path + rotate(shown.screw.euler_parameters, start)
+    return Bodies(
+        path=path,
+        middle=np.mean(path, axis=0, where=np.isfinite(path)),
+        corners=np.stack([np.fmin.reduce(path, axis=0), np.fmax.reduce(path, axis=0)]),
+        start=start,
+        arm=None if shown.arm is None else pose_from_dual_quat(change)[1],
+        arm_markers=markers[0],
+        forearm_markers=markers[1],
+    )
+
+
+def joint_bundle(shown: Shown) -> Bundle:
+    """Gather the joint's axis, the axes of the frames about it, and what holds 95 % of each."""
+    best = shown.joint_axis.best
+    line = shown.joint_axis.weighted_mean if best is None else best.line
+    bodies = bodies_in_space(shown)
+    center = line.point + ((bodies.middle - line.point) @ line.direction) * line.direction
+    half = half_length(bodies, center)
+    rows, segments = axis_segments(shown, center, half)
+    return Bundle(
+        name="mean axis" if best is None else "joint axis",
+        direction=line.direction,
+        center=center,
+        half=1.15 * half,
+        rows=rows,
+        segments=segments,
+        spread=Region(*shown.mean_axis.spread95),
+        confidence=None if best is None else Region(best.axis_cone, best.point_radius),
+    )
+
+
+def half_length(bodies: Bodies, center: Float) -> float:
+    """Tell how far to either side of a center (3,) on it an axis is drawn beside the path: a little over half of it."""
+    return 0.55 * float(np.max(np.ptp(np.concatenate([bodies.corners, center[None]]), axis=0)))
+
+
+def axis_segments(shown: Shown, center: Float, half: float) -> tuple[NDArray[np.int64], Float]:
+    """Rows (M,) of some of the frames with an axis, and pieces (M, 2, 3) of their axes about the center, meters."""
+    rows = thinned(np.flatnonzero(shown.screw.axis_known), _MOST_AXES)
+    direction, point = shown.screw.axis_direction[rows], shown.screw.axis_point[rows]
+    middle = point + np.sum((center - point) * direction, axis=1, keepdims=True) * direction
+    return rows, np.stack([middle - half * direction, middle + half * direction], axis=1)
+
+
+def directions_across(direction: Float) -> tuple[tuple[Float, Float], tuple[str, str]]:
+    """Two unit vectors across a direction (3,), and the coordinates that they lean to."""
+    n = direction
+    order = np.argsort(np.abs(n), kind="stable")
+    first, second = sorted(order[:2])
+    u = np.eye(3)[first] - n[first] * n
+    u /= np.linalg.norm(u)
+    v = np.cross(n, u)
+    if v[second] < 0.0:
+        v = -v
+    return (u, v), ("xyz"[first], "xyz"[second])
+
+
+def thinned(rows: NDArray[np.int64], most: int) -> NDArray[np.int64]:
+    """At most so many of the rows, evenly chosen, the first and the last among them."""
+    return rows if rows.size <= most else rows[np.linspace(0, rows.size - 1, most).astype(np.int64)]

@@ -1,0 +1,100 @@
+"""Which law a phase follows: on phases made by a law that is known."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from elbowscrew import Settings, analyze, simulate_trial
+from elbowscrew.errors import SettingError, UsageError
+from elbowscrew.geometry import dual_quat_from_screw, line_through
+from elbowscrew.geometry import dual_quaternion as dq
+from elbowscrew.model import ModelPhases
+from elbowscrew.motion.difference import points_from_radius
+from elbowscrew.motion.interpolation.law_fit import FittedLaw, laws_of
+from elbowscrew.motion.interpolation.laws import LAWS, asymmetric
+from elbowscrew.settings import settings_from
+
+Float = NDArray[np.float64]
+COUNT = 121
+TAU = np.linspace(0.0, 1.0, COUNT)
+LINE = line_through([0.1, -0.2, 0.05], [0.2, 0.9, -0.3])
+PHASES = ModelPhases(bound_rows=np.array([0, COUNT - 1]), law_rows=np.array([[0, COUNT - 1]]))
+
+
+def moved(t: Float, top_deg: float = 130.0) -> Float:
+    return dq.multiply(
+        dual_quat_from_screw(np.radians(top_deg) * t, 0.004 * t, LINE[:3], LINE[3:]),
+        dq.dual_quat_from_pose([0.6, 0.0, 0.8, 0.0], [0.1, 0.2, -0.3]),
+    )
+
+
+def law_of(name: str, pose: Float, peak: float | None = None, phases: ModelPhases = PHASES) -> FittedLaw:
+    measured = np.isfinite(pose[:, 0])
+    (found,) = laws_of(name, peak, pose, measured, TAU, np.arange(COUNT), phases, points_from_radius(0.05))
+    return found
+
+
+@pytest.mark.parametrize("name", [name for name in LAWS if name != "linear"])
+@pytest.mark.parametrize("peak", [0.3, 0.5, 0.62])
+def test_the_best_law_is_the_one_the_motion_was_made_with(name: str, peak: float) -> None:
+    found = law_of("best", moved(asymmetric(LAWS[name], peak)(TAU)))
+    assert found.law.name == name
+    assert found.law.peak == pytest.approx(peak, abs=2e-4)
+    assert found.law.rms < 5e-5
+
+
+def test_a_steady_motion_is_linear() -> None:
+    found = law_of("best", moved(TAU))
+    assert (found.law.name, found.law.peak) == ("linear", None)
+    assert found.law.rms < 1e-12
+
+
+@pytest.mark.parametrize("top_deg", [20.0, 130.0, 200.0])
+def test_the_recordings_own_law_is_the_share_of_its_turn(top_deg: float) -> None:
+    t = asymmetric(LAWS["modified-sine"], 0.4)(TAU) + 0.02 * np.sin(8 * np.pi * TAU)
+    pose = moved(t, top_deg)
+    pose[50:60] = np.nan
+    found = law_of("empirical", pose)
+    assert found.function(TAU)[:50] == pytest.approx(t[:50], abs=1e-12)
+    assert found.function(TAU)[60:] == pytest.approx(t[60:], abs=1e-12)
+    assert found.function(TAU)[50:60] == pytest.approx(np.interp(TAU[50:60], TAU[[49, 60]], t[[49, 60]]), abs=1e-12)
+    assert found.law.rms < 1e-12
+
+
+def test_a_phase_that_does_not_turn_has_no_law_of_its_own() -> None:
+    pose = moved(np.sin(2.0 * np.pi * TAU))
+    with pytest.raises(SettingError, match="does not turn between frames 0 to 120"):
+        law_of("empirical", pose)
+
+
+def test_named_laws_stay_as_they_are_and_say_how_near_they_are() -> None:
+    pose = moved(LAWS["harmonic"](TAU))
+    direct = law_of("harmonic", pose)
+    other = law_of("cycloidal", pose, 0.4)
+    assert direct.law.rms < 1e-12
+    assert (other.law.name, other.law.peak) == ("cycloidal", 0.4)
+    assert other.function(TAU) == pytest.approx(asymmetric(LAWS["cycloidal"], 0.4)(TAU))
+    assert law_of("best", pose).law.rms <= other.law.rms
+
+
+def test_the_best_law_of_a_minimum_jerk_elbow() -> None:
+    trial = simulate_trial(marker_noise_mm=0.1, rest_before_s=0.8, seed=2).recording
+    laws = analyze(trial, Settings(law="best")).laws
+    assert [law.name for law in laws] == ["polynomial-345"] * 2
+    assert [law.peak for law in laws] == pytest.approx([0.5, 0.5], abs=0.02)
+
+
+@pytest.mark.parametrize("law", ["linear", "empirical", "best"])
+def test_laws_without_a_peak_take_none(law: Any) -> None:
+    with pytest.raises(UsageError, match="leave --law-peak out"):
+        settings_from(None, {"law": law, "law_peak": 0.4})
+
+
+def test_an_asymmetric_law_moves_the_highest_velocity_of_the_model() -> None:
+    trial = simulate_trial(marker_noise_mm=0.05).recording
+    fraction = analyze(trial, Settings(law_peak=0.3)).interpolated.fraction
+    assert int(np.argmax(np.diff(fraction[:211]))) == pytest.approx(0.3 * 211, abs=2)

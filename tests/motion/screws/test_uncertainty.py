@@ -1,0 +1,150 @@
+"""Errors of every frame's screw: noise of the poses, propagation, and what the user is told."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from coverage_of_screws import coverage
+from numpy.typing import NDArray
+from trials import ARM, FOREARM, SIGMA
+
+from elbowscrew import Analysis, RigidBody, Settings, analyze, simulate_trial
+from elbowscrew.errors import AnalysisError, SettingError, UsageError
+from elbowscrew.geometry import dual_quaternion as dq
+from elbowscrew.geometry import pose_from_points
+from elbowscrew.motion.screws.pose_noise import covariance_from_markers, pose_noise
+from elbowscrew.settings import settings_from
+from elbowscrew.simulate import SimulatedTrial
+
+Float = NDArray[np.float64]
+
+
+@pytest.mark.parametrize("arm_moves", [False, True])
+@pytest.mark.parametrize("angle_deg", [5, 30, 100, 170])
+def test_intervals_cover_95_percent(angle_deg: int, arm_moves: bool) -> None:
+    trials = 3000
+    # Four standard deviations of a share; the 10,000 trials of benchmarks/uncertainty.py are nearer.
+    slack = 4.0 * np.sqrt(0.95 * 0.05 / trials)
+    shares = coverage(np.radians(angle_deg), trials, arm_moves=arm_moves, seed=angle_deg)
+    assert shares == pytest.approx((0.95,) * 4, abs=slack)
+
+
+@pytest.mark.parametrize("shift", [0.0, 0.1])
+def test_the_covariance_of_a_fitted_pose(shift: float) -> None:
+    """Markers about their centroid, and markers whose body has its origin elsewhere."""
+    offsets = ARM + np.array([shift, 0.0, 0.5 * shift])
+    rng = np.random.default_rng(3)
+    count = 20_000
+    pose = pose_from_points(offsets, offsets + rng.normal(scale=SIGMA, size=(count, *offsets.shape)))
+    error = 2.0 * dq.log(dq.canonical(pose))
+    stated = covariance_from_markers(offsets, SIGMA)
+    scale = np.sqrt(np.outer(np.diag(stated), np.diag(stated)))
+    assert np.cov(error.T) / scale == pytest.approx(stated / scale, abs=6.0 / np.sqrt(count))
+
+
+def body(**changes: Any) -> RigidBody:
+    trial = simulate_trial(marker_noise_mm=1000 * SIGMA, rest_before_s=2.0, seed=5)
+    forearm = trial.recording.bodies[1]
+    given = {name: getattr(forearm, name) for name in RigidBody.__dataclass_fields__}
+    return RigidBody(**{**given, "marker_residual": residuals(trial), **changes})
+
+
+def residuals(trial: SimulatedTrial) -> Float:
+    """RMS distance of the markers from the fitted body, frame by frame."""
+    forearm = trial.recording.bodies[1]
+    assert forearm.marker_offsets is not None
+    expected = dq.transform_points(forearm.dual_quat_lab_body[:, None, :], forearm.marker_offsets)
+    gap = trial.markers["Forearm"] - expected
+    return np.asarray(np.sqrt(np.mean(np.sum(gap**2, axis=2), axis=1)))
+
+
+def test_each_source_finds_the_noise_there_is() -> None:
+    wanted = covariance_from_markers(FOREARM - FOREARM.mean(axis=0), SIGMA)
+    mean_distance = residuals(simulate_trial(marker_noise_mm=1000 * SIGMA, rest_before_s=2.0, seed=5)) * 0.92
+    sources: dict[Any, RigidBody] = {
+        "residuals": body(),
+        "still": body(),
+        "error-column": body(reported_error=mean_distance),
+    }
+    for name, one in sources.items():
+        found = pose_noise(one, 100.0, Settings(noise=name))
+        assert found is not None
+        ratio = np.sqrt(np.diag(found.covariance) / np.diag(wanted))
+        # 650 frames of 6 degrees of freedom, and 200 frames at rest of one each.
+        assert ratio == pytest.approx(np.ones(6), abs=0.25 if name == "still" else 0.06), name
+    assert pose_noise(body(marker_residual=None), 100.0, Settings(noise="residuals")) is None
+    automatic = pose_noise(body(marker_residual=None), 100.0, Settings())
+    assert automatic is not None
+    assert automatic.source == "still stretch"
+
+
+def test_a_body_that_never_rests_has_no_still_stretch() -> None:
+    trial = simulate_trial(marker_noise_mm=0.2, arm="moving", frames=200, inversion=90, rate_hz=100.0)
+    assert pose_noise(trial.recording.bodies[1], 100.0, Settings(noise="still")) is None
+
+
+def test_the_users_word_is_the_strongest_and_needs_no_markers() -> None:
+    found = pose_noise(body(), 100.0, Settings(marker_noise_mm=0.5))
+    assert found is not None
+    assert (found.source, found.marker_noise) == ("option", 5e-4)
+    bare = pose_noise(body(marker_offsets=None), 100.0, Settings(marker_noise_mm=0.5, radius_mm=40))
+    assert bare is not None
+    assert bare.source == "option, markers assumed"
+    assert bare.covariance[3:, 3:] == pytest.approx(np.eye(3) * 5e-4**2 / 4)
+
+
+def analyzed(**settings: Any) -> Analysis:
+    return analyze(simulate_trial(arm="moving", seed=2).recording, Settings(marker_noise_mm=0.2, **settings))
+
+
+@pytest.mark.parametrize("express_in", ["forearm", "arm", "lab"])
+def test_errors_do_not_depend_on_the_frame_but_for_the_points_place(express_in: Any) -> None:
+    one, other = analyzed().screw, analyzed(express_in=express_in).screw
+    for name in ("angle_sd", "slide_sd", "axis_sd", "axis_cone"):
+        assert getattr(other, name) == pytest.approx(getattr(one, name), rel=1e-9, nan_ok=True)
+
+
+def test_errors_stand_where_their_quantities_do() -> None:
+    screw = analyzed().screw
+    assert (np.isfinite(screw.axis_sd) == screw.axis_known).all()
+    assert (np.isfinite(screw.slide_sd) == np.isfinite(screw.slide)).all()
+    assert np.isnan(screw.angle_sd[0])
+    assert np.isfinite(screw.angle_sd[screw.axis_known]).all()
+    assert np.nanmin(screw.axis_cone / screw.axis_sd) >= 1.73
+    assert np.nanmax(screw.axis_cone / screw.axis_sd) <= 1.97
+
+
+def test_a_filled_frame_has_no_error_of_its_own() -> None:
+    recording = simulate_trial(gaps=3, gap_frames=5, seed=1).recording
+    screw = analyze(recording, Settings(marker_noise_mm=0.2)).screw
+    assert screw.filled.any()
+    assert np.isnan(screw.angle_sd[screw.filled]).all()
+
+
+def test_the_least_angle_can_be_a_precision() -> None:
+    screw = analyzed(axis_sd_deg=0.5).screw
+    assert np.nanmax(screw.axis_sd) <= np.radians(0.5)
+    coarse = analyzed(axis_sd_deg=5.0).screw
+    assert coarse.axis_known.sum() > screw.axis_known.sum()
+    with pytest.raises(AnalysisError, match=r"no axis is known to the 0\.001 deg .* the best is known to 0\.[12]"):
+        analyzed(axis_sd_deg=0.001)
+    assert settings_from(options={"axis_sd": "2deg"}).axis_sd_deg == 2.0
+    assert settings_from(options={"axis_sd": "0.1rad"}).axis_sd_deg == pytest.approx(np.degrees(0.1))
+    with pytest.raises(UsageError, match="2deg"):
+        settings_from(options={"axis_sd": "2 furlongs"})
+
+
+def test_without_noise_there_are_no_errors_and_no_precision_to_ask_for() -> None:
+    recording = simulate_trial(arm="moving", seed=2).recording
+    analysis = analyze(recording, Settings(noise="none"))
+    assert np.isnan(analysis.screw.axis_sd).all()
+    assert "noise-unknown" in [warning.code for warning in analysis.warnings]
+    with pytest.raises(SettingError, match="--marker-noise"):
+        analyze(recording, Settings(noise="none", axis_sd_deg=1))
+
+
+def test_an_error_column_that_holds_no_errors_is_no_source() -> None:
+    assert pose_noise(body(reported_error=np.full(650, 1e300)), 100.0, Settings(noise="error-column")) is None
+    assert pose_noise(body(reported_error=np.full(650, -1.0)), 100.0, Settings(noise="error-column")) is None
