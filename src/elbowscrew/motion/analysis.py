@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat
 from elbowscrew.model import Analysis, InterpolatedMotion, Landmarks, QualityWarning, Recording
 from elbowscrew.motion.anatomy.anatomy import anatomical_motion, arm_lines
-from elbowscrew.motion.axes.axes import find_axes
+from elbowscrew.motion.axes.measured import measured_instantaneous_motion, measured_mean_axis, measured_steps
 from elbowscrew.motion.difference import (
     angle_between,
     direction_between,
@@ -19,6 +19,7 @@ from elbowscrew.motion.difference import (
     rms_displacement,
 )
 from elbowscrew.motion.interpolation.model_building import JointModel, build_model
+from elbowscrew.motion.joint.measured import joint_axis_warnings, measured_joint_axis
 from elbowscrew.motion.movements.phases import find_cycles, movement_phases, velocity_everywhere
 from elbowscrew.motion.movements.repetitions import repeatability_of, repetitions_of
 from elbowscrew.motion.screws.helical import helical_series
@@ -70,12 +71,14 @@ def analyze(recording: Recording, settings: Settings | None = None, *, landmarks
     measured = measure(recording, wanted)
     recording, joint, screw = measured.recording, measured.joint, measured.screw
     elapsed = measured.elapsed
-    axes = find_axes(measured, wanted)
-    velocity, near = axes.instantaneous.angular_velocity, pose_from_dual_quat(measured.change)[1]
+    mean = measured_mean_axis(measured)
+    joint_axis = measured_joint_axis(measured, mean, wanted)
+    instantaneous = measured_instantaneous_motion(measured, mean, wanted)
+    velocity, near = instantaneous.angular_velocity, pose_from_dual_quat(measured.change)[1]
     known_velocity = velocity_everywhere(velocity, screw.angle, elapsed)
     phases = movement_phases(known_velocity, elapsed)
     model = build_model(measured, phases, known_velocity, wanted)
-    warnings = measured.warnings + model.warnings + axes.warnings
+    warnings = measured.warnings + model.warnings + joint_axis_warnings(joint_axis, measured)
     cycles = find_cycles(screw.angle, phases)
     repetitions = repetitions_of(cycles, screw, measured.line, velocity, elapsed)
     if (
@@ -98,7 +101,7 @@ def analyze(recording: Recording, settings: Settings | None = None, *, landmarks
             measured.forearm,
             joint,
             axis_lines=arm_lines(measured.line, joint, wanted.express_in),
-            joint_line=None if axes.joint.best is None else axes.joint.best.line,
+            joint_line=None if joint_axis.best is None else joint_axis.best.line,
         )
         warnings += doubts
     interpolated = _compared(model, measured, wanted)
@@ -111,10 +114,10 @@ def analyze(recording: Recording, settings: Settings | None = None, *, landmarks
         elapsed=elapsed,
         displacement=measured.displacement,
         screw=replace(screw, axis_direction=screw.axis_direction.copy()),  # a view would keep all of the line
-        mean_axis=axes.mean,
-        joint_axis=axes.joint,
-        instantaneous=axes.instantaneous,
-        steps=axes.steps,
+        mean_axis=mean,
+        joint_axis=joint_axis,
+        instantaneous=instantaneous,
+        steps=measured_steps(measured, mean, wanted),
         phases=phases,
         repetitions=repetitions,
         repeatability=repeatability_of(cycles, repetitions, screw.angle, elapsed, near),

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from elbowscrew.errors import RecordingError
 from elbowscrew.model import QualityWarning
-from elbowscrew.motion.tracking.clock import time_resolution
+from elbowscrew.model.clock import time_resolution
 from elbowscrew.reading.cells import parse_number
 from elbowscrew.reading.source import TextSource
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from elbowscrew.errors import SettingError, UsageError
 from elbowscrew.model import ModelPhases
-from elbowscrew.motion.axes.axes import smoothed_displacement, twist_smoothing
+from elbowscrew.motion.axes.measured import smoothed_displacement, twist_smoothing
 from elbowscrew.motion.interpolation.laws import LAWS
 from elbowscrew.motion.interpolation.modeling import METHODS
 from elbowscrew.motion.screws.measurement import Measurement

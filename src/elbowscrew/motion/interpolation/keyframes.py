@@ -14,28 +14,11 @@ from elbowscrew.geometry._small_angle import length
 from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat
 from elbowscrew.model import Keyframes, ModelPhases
 from elbowscrew.motion.difference import angle_between
+from elbowscrew.motion.tracking.clock import row_of_frame
 
 Float = NDArray[np.float64]
 Index = NDArray[np.int64]
 KnotChoice = Literal["law", "chord", "uniform", "angle"]
-
-
-def row_of_frame(frame: Index, wanted: int, option: str) -> int:
-    """Row of a frame number.
-
-    Raises
-    ------
-    SettingError
-        If the number is not in the recording or stands there twice.
-    """
-    rows = np.flatnonzero(frame == wanted)
-    if rows.size == 1:
-        return int(rows[0])
-    if rows.size:
-        msg = f"--{option} {wanted}: the frame number stands {rows.size} times in the file; choose another frame"
-    else:
-        msg = f"--{option} {wanted}: no such frame; the file has frames {frame.min()} to {frame.max()}"
-    raise SettingError(msg)
 
 
 def rows_of_frames(

@@ -18,7 +18,7 @@ from elbowscrew.model import (
     RigidBody,
     Selection,
 )
-from elbowscrew.motion.axes.axes import instantaneous_of, measured_mean_axis
+from elbowscrew.motion.axes.measured import measured_instantaneous_motion, measured_mean_axis
 from elbowscrew.motion.difference import DEFAULT_RADIUS, points_from_markers, points_from_radius
 from elbowscrew.motion.interpolation.keyframe_selection import select_keyframes
 from elbowscrew.motion.interpolation.keyframes import keyframes_at, phase_time, rows_of_frames
@@ -103,7 +103,7 @@ def build_model(measured: Measurement, movements: MovementPhases, velocity: Floa
 
 def movements_of(measured: Measurement, settings: Settings) -> tuple[MovementPhases, Float]:
     """Movements between rests, and the angular velocity (N,) that they were found from."""
-    twist = instantaneous_of(measured, measured_mean_axis(measured), settings)
+    twist = measured_instantaneous_motion(measured, measured_mean_axis(measured), settings)
     velocity = velocity_everywhere(twist.angular_velocity, measured.screw.angle, measured.elapsed)
     return movement_phases(velocity, measured.elapsed), velocity
 

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from elbowscrew.errors import AnalysisError, SettingError
 from elbowscrew.model import ModelPhases, MovementPhases
-from elbowscrew.motion.interpolation.keyframes import row_of_frame
 from elbowscrew.motion.movements.phases import turning_points
+from elbowscrew.motion.tracking.clock import row_of_frame
 
 Float = NDArray[np.float64]
 Index = NDArray[np.int64]

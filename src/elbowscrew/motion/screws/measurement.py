@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from elbowscrew.errors import AnalysisError, SettingError
 from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat
 from elbowscrew.model import BodyQuality, JointMotion, QualityWarning, Recording, RigidBody, ScrewMotion
-from elbowscrew.motion.interpolation.keyframes import row_of_frame
 from elbowscrew.motion.screws.helical import HelicalSeries, helical_series
 from elbowscrew.motion.screws.pose_noise import JointNoise
 from elbowscrew.motion.screws.relative import displacement, expressed, frame_change, joint_from_bodies
@@ -19,7 +18,7 @@ from elbowscrew.motion.screws.uncertainty import ScrewErrors, known_errors, leas
 from elbowscrew.motion.smoothing.resampling import resample_recording
 from elbowscrew.motion.smoothing.smoothing import Smoothing
 from elbowscrew.motion.tracking.bodies import tracked_bodies
-from elbowscrew.motion.tracking.clock import elapsed_time
+from elbowscrew.motion.tracking.clock import elapsed_time, row_of_frame
 from elbowscrew.settings import Settings
 
 Float = NDArray[np.float64]

@@ -1,4 +1,4 @@
-"""The clock of a recording: evenly by frame number where the file's times allow it."""
+"""The clock of a recording, evenly by frame number where the file's times allow it, and the rows of frame numbers."""
 
 from __future__ import annotations
 
@@ -7,18 +7,11 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowscrew.errors import RecordingError
+from elbowscrew.errors import RecordingError, SettingError
 from elbowscrew.model import Recording
+from elbowscrew.model.clock import time_resolution
 
 _TIME_TOLERANCE_FRAMES: Final = 0.5
-
-
-def time_resolution(time_s: NDArray[np.float64]) -> float:
-    """Seconds in the last decimal of the times: 1, 0.1 or 0.01 where a spreadsheet rounded them, else 0.001."""
-    for decimals in range(3):
-        if (np.round(time_s, decimals) == time_s).all():
-            return float(10.0**-decimals)
-    return 1e-3
 
 
 def allowed_offset(recording: Recording) -> float:
@@ -54,3 +47,21 @@ def elapsed_time(recording: Recording) -> NDArray[np.float64]:
         "frame numbers give a clock; export the take again, or cut it there"
     )
     raise RecordingError(msg)
+
+
+def row_of_frame(frame: NDArray[np.int64], wanted: int, option: str) -> int:
+    """Row of a frame number.
+
+    Raises
+    ------
+    SettingError
+        If the number is not in the recording or stands there twice.
+    """
+    rows = np.flatnonzero(frame == wanted)
+    if rows.size == 1:
+        return int(rows[0])
+    if rows.size:
+        msg = f"--{option} {wanted}: the frame number stands {rows.size} times in the file; choose another frame"
+    else:
+        msg = f"--{option} {wanted}: no such frame; the file has frames {frame.min()} to {frame.max()}"
+    raise SettingError(msg)

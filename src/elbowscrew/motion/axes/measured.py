@@ -1,63 +1,29 @@
-"""All axes of a measured motion: mean, of the joint as a whole, and from step to step."""
+"""Axes of a measured motion: mean, of the moment and from step to step."""
 
 from __future__ import annotations
 
-from typing import Final, NamedTuple
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from elbowscrew.errors import SettingError
 from elbowscrew.geometry.dual_quaternion import conjugate, multiply, pose_from_dual_quat
-from elbowscrew.model import HelicalSteps, InstantaneousMotion, JointAxis, MeanAxis, QualityWarning
+from elbowscrew.model import HelicalSteps, InstantaneousMotion, MeanAxis
 from elbowscrew.motion.axes.helical_steps import helical_steps
 from elbowscrew.motion.axes.instantaneous import instantaneous_motion
 from elbowscrew.motion.axes.mean_axis import mean_axis_of
-from elbowscrew.motion.joint.joint_axis import estimate_joint_axis, forearm_line
 from elbowscrew.motion.screws.measurement import Measurement
-from elbowscrew.motion.screws.pose_noise import STILL_STRETCH
 from elbowscrew.motion.screws.relative import IDENTITY, expressed
 from elbowscrew.motion.smoothing.smoothing import Smoothing
 from elbowscrew.settings import Settings
 
 Float = NDArray[np.float64]
 
-_LARGE_NOISE_RATIO: Final = 2.0
 # What the field filters at: the highest cut-off, as residual analysis takes noise that is not white for motion, and
 # the one of recordings too short for it; lower where the rate asks for it.
 _TWIST_HZ: Final = 6.0
 _POSSIBLE_SHARES: Final = (1e-3, 0.4)
-
-
-class Axes(NamedTuple):
-    """Result of `find_axes`; steps are None if none were asked for."""
-
-    mean: MeanAxis
-    joint: JointAxis
-    instantaneous: InstantaneousMotion
-    steps: HelicalSteps | None
-    warnings: tuple[QualityWarning, ...]
-
-
-def find_axes(measured: Measurement, settings: Settings) -> Axes:
-    """Find the axes of a measured motion, by every way that the settings ask for."""
-    mean = measured_mean_axis(measured)
-    joint = estimate_joint_axis(
-        measured.joint,
-        measured.screw.angle,
-        forearm_line(np.concatenate([mean.direction, np.cross(mean.point, mean.direction)]), measured.change),
-        measured.noise,
-        measured.noise_gain,
-        express_in=settings.express_in,
-        robust=settings.robust,
-    )
-    return Axes(
-        mean=mean,
-        joint=joint,
-        instantaneous=instantaneous_of(measured, mean, settings),
-        steps=_steps(measured, mean, settings),
-        warnings=_axis_warnings(joint, measured),
-    )
 
 
 def measured_mean_axis(measured: Measurement) -> MeanAxis:
@@ -66,7 +32,7 @@ def measured_mean_axis(measured: Measurement) -> MeanAxis:
     return mean_axis_of(measured.screw.angle, lines, pose_from_dual_quat(measured.change)[1])
 
 
-def instantaneous_of(measured: Measurement, mean: MeanAxis, settings: Settings) -> InstantaneousMotion:
+def measured_instantaneous_motion(measured: Measurement, mean: MeanAxis, settings: Settings) -> InstantaneousMotion:
     """Take the twist of filtered poses: of those at hand if they are, else of poses filtered for this alone."""
     D, smoothing = measured.displacement, measured.smoothing
     if smoothing.cutoff_hz is None:
@@ -104,7 +70,8 @@ def smoothed_displacement(measured: Measurement, smoothing: Smoothing) -> Float:
     return multiply(conjugate(measured.joint.reference), multiply(conjugate(arm_pose), forearm.dual_quat_lab_body))
 
 
-def _steps(measured: Measurement, mean: MeanAxis, settings: Settings) -> HelicalSteps | None:
+def measured_steps(measured: Measurement, mean: MeanAxis, settings: Settings) -> HelicalSteps | None:
+    """Take the axes from step to step; None where none are asked for."""
     if settings.step_deg is None:
         return None
     return helical_steps(
@@ -119,31 +86,3 @@ def _steps(measured: Measurement, mean: MeanAxis, settings: Settings) -> Helical
         noise=measured.noise.known,
         noise_gain=measured.noise_gain,
     )
-
-
-def _axis_warnings(joint_axis: JointAxis, measured: Measurement) -> tuple[QualityWarning, ...]:
-    warnings = []
-    if not joint_axis.single:
-        message = (
-            f"the motion has no single axis: a hinge leaves {100.0 * joint_axis.unexplained:.0f} % of its rotation "
-            "unexplained, so that no joint axis is fitted, and the mean axis is but a mean"
-        )
-        warnings.append(QualityWarning(code="no-single-axis", message=message))
-    if measured.noise.known is None:
-        message = "the noise of the poses is not known, so that axes have no error bars; --marker-noise MM gives them"
-        warnings.append(QualityWarning(code="noise-unknown", message=message, severity="note"))
-    elif joint_axis.best is not None and joint_axis.best.noise_ratio > _LARGE_NOISE_RATIO:
-        message = (
-            f"the poses leave a hinge by {joint_axis.best.noise_ratio:.1f} times what their noise explains: the joint "
-            "is no perfect hinge, or the markers move on the skin; the joint axis' interval is that of the residuals"
-        )
-        warnings.append(QualityWarning(code="beyond-noise", message=message, severity="note"))
-    if any(
-        noise is not None and noise.source == STILL_STRETCH for noise in (measured.noise.arm, measured.noise.forearm)
-    ):
-        message = (
-            "error bars stand on the jitter of a still stretch, which moving bodies mostly exceed many times; "
-            "--marker-noise MM states more"
-        )
-        warnings.append(QualityWarning(code="noise-from-jitter", message=message))
-    return tuple(warnings)

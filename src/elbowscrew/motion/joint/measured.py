@@ -1,0 +1,57 @@
+"""The joint of a measured motion as a whole, and what is doubtful about it."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from elbowscrew.model import JointAxis, MeanAxis, QualityWarning
+from elbowscrew.motion.joint.joint_axis import estimate_joint_axis, forearm_line
+from elbowscrew.motion.screws.measurement import Measurement
+from elbowscrew.motion.screws.pose_noise import STILL_STRETCH
+from elbowscrew.settings import Settings
+
+_LARGE_NOISE_RATIO: Final = 2.0
+
+
+def measured_joint_axis(measured: Measurement, mean: MeanAxis, settings: Settings) -> JointAxis:
+    """Estimate the joint's axis, starting from the mean of the finite axes."""
+    return estimate_joint_axis(
+        measured.joint,
+        measured.screw.angle,
+        forearm_line(np.concatenate([mean.direction, np.cross(mean.point, mean.direction)]), measured.change),
+        measured.noise,
+        measured.noise_gain,
+        express_in=settings.express_in,
+        robust=settings.robust,
+    )
+
+
+def joint_axis_warnings(joint_axis: JointAxis, measured: Measurement) -> tuple[QualityWarning, ...]:
+    """Say where there is no single axis, and what its error bars stand on."""
+    warnings = []
+    if not joint_axis.single:
+        message = (
+            f"the motion has no single axis: a hinge leaves {100.0 * joint_axis.unexplained:.0f} % of its rotation "
+            "unexplained, so that no joint axis is fitted, and the mean axis is but a mean"
+        )
+        warnings.append(QualityWarning(code="no-single-axis", message=message))
+    if measured.noise.known is None:
+        message = "the noise of the poses is not known, so that axes have no error bars; --marker-noise MM gives them"
+        warnings.append(QualityWarning(code="noise-unknown", message=message, severity="note"))
+    elif joint_axis.best is not None and joint_axis.best.noise_ratio > _LARGE_NOISE_RATIO:
+        message = (
+            f"the poses leave a hinge by {joint_axis.best.noise_ratio:.1f} times what their noise explains: the joint "
+            "is no perfect hinge, or the markers move on the skin; the joint axis' interval is that of the residuals"
+        )
+        warnings.append(QualityWarning(code="beyond-noise", message=message, severity="note"))
+    if any(
+        noise is not None and noise.source == STILL_STRETCH for noise in (measured.noise.arm, measured.noise.forearm)
+    ):
+        message = (
+            "error bars stand on the jitter of a still stretch, which moving bodies mostly exceed many times; "
+            "--marker-noise MM states more"
+        )
+        warnings.append(QualityWarning(code="noise-from-jitter", message=message))
+    return tuple(warnings)
