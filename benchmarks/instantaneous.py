@@ -27,7 +27,7 @@ def errors(lowpass_hz: float | str, seed: int) -> np.ndarray:
     angle = np.radians(65.0) * (1.0 - np.cos(np.pi * time))
     exact = dq.multiply(dual_quat_from_screw(angle, 0.0, LINE[:3], LINE[3:]), START)
     noisy = dq.multiply(exact, dq.exp(0.5 * NOISE * rng.normal(size=(time.size, 6))))
-    body = RigidBody(name="forearm", dual_quat_lab_body=noisy, loss=np.zeros(time.size, dtype=np.uint8))
+    body = RigidBody(name="distal", dual_quat_lab_body=noisy, loss=np.zeros(time.size, dtype=np.uint8))
     settings = Settings(express_in="lab", lowpass_hz=lowpass_hz, noise="none")
     found = analyze(Recording.from_bodies([body], rate_hz=RATE_HZ), settings).instantaneous
     known = np.isfinite(found.axis_direction[:, 0])

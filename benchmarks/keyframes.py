@@ -18,7 +18,7 @@ def selection(frames: int, rounds: int) -> list[Row]:
     """Fewest keyframes of a synthetic elbow, by tolerance and method."""
     recording = simulate_trial(frames=frames, inversion=frames * 211 // 450, marker_noise_mm=0.1).recording
     measured = measured_motion(recording, Settings())
-    offsets = measured.forearm.marker_offsets
+    offsets = measured.distal.marker_offsets
     assert offsets is not None
     points = points_from_markers(offsets)
     rows = []

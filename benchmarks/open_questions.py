@@ -24,7 +24,7 @@ ROOT = Path(__file__).parent.parent
 METHODS = ("dlb", "sclerp", "dib")
 LAWS = ("linear", "cycloidal", "harmonic", "polynomial-345", "polynomial-4567", "modified-sine", "best", "empirical")
 COUNTS = (2, 3, 4, 5, 6, 8)
-NOISE = {"marker_noise_mm": 0.05, "arm": "moving"}
+NOISE = {"marker_noise_mm": 0.05, "proximal": "moving"}
 
 
 def motions() -> Iterator[tuple[str, Recording, Settings]]:
@@ -42,11 +42,11 @@ def motions() -> Iterator[tuple[str, Recording, Settings]]:
         yield name, simulate_trial(**{**NOISE, **changes}, seed=1).recording, Settings()
     folder = os.environ.get("ELBOWSCREW_REAL_DATA", "")
     for take in ("20230627_0117", "20230706_122504"):
-        for arm, forearm in ((1, 2), (2, 3)):
+        for proximal, distal in ((1, 2), (2, 3)):
             path = Path(folder) / "real" / f"v121_thomazach_{take}.csv"
             if folder and path.exists():
-                settings = Settings(arm=f"Rigid Body {arm}", forearm=f"Rigid Body {forearm}")
-                yield f"hinge {take[4:]} {arm}-{forearm}", read_recording(path), settings
+                settings = Settings(proximal=f"Rigid Body {proximal}", distal=f"Rigid Body {distal}")
+                yield f"hinge {take[4:]} {proximal}-{distal}", read_recording(path), settings
 
 
 def values(found: Comparison, of: str = "rms_displacement", **wanted: Any) -> NDArray[np.float64]:

@@ -54,7 +54,7 @@ def main() -> None:
         folder = Path(scratch)
         places = []
         for k in range(10):
-            recording = simulate_trial(arm="moving", gaps=k % 3, top_deg=120.0 + k, seed=k).recording
+            recording = simulate_trial(proximal="moving", gaps=k % 3, top_deg=120.0 + k, seed=k).recording
             places.append(save_analysis(analyze(recording), folder / f"trial{k}", figure_formats=(), report=False))
         first = milliseconds(lambda: write_trial_page(places[0]))
         times = [milliseconds(lambda: write_trial_page(places[1])) for _ in range(ROUNDS)]

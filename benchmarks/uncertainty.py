@@ -25,11 +25,11 @@ def main() -> None:
     trials = int(sys.argv[1]) if len(sys.argv) > 1 else 10_000
     print("| arm | θ deg | θ % | slide % | direction % | place % |")
     print("| --- | --- | --- | --- | --- | --- |")
-    for arm_moves in (False, True):
+    for proximal_moves in (False, True):
         for angle in ANGLES_DEG:
-            shares = coverage(np.radians(angle), trials, arm_moves=arm_moves, seed=angle)
+            shares = coverage(np.radians(angle), trials, proximal_moves=proximal_moves, seed=angle)
             cells = " | ".join(f"{100.0 * share:.1f}" for share in shares)
-            print(f"| {'moving' if arm_moves else 'still'} | {angle} | {cells} |")
+            print(f"| {'moving' if proximal_moves else 'still'} | {angle} | {cells} |")
 
 
 if __name__ == "__main__":

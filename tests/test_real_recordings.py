@@ -23,13 +23,13 @@ HINGES = [
 ]
 
 
-@pytest.mark.parametrize(("name", "arm", "forearm", "top", "dispersion", "slide", "spread"), HINGES)
+@pytest.mark.parametrize(("name", "proximal", "distal", "top", "dispersion", "slide", "spread"), HINGES)
 def test_mechanical_hinges(
-    real_data: Path, name: str, arm: int, forearm: int, top: float, dispersion: float, slide: float,
+    real_data: Path, name: str, proximal: int, distal: int, top: float, dispersion: float, slide: float,
     spread: tuple[float, float],
 ) -> None:  # fmt: skip
     recording = read_recording(real_data / "real" / f"{name}.csv")
-    settings = Settings(arm=f"Rigid Body {arm}", forearm=f"Rigid Body {forearm}")
+    settings = Settings(proximal=f"Rigid Body {proximal}", distal=f"Rigid Body {distal}")
     analysis = analyze(recording, settings)
     assert np.degrees(np.nanmax(analysis.screw.angle)) == pytest.approx(top, abs=0.05)
     assert np.degrees(np.nanmedian(analysis.mean_axis.deviation)) == pytest.approx(dispersion, abs=0.006)
@@ -46,11 +46,11 @@ def test_intervals_of_a_hinge_hold_in_the_robots_other_take(real_data: Path) -> 
     for take in ("v121_thomazach_20230627_0117", "v121_thomazach_20230706_122504"):
         recording = read_recording(real_data / "real" / f"{take}.csv")
         fits = []
-        for arm, forearm in ((1, 2), (2, 3)):
+        for proximal, distal in ((1, 2), (2, 3)):
             settings = Settings(
-                arm=f"Rigid Body {arm}",
-                forearm=f"Rigid Body {forearm}",
-                express_in="forearm" if arm == 1 else "arm",
+                proximal=f"Rigid Body {proximal}",
+                distal=f"Rigid Body {distal}",
+                express_in="distal" if proximal == 1 else "proximal",
             )
             analysis = analyze(recording, settings)
             fit = analysis.joint_axis.hinge
@@ -80,7 +80,7 @@ def test_simulated_curl_through_the_python_interface(real_data: Path) -> None:
         return RigidBody.from_matrices(name, rotation, np.loadtxt(folder / f"{name}_pos.txt"))
 
     recording = Recording.from_bodies([body("humerus"), body("radius")], rate_hz=1000)
-    analysis = analyze(recording, Settings(express_in="arm"))
+    analysis = analyze(recording, Settings(express_in="proximal"))
     assert np.degrees(analysis.screw.angle.max()) == pytest.approx(66.06, abs=0.005)
     assert analysis.mean_axis.direction == pytest.approx([0.99756, 0.00122, -0.06975], abs=1e-4)
     assert analysis.mean_axis.point == pytest.approx([-0.01146, 0.01998, -0.16357], abs=1e-4)
@@ -197,14 +197,14 @@ def gimbal_markers(path: Path) -> tuple[list[str], Float]:
 
 
 @pytest.mark.parametrize(
-    ("name", "arm", "forearm", "top", "mean_deg", "largest_deg", "slide_mm"),
+    ("name", "proximal", "distal", "top", "mean_deg", "largest_deg", "slide_mm"),
     [
         ("Rotation", (0, 3, 4), (2, 5, 6), 41.6, 0.54, 2.2, (0.09, 0.49)),
         ("Abduction", (4, 5, 7), (0, 1, 2), 24.0, 2.9, 4.5, (-3.3, 0.6)),
     ],
 )
 def test_gimbal_by_way_of_a_plain_table(
-    real_data: Path, tmp_path: Path, name: str, arm: tuple[int, ...], forearm: tuple[int, ...], top: float,
+    real_data: Path, tmp_path: Path, name: str, proximal: tuple[int, ...], distal: tuple[int, ...], top: float,
     mean_deg: float, largest_deg: float, slide_mm: tuple[float, float],
 ) -> None:  # fmt: skip
     """The recipe of docs/plain-table.md; the figures are of angles above 15 deg.
@@ -218,8 +218,8 @@ def test_gimbal_by_way_of_a_plain_table(
     path = tmp_path / "gimbal.csv"
     path.write_text("\n".join(lines) + "\n")
     settings = Settings(
-        arm_markers=tuple(f"marker{k}" for k in arm),
-        forearm_markers=tuple(f"marker{k}" for k in forearm),
+        proximal_markers=tuple(f"marker{k}" for k in proximal),
+        distal_markers=tuple(f"marker{k}" for k in distal),
         min_angle_deg=15,
     )
     analysis = analyze(read_recording(path, markers=settings.markers), settings)

@@ -27,7 +27,7 @@ def test_samples_are_made_by_simulate(samples: Path, name: str) -> None:
 
 
 @pytest.mark.parametrize("name", NAMES)
-@pytest.mark.parametrize("express_in", ["forearm", "arm", "lab"])
+@pytest.mark.parametrize("express_in", ["distal", "proximal", "lab"])
 def test_the_truth_is_found_within_the_noise(samples: Path, name: str, express_in: Any) -> None:
     truth = json.loads((samples / f"{name}.truth.json").read_text())
     analysis = analyze(read_recording(samples / f"{name}.csv"), Settings(express_in=express_in))

@@ -18,7 +18,7 @@ def test_options_are_stronger_than_the_file_and_the_file_than_defaults(tmp_path:
     settings = settings_from(file, {"min_angle": 7.0, "arm": None})
     assert settings.min_angle_deg == 7.0
     assert settings.max_gap_s == 0.2
-    assert settings.arm == "A"
+    assert settings.proximal == "A"
     assert settings.keyframes == (0, 10, 20)
     assert settings.figure_formats == ("pdf",)
     assert settings.method == Settings().method
@@ -28,7 +28,7 @@ def test_options_are_stronger_than_the_file_and_the_file_than_defaults(tmp_path:
     ("text", "says"),
     [
         ("min-angel = 5", "unknown key 'min-angel'; did you mean 'min-angle'"),
-        ("zzz = 5", "unknown key 'zzz'; possible keys: arm"),
+        ("zzz = 5", "unknown key 'zzz'; possible keys: joint"),
         ("min-angle = -5", "min-angle: should be greater than 0, found -5"),
         ("min-angle = nan", "min-angle: should be a finite number"),
         ('method = "magic"', "method: should be 'dlb'"),

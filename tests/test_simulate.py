@@ -14,10 +14,12 @@ from elbowscrew.errors import OutputError, UsageError
 from elbowscrew.saving import save_simulation
 
 
-@pytest.mark.parametrize("express_in", ["forearm", "arm", "lab"])
-@pytest.mark.parametrize("arm", ["still", "moving"])
-def test_the_truth_is_found_again_without_noise(express_in: Any, arm: Any) -> None:
-    trial = simulate_trial(marker_noise_mm=0.0, arm=arm, top_deg=142, sign_flips=True, gaps=2, repetitions=2, seed=5)
+@pytest.mark.parametrize("express_in", ["distal", "proximal", "lab"])
+@pytest.mark.parametrize("proximal", ["still", "moving"])
+def test_the_truth_is_found_again_without_noise(express_in: Any, proximal: Any) -> None:
+    trial = simulate_trial(
+        marker_noise_mm=0.0, proximal=proximal, top_deg=142, sign_flips=True, gaps=2, repetitions=2, seed=5
+    )
     analysis = analyze(trial.recording, Settings(express_in=express_in))
     valid = analysis.screw.valid
     assert np.flatnonzero(~valid).tolist() == trial.truth["lost_frames"]
@@ -33,7 +35,7 @@ def test_the_truth_is_found_again_without_noise(express_in: Any, arm: Any) -> No
 @pytest.mark.parametrize("layout", ["motive", "row-tagged"])
 @pytest.mark.parametrize("unit", ["m", "cm", "mm"])
 def test_written_trials_are_read_back(tmp_path: Path, layout: Any, unit: Any) -> None:
-    trial = simulate_trial(arm="moving", gaps=3, sign_flips=True, frames=120, inversion=60, seed=2)
+    trial = simulate_trial(proximal="moving", gaps=3, sign_flips=True, frames=120, inversion=60, seed=2)
     if layout == "row-tagged" and unit != "m":
         with pytest.raises(UsageError, match="meters"):
             save_simulation(trial, tmp_path / "t.csv", layout=layout, length_unit=unit)

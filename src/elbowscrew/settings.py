@@ -15,10 +15,11 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_valida
 from elbowscrew.errors import UsageError
 from elbowscrew.tables import AngleUnit, LengthUnit
 
-LISTS: Final = ("keyframes", "figure-format", "export", "arm-markers", "forearm-markers")
+LISTS: Final = ("keyframes", "figure-format", "export", "proximal-markers", "distal-markers")
 """Settings of which there may be several."""
 _UNIT_SUFFIXES: Final = ("_deg_s", "_rad_s", "_m_s", "_deg", "_mm", "_hz", "_s", "_percent")
 
+JointName = Literal["elbow", "wrist", "knee", "ankle", "hip", "shoulder", "finger"]
 LawName = Literal[
     "cycloidal",
     "linear",
@@ -31,14 +32,24 @@ LawName = Literal[
     "best",
 ]
 
-STILL_ARM: Final = "none"
-"""The value of ``arm`` that says: the file has no arm, it stands still."""
+STILL: Final = "none"
+"""The value of ``proximal`` that says: the file has no such body, it stands still."""
+
+
+_FORMER_NAMES: Final = {
+    "arm": "proximal",
+    "forearm": "distal",
+    "arm-markers": "proximal-markers",
+    "forearm-markers": "distal-markers",
+}
+"""Names that settings had for an elbow alone, still understood."""
 
 
 def option_name(field: str) -> str:
     """Give a field's name on the command line and in TOML: ``min_angle_deg`` is ``min-angle``."""
     suffix = next((suffix for suffix in _UNIT_SUFFIXES if field.endswith(suffix)), "")
-    return field.removesuffix(suffix).replace("_", "-")
+    name = field.removesuffix(suffix).replace("_", "-")
+    return _FORMER_NAMES.get(name, name)
 
 
 class Settings(BaseModel):
@@ -49,9 +60,11 @@ class Settings(BaseModel):
 
     Attributes
     ----------
-    arm, forearm : str or None
-        Names or ids of the two bodies; None to go by the names in the file, "none" for an arm that stands still.
-    arm_markers, forearm_markers : tuple of str or None
+    joint : str or None
+        What the joint is called (`elbowscrew.joints`); None to go by the bodies' names.
+    proximal, distal : str or None
+        Names or ids of the two bodies; None to go by the names in the file; "none" for a still proximal one.
+    proximal_markers, distal_markers : tuple of str or None
         Markers the bodies' poses are found from: names or patterns; None for the file's own bodies.
     pose_method : {"svd", "dual-qr"}
         How poses are found from markers.
@@ -59,7 +72,7 @@ class Settings(BaseModel):
         Frame all displacements are counted from; None for the first one tracked.
     reference_window : int
         Frames from the reference on whose mean is taken.
-    express_in : {"forearm", "arm", "lab"}
+    express_in : {"distal", "proximal", "lab"}
         Frame the screw is written in.
     max_gap_s : float
         Longest gap that is filled, seconds.
@@ -106,7 +119,7 @@ class Settings(BaseModel):
     knots : {"law", "chord", "uniform", "angle"}
         Parameter of the keyframes.
     radius_mm : float or None
-        Radius of gyration of the forearm's points; None for its markers, else 50 mm.
+        Radius of gyration of the distal body's points; None for its markers, else 50 mm.
     angle_unit : {"deg", "rad"}
         Unit of angles in tables and figures.
     length_unit : {"mm", "m"}
@@ -125,16 +138,19 @@ class Settings(BaseModel):
         frozen=True, extra="forbid", alias_generator=option_name, populate_by_name=True, allow_inf_nan=False
     )
 
-    arm: str | None = Field(None, description="Name or id of the upper arm's body; 'none' if it stands still")
-    forearm: str | None = Field(None, description="Name or id of the forearm's body")
-    arm_markers: tuple[str, ...] | None = Field(None, min_length=1, description="Markers of the arm: names or patterns")
-    forearm_markers: tuple[str, ...] | None = Field(
-        None, min_length=1, description="Markers of the forearm: names or patterns"
+    joint: JointName | None = Field(None, description="What the joint is called; by default as the bodies' names say")
+    proximal: str | None = Field(None, description="Name or id of the proximal body; 'none' if it stands still")
+    distal: str | None = Field(None, description="Name or id of the distal body")
+    proximal_markers: tuple[str, ...] | None = Field(
+        None, min_length=1, description="Markers of the proximal body: names or patterns"
+    )
+    distal_markers: tuple[str, ...] | None = Field(
+        None, min_length=1, description="Markers of the distal body: names or patterns"
     )
     pose_method: Literal["svd", "dual-qr"] = Field("svd", description="Poses from markers")
     reference: int | None = Field(None, description="Frame all displacements are counted from")
     reference_window: int = Field(1, ge=1, description="Take the mean of so many frames from the reference on")
-    express_in: Literal["forearm", "arm", "lab"] = Field("forearm", description="Frame the screw is written in")
+    express_in: Literal["distal", "proximal", "lab"] = Field("distal", description="Frame the screw is written in")
     max_gap_s: float = Field(0.1, ge=0, description="Longest gap that is filled, in seconds")
     frozen: Literal["lost", "keep"] = Field("lost", description="Poses that repeat: lost tracking, or kept")
     max_turn_deg_s: float = Field(3000.0, gt=0, description="Fastest turn of a body, in degrees a second")
@@ -179,7 +195,10 @@ class Settings(BaseModel):
     )
     knots: Literal["law", "chord", "uniform", "angle"] = Field("law", description="Parameter of the keyframes")
     radius_mm: float | None = Field(
-        None, gt=0, le=1e5, description="Radius of gyration of the forearm's points; default: its markers, else 50 mm"
+        None,
+        gt=0,
+        le=1e5,
+        description="Radius of gyration of the distal body's points; default: its markers, else 50 mm",
     )
     angle_unit: AngleUnit = Field("deg", description="Unit of angles in tables and figures")
     length_unit: LengthUnit = Field("mm", description="Unit of lengths in tables and figures")
@@ -197,7 +216,7 @@ class Settings(BaseModel):
     @property
     def markers(self) -> tuple[str, ...]:
         """All markers wanted of the recording."""
-        return (*(self.arm_markers or ()), *(self.forearm_markers or ()))
+        return (*(self.proximal_markers or ()), *(self.distal_markers or ()))
 
     @property
     def figure_formats(self) -> tuple[str, ...]:
@@ -213,6 +232,20 @@ class Settings(BaseModel):
     def model_law(self) -> str:
         """The law of motion, the default resolved."""
         return self.law or ("cycloidal" if self.tolerance_mm is None else "linear")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _former_names(cls, values: object) -> object:
+        """Take what an elbow's two bodies were called before for proximal and distal."""
+        if not isinstance(values, Mapping):
+            return values
+        return {_FORMER_NAMES.get(str(name).replace("_", "-"), name): value for name, value in values.items()}
+
+    @field_validator("express_in", mode="before")
+    @classmethod
+    def _segment(cls, value: object) -> object:
+        """Take an elbow's own words for its two bodies."""
+        return {"arm": "proximal", "forearm": "distal"}.get(value, value) if isinstance(value, str) else value
 
     @field_validator("lowpass_hz", mode="before")
     @classmethod

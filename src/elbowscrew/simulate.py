@@ -61,7 +61,7 @@ class Simulation:
         How many times the forearm is lost, and for how many frames each time.
     sign_flips : bool
         Flip the sign of the quaternions at random, as exports do.
-    arm : {"moving", "still"}
+    proximal : {"moving", "still"}
         Whether the upper arm sways in the laboratory.
     repetitions : int
         How many times the movement is done.
@@ -85,7 +85,7 @@ class Simulation:
     gaps: int = 0
     gap_frames: int = 5
     sign_flips: bool = False
-    arm: Literal["moving", "still"] = "still"
+    proximal: Literal["moving", "still"] = "still"
     repetitions: int = 1
     rest_before_s: float = 0.0
     hold_s: float = 0.0
@@ -186,6 +186,8 @@ def simulate_trial(simulation: Simulation | None = None, **settings: Any) -> Sim
     >>> [body.name for body in trial.recording.bodies], trial.recording.frame.size
     (['Upper Arm', 'Forearm'], 450)
     """
+    if "arm" in settings:  # what an elbow's proximal body was called before
+        settings["proximal"] = settings.pop("arm")
     wanted = replace(simulation or Simulation(), **settings)
     rng = np.random.default_rng(wanted.seed)
     progress, inversions = _progress(wanted)
@@ -196,14 +198,14 @@ def simulate_trial(simulation: Simulation | None = None, **settings: Any) -> Sim
     line = line_through(_JOINT_POINT, _JOINT_DIRECTION)
     lines = _drifting(line, np.radians(wanted.axis_drift_deg) * progress)
     start = dual_quat_from_pose(quaternion.quat_from_rotation_vector(_FOREARM_TURN), _FOREARM_CENTER)
-    arm_pose = _arm_poses(time_s, wanted.arm)
+    proximal_pose = _proximal_poses(time_s, wanted.proximal)
     joint = multiply(dual_quat_from_screw(angle, slide, lines[:, :3], lines[:, 3:]), start)
-    forearm_pose = multiply(arm_pose, joint)
+    distal_pose = multiply(proximal_pose, joint)
     lost = _lost_frames(wanted, progress.size, rng)
     bodies, markers = [], {}
     for name, identifier, offsets, pose, gone in (
-        ("Upper Arm", "5C0E1B7A90D311EDA1EB0242AC120002", _ARM_MARKERS, arm_pose, None),
-        ("Forearm", "5C0E1DB490D311EDA1EB0242AC120003", _FOREARM_MARKERS, forearm_pose, lost),
+        ("Upper Arm", "5C0E1B7A90D311EDA1EB0242AC120002", _ARM_MARKERS, proximal_pose, None),
+        ("Forearm", "5C0E1DB490D311EDA1EB0242AC120003", _FOREARM_MARKERS, distal_pose, lost),
     ):
         body, seen = _observed(name, identifier, offsets - offsets.mean(axis=0), pose, gone, wanted, rng)
         bodies.append(body)
@@ -213,7 +215,7 @@ def simulate_trial(simulation: Simulation | None = None, **settings: Any) -> Sim
         "settings": {name: getattr(wanted, name) for name in Simulation.__dataclass_fields__},
         "axis": {
             frame: _line_truth(transform_lines(change, line))
-            for frame, change in (("forearm", conjugate(start)), ("arm", IDENTITY), ("lab", arm_pose[0]))
+            for frame, change in (("distal", conjugate(start)), ("proximal", IDENTITY), ("lab", proximal_pose[0]))
         },
         "inversion_frames": inversions,
         "lost_frames": np.flatnonzero(lost).tolist(),
@@ -252,10 +254,10 @@ def _minimum_jerk(tau: Float) -> Float:
     return tau**3 * (10.0 - 15.0 * tau + 6.0 * tau**2)
 
 
-def _arm_poses(time_s: Float, arm: str) -> Float:
+def _proximal_poses(time_s: Float, proximal: str) -> Float:
     sway = np.zeros((time_s.size, 3))
     shift = np.zeros((time_s.size, 3))
-    if arm == "moving":
+    if proximal == "moving":
         phase = 2.0 * np.pi * time_s[:, None] * np.array([0.31, 0.23, 0.17])
         sway = np.array([0.10, 0.16, 0.07]) * np.sin(phase)
         shift = np.array([0.03, 0.02, 0.04]) * np.sin(1.3 * phase)

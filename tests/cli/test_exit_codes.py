@@ -88,7 +88,7 @@ def test_the_file_of_settings_and_the_options(take: Path, capsys: pytest.Capture
     Path("lab.toml").write_text('express-in = "arm"\nmin-angle = 20\nfigure-format = "none"\n')
     code, out, _ = run(capsys, "analyze", take, "--config", "lab.toml", "--min-angle", "15", "--json")
     settings = json.loads(out)["settings"]
-    assert (code, settings["express-in"], settings["min-angle"]) == (0, "arm", 15.0)
+    assert (code, settings["express-in"], settings["min-angle"]) == (0, "proximal", 15.0)
 
 
 BAD_FILES: dict[str, tuple[bytes | None, int]] = {
@@ -145,7 +145,7 @@ def test_a_folder_is_no_trial(take: Path, capsys: pytest.CaptureFixture[str]) ->
         (["--config", "none.toml"], 2, "none.toml"),
         (["--inversion", "30", "--keyframes", "0,59"], 2, "inversion"),
         (["--arm", "Leg"], 4, "no such body; the file has 'Upper Arm'"),
-        (["--arm", "Forearm", "--forearm", "Forearm"], 4, "both as arm and as forearm"),
+        (["--arm", "Forearm", "--forearm", "Forearm"], 4, "both as proximal and as distal"),
         (["--reference", "60"], 4, "frames 0 to 59"),
         (["--inversion", "-3"], 4, "no such frame"),
         (["--keyframes", "0,30,1000"], 4, "no such frame"),

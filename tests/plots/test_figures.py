@@ -117,7 +117,7 @@ def test_places_of_axes_that_are_one_line_are_at_the_mean() -> None:
 
 
 @pytest.mark.parametrize("name", plots.FIGURES)
-@pytest.mark.parametrize("express_in", ["forearm", "arm", "lab"])
+@pytest.mark.parametrize("express_in", ["distal", "proximal", "lab"])
 def test_every_axes_of_every_figure_has_labels_with_units(name: str, express_in: Any) -> None:
     recording = simulate_trial(frames=80, inversion=40, gaps=1).recording
     figure = plots.FIGURES[name](analyze(recording, Settings(express_in=express_in)))

@@ -37,7 +37,7 @@ def test_names_and_coordinates(tmp_path: Path) -> None:
     assert found.EL.markers == ("lateral_epicondyle",)
     assert found.US.markers == ("wrist front", "Wrist:Marker 002")
     assert found.EL.point is None
-    assert [found.EM.frame, found.RS.frame, found.GH.frame] == ["arm", "forearm", "lab"]
+    assert [found.EM.frame, found.RS.frame, found.GH.frame] == ["proximal", "distal", "lab"]
     assert found.EM.point == pytest.approx([0.030, -0.131, 0.0045], abs=1e-15)
     assert found.GH.point == pytest.approx([10.0, -10.0, 0.0], abs=1e-15)
     assert found.markers == ("lateral_epicondyle", "wrist front", "Wrist:Marker 002")
@@ -144,9 +144,9 @@ def test_an_unreadable_file_is_an_error(tmp_path: Path) -> None:
     "given",
     [
         {},
-        {"markers": ("a",), "point": np.zeros(3), "frame": "arm"},
+        {"markers": ("a",), "point": np.zeros(3), "frame": "proximal"},
         {"point": np.zeros(3)},
-        {"markers": ("a",), "frame": "arm"},
+        {"markers": ("a",), "frame": "proximal"},
     ],
 )
 def test_a_landmark_is_markers_or_a_point_with_its_frame(given: dict[str, Any]) -> None:

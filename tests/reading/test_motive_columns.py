@@ -41,7 +41,7 @@ VARIANTS: dict[str, dict[str, Any]] = {
 
 def assert_poses(recording: Any, trial: KnownTrial, tolerance: float = 1e-12) -> None:
     for body, R, p in zip(
-        recording.bodies, (trial.arm_R, trial.forearm_R), (trial.arm_p, trial.forearm_p), strict=True
+        recording.bodies, (trial.proximal_R, trial.distal_R), (trial.proximal_p, trial.distal_p), strict=True
     ):
         matrix = dq.matrix_from_dual_quat(body.dual_quat_lab_body)
         assert matrix[:, :3, :3] == pytest.approx(R, abs=tolerance)
@@ -71,13 +71,13 @@ def test_blank_cells_are_lost_frames(tmp_path: Path) -> None:
     bodies = bodies_of(TRIAL)
     bodies[1].lost = np.isin(np.arange(40), [0, 7, 8, 39])
     recording = read_recording(write_columns(tmp_path / "take.csv", bodies))
-    arm, forearm = recording.bodies
-    assert arm.tracked.all()
-    assert np.flatnonzero(~forearm.tracked).tolist() == [0, 7, 8, 39]
-    assert forearm.loss_counts() == {"blank": 4}
-    assert np.isnan(forearm.dual_quat_lab_body[[0, 7, 8, 39]]).all()
-    known = forearm.tracked
-    assert dq.matrix_from_dual_quat(forearm.dual_quat_lab_body)[known, :3, 3] == pytest.approx(TRIAL.forearm_p[known])
+    proximal, distal = recording.bodies
+    assert proximal.tracked.all()
+    assert np.flatnonzero(~distal.tracked).tolist() == [0, 7, 8, 39]
+    assert distal.loss_counts() == {"blank": 4}
+    assert np.isnan(distal.dual_quat_lab_body[[0, 7, 8, 39]]).all()
+    known = distal.tracked
+    assert dq.matrix_from_dual_quat(distal.dual_quat_lab_body)[known, :3, 3] == pytest.approx(TRIAL.distal_p[known])
 
 
 def test_bodies_of_one_name_are_told_apart_by_id(tmp_path: Path) -> None:
@@ -216,7 +216,7 @@ def test_spreadsheets_other_delimiters_and_decimal_commas(tmp_path: Path, delimi
     known = recording.bodies[1].tracked
     assert np.flatnonzero(~known).tolist() == [3]
     matrix = dq.matrix_from_dual_quat(recording.bodies[1].dual_quat_lab_body)
-    assert matrix[known, :3, :3] == pytest.approx(TRIAL.forearm_R[known], abs=1e-12)
+    assert matrix[known, :3, :3] == pytest.approx(TRIAL.distal_R[known], abs=1e-12)
 
 
 def test_a_blank_line_before_the_header_changes_nothing(tmp_path: Path) -> None:

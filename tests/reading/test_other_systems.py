@@ -27,7 +27,7 @@ def markers_of(R: Float, p: Float) -> Float:
     return np.asarray(np.swapaxes(R @ CLUSTER.T, 1, 2) + p[:, None])
 
 
-ARM, FOREARM = markers_of(TRIAL.arm_R, TRIAL.arm_p), markers_of(TRIAL.forearm_R, TRIAL.forearm_p)
+ARM, FOREARM = markers_of(TRIAL.proximal_R, TRIAL.proximal_p), markers_of(TRIAL.distal_R, TRIAL.distal_p)
 MARKERS = {f"UA{k + 1}": ARM[:, k] for k in range(4)} | {f"FA{k + 1}": FOREARM[:, k] for k in range(4)}
 Change = dict[tuple[int, int], str]
 CHOICE: dict[str, Any] = {"arm_markers": ("ua?",), "forearm_markers": ("FA1", "FA2", "FA[34]")}
@@ -37,7 +37,7 @@ def table(path: Path, *, bodies: bool, markers: bool, unit: str = "m", change: C
     scale = {"m": 1.0, "cm": 100.0, "mm": 1000.0}[unit]
     names, columns = ["frame", "time_s"], [np.arange(80.0)[:, None], np.arange(80.0)[:, None] / 100]
     if bodies:
-        for name, R, p in (("arm", TRIAL.arm_R, TRIAL.arm_p), ("fore_arm", TRIAL.forearm_R, TRIAL.forearm_p)):
+        for name, R, p in (("arm", TRIAL.proximal_R, TRIAL.proximal_p), ("fore_arm", TRIAL.distal_R, TRIAL.distal_p)):
             names += [f"{name}_e{k}" for k in range(4)] + [f"{name}_{axis}_{unit}" for axis in "xyz"]
             columns += [quaternion_xyzw(R)[:, [3, 0, 1, 2]], scale * p]
     if markers:
@@ -81,7 +81,7 @@ def c3d(path: Path, *, rotations: bool, unit: str = "mm") -> Path:
     content["data"]["points"] = points
     if rotations:
         matrices = np.tile(np.eye(4)[:, :, None, None], (1, 1, 2, 80))
-        for k, (R, p) in enumerate(((TRIAL.arm_R, TRIAL.arm_p), (TRIAL.forearm_R, TRIAL.forearm_p))):
+        for k, (R, p) in enumerate(((TRIAL.proximal_R, TRIAL.proximal_p), (TRIAL.distal_R, TRIAL.distal_p))):
             matrices[:3, :3, k] = np.moveaxis(R, 0, -1)
             matrices[:3, 3, k] = 1000.0 * p.T
         content["data"]["rotations"] = matrices
@@ -142,13 +142,13 @@ def test_markers_that_are_missing_now_and_then(tmp_path: Path) -> None:
     settings = Settings(**CHOICE)
     screw = analyze(read_recording(path, markers=settings.markers), settings).screw
     assert np.flatnonzero(~screw.valid).tolist() == [30]
-    assert screw.forearm_loss[30] == "blank"
+    assert screw.distal_loss[30] == "blank"
     assert screw.angle[screw.valid] == pytest.approx(TRIAL.angle[screw.valid], abs=1e-9)
 
 
 @pytest.mark.parametrize("name", ["elbow_paper", "elbow_moving_arm_mm"])
 def test_markers_and_solved_bodies_of_one_export_agree(samples: Path, name: str) -> None:
-    settings = Settings(arm_markers=("Upper Arm:*",), forearm_markers=("Forearm:Marker?",))
+    settings = Settings(proximal_markers=("Upper Arm:*",), distal_markers=("Forearm:Marker?",))
     recording = read_recording(samples / f"{name}.csv", markers=settings.markers)
     assert len(recording.markers) == 8
     solved, fitted = analyze(recording), analyze(recording, settings)
@@ -175,7 +175,7 @@ def test_markers_of_the_samples_do_not_fit_to_the_last_digit(samples: Path) -> N
         ({"arm_markers": ("UA*",), "forearm_markers": ("X*",)}, "fits 0 markers"),
         ({"arm_markers": ("UA*",), "arm": "arm", "forearm_markers": ("FA*",)}, "give one of them"),
         ({"arm_markers": ("UA*",), "forearm_markers": ("FA1", "FA2", "FA3"), "pose_method": "dual-qr"}, "needs 4"),
-        ({}, "--arm-markers"),
+        ({}, "--proximal-markers"),
     ],
 )
 def test_choices_of_markers_that_do_not_fit(tmp_path: Path, settings: dict[str, Any], says: str) -> None:
@@ -358,7 +358,7 @@ def test_markers_kilometers_away_are_not_seen(tmp_path: Path, far: str) -> None:
     assert [warning.code for warning in recording.warnings] == ["invalid-marker"]
     name = recording.markers[0].name
     assert np.flatnonzero(np.isnan(recording.markers[0].position).any(axis=1)).tolist() == [7]
-    settings = Settings(arm_markers=("UA*",), forearm_markers=("FA*",))
+    settings = Settings(proximal_markers=("UA*",), distal_markers=("FA*",))
     found, expected = analyze(recording, settings).screw, analyze(whole, settings).screw
     assert name == "UA1"
     assert found.angle == pytest.approx(expected.angle, abs=1e-9)  # the other markers of the cluster give the pose

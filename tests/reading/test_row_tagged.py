@@ -26,15 +26,15 @@ def test_poses_are_matched_by_id_and_absent_bodies_are_lost(tmp_path: Path, vers
     recording = read_recording(path)
     assert recording.source is not None
     assert recording.source.layout == f"row-tagged {version}"
-    arm, forearm = recording.bodies
-    assert (arm.name, forearm.name) == ("Upper Arm", "Forearm")
-    assert arm.loss_counts() == {"absent": 1}
-    assert forearm.loss_counts() == {"absent": 3}
-    for body, R, p in ((arm, TRIAL.arm_R, TRIAL.arm_p), (forearm, TRIAL.forearm_R, TRIAL.forearm_p)):
+    proximal, distal = recording.bodies
+    assert (proximal.name, distal.name) == ("Upper Arm", "Forearm")
+    assert proximal.loss_counts() == {"absent": 1}
+    assert distal.loss_counts() == {"absent": 3}
+    for body, R, p in ((proximal, TRIAL.proximal_R, TRIAL.proximal_p), (distal, TRIAL.distal_R, TRIAL.distal_p)):
         matrix = dq.matrix_from_dual_quat(body.dual_quat_lab_body[body.tracked])
         assert matrix[:, :3, :3] == pytest.approx(R[body.tracked], abs=1e-12)
         assert matrix[:, :3, 3] == pytest.approx(p[body.tracked], abs=1e-12)
-    assert forearm.marker_offsets == pytest.approx(np.array([[0.04, 0, 0], [-0.02, 0.03, 0], [-0.02, -0.03, 0]]))
+    assert distal.marker_offsets == pytest.approx(np.array([[0.04, 0, 0], [-0.02, 0.03, 0], [-0.02, -0.03, 0]]))
     assert recording.rate_hz == pytest.approx(100.0)
 
 

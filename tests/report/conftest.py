@@ -12,14 +12,14 @@ from elbowscrew.report import write_study_page
 @pytest.fixture(scope="session")
 def result(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A finished result of 450 frames, with everything a page may show but anatomy."""
-    recording = simulate_trial(frames=226, inversion=106, arm="moving", gaps=2, repetitions=2, seed=1).recording
+    recording = simulate_trial(frames=226, inversion=106, proximal="moving", gaps=2, repetitions=2, seed=1).recording
     return save_analysis(analyze(recording, Settings()), tmp_path_factory.mktemp("trial") / "r", figure_formats=())
 
 
 @pytest.fixture(scope="session")
 def hostile(tmp_path_factory: pytest.TempPathFactory) -> Path:
     recording = hostile_recording()
-    settings = Settings(arm=recording.bodies[0].name, forearm=recording.bodies[1].name)
+    settings = Settings(proximal=recording.bodies[0].name, distal=recording.bodies[1].name)
     return save_analysis(analyze(recording, settings), tmp_path_factory.mktemp("hostile") / "r", figure_formats=())
 
 

@@ -188,7 +188,7 @@ def test_the_columns_of_a_batchs_manifest_are_those_between_path_and_frames(resu
     for name in ("=one", "two", "left over"):
         shutil.copytree(result, tmp_path / name)
     header = ["trial", "path", "session", "condition", "frames", "expressed_in"]
-    rows = [["'=one", "in/1.csv", "1", "<i>a</i>", "450", "arm"], ["two", "in/2.csv", "2", "b", "450", "lab"]]
+    rows = [["'=one", "in/1.csv", "1", "<i>a</i>", "450", "proximal"], ["two", "in/2.csv", "2", "b", "450", "lab"]]
     write_rows(tmp_path / "summary.csv", [header, *rows])
     found = read_study(tmp_path)
     assert found.factors == ("condition", "session")

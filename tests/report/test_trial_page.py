@@ -170,9 +170,9 @@ def test_a_page_without_figures_needs_neither_pandas_nor_matplotlib_and_no_page_
         assert (folder / "report.html").exists() == (option == "--report")
 
 
-@pytest.mark.parametrize("express_in", ["forearm", "arm", "lab"])
+@pytest.mark.parametrize("express_in", ["distal", "proximal", "lab"])
 def test_the_view_moves_the_forearm_along_its_path(express_in: Any, tmp_path: Path) -> None:
-    recording = simulate_trial(frames=120, inversion=60, gaps=1, gap_frames=15, arm="moving", seed=3).recording
+    recording = simulate_trial(frames=120, inversion=60, gaps=1, gap_frames=15, proximal="moving", seed=3).recording
     analysis = analyze(recording, Settings(express_in=express_in))
     folder = save_analysis(analysis, tmp_path / "r", figure_formats=(), report=False)
     scene = json.loads(json.dumps(scene_of(read_finished(folder)), allow_nan=False))
@@ -182,7 +182,7 @@ def test_the_view_moves_the_forearm_along_its_path(express_in: Any, tmp_path: Pa
     assert any(lost)
     for k in np.flatnonzero(~np.array(lost)):
         pose = dual_quat_from_pose(np.array(scene["turn"][k]), np.array(scene["shift"][k]))
-        assert transform_points(pose, np.array(scene["forearm"]["origin"])) == pytest.approx(path[k], abs=0.05)
+        assert transform_points(pose, np.array(scene["distal"]["origin"])) == pytest.approx(path[k], abs=0.05)
     # The joint's line goes through where it lies at every frame: a point of it moves along it only.
     known = [k for k, axis in enumerate(scene["axis"]) if axis is not None]
     assert known
@@ -242,7 +242,7 @@ METHODS: dict[str, tuple[dict[str, Any], list[str], list[str]]] = {
     "filtered": ({"lowpass_hz": 6.0}, ["low-pass filtered at 6 Hz", "Butterworth"], ["not filtered", "Winter"]),
     "automatic": ({"lowpass_hz": "auto"}, ["chosen by residual analysis (Winter 2009)"], ["not filtered"]),
     "others": (
-        {"express_in": "arm", "reference_window": 4, "robust": True, "method": "sclerp", "law": "harmonic",
+        {"express_in": "proximal", "reference_window": 4, "robust": True, "method": "sclerp", "law": "harmonic",
          "resample_hz": 50.0, "radius_mm": 40.0, "axis_sd_deg": 2.0, "marker_noise_mm": 0.2},
         ["the upper arm's frame", "mean of 4 frames from frame", "Tukey's biweight", "ScLERP", "harmonic",
          "resampled to 50 Hz", "radius of gyration of 40 mm", "direction is 2° or less"],
@@ -262,7 +262,7 @@ METHODS: dict[str, tuple[dict[str, Any], list[str], list[str]]] = {
 @pytest.mark.parametrize("name", METHODS)
 def test_the_methods_tell_the_settings_used(name: str, tmp_path: Path) -> None:
     changes, said, unsaid = METHODS[name]
-    recording = simulate_trial(frames=150, inversion=60, arm="moving", seed=1).recording
+    recording = simulate_trial(frames=150, inversion=60, proximal="moving", seed=1).recording
     folder = save_analysis(analyze(recording, Settings(**changes)), tmp_path / "r", figure_formats=(), report=False)
     text = methods_of(read_finished(folder))
     for words in said:

@@ -25,8 +25,8 @@ LANDMARKS = Landmarks(
     EL=Landmark(point=np.array([0.352, 1.105, -0.19]), frame="lab"),
     EM=Landmark(point=np.array([0.268, 1.11, -0.14]), frame="lab"),
     GH=Landmark(point=np.array([0.3, 1.38, -0.19]), frame="lab"),
-    US=Landmark(point=np.array([-0.02, -0.15, -0.01]), frame="forearm"),
-    RS=Landmark(point=np.array([0.025, -0.148, 0.008]), frame="forearm"),
+    US=Landmark(point=np.array([-0.02, -0.15, -0.01]), frame="distal"),
+    RS=Landmark(point=np.array([0.025, -0.148, 0.008]), frame="distal"),
 )
 
 

@@ -24,7 +24,7 @@ from elbowscrew.view.shown import Shown
 NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e-?\d+)?")
 WAYS: dict[str, dict[str, Any]] = {
     "as it comes": {},
-    "in the arm, in meters": {"express_in": "arm", "length_unit": "m"},
+    "in the arm, in meters": {"express_in": "proximal", "length_unit": "m"},
     "in the laboratory, in radians": {"express_in": "lab", "angle_unit": "rad"},
     "a repeated movement": {"reference_window": 5},
     "the whole recording in two phases": {"phases": "whole"},
@@ -49,7 +49,7 @@ def pair(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactor
             inversion=60,
             gaps=2,
             gap_frames=14,
-            arm="still" if way == "as it comes" else "moving",
+            proximal="still" if way == "as it comes" else "moving",
             repetitions=3 if way == "a repeated movement" else 1,
             seed=5,
         ).recording
@@ -135,7 +135,7 @@ def make_it_a_list(folder: Path) -> None:
 
 def put_words_for_numbers(folder: Path) -> None:
     joint = json.loads((folder / "joint.json").read_text())
-    joint["bodies"]["forearm_in_arm"] = "nowhere"
+    joint["bodies"]["distal_in_proximal"] = "nowhere"
     (folder / "joint.json").write_text(json.dumps(joint))
 
 

@@ -16,7 +16,7 @@ from elbowscrew.results.writing import write_csv, write_tables
 
 SCREW_NAMES = (
     "frame time_s valid theta_deg slide_mm axis_x axis_y axis_z point_x_mm point_y_mm point_z_mm "
-    "e0 e1 e2 e3 d_x_mm d_y_mm d_z_mm filled arm_loss forearm_loss "
+    "e0 e1 e2 e3 d_x_mm d_y_mm d_z_mm filled proximal_loss distal_loss "
     "theta_sd_deg slide_sd_mm axis_sd_deg point_sd_mm axis_cone95_deg point_radius95_mm"
 ).split()
 INTERPOLATION_NAMES = (
@@ -70,8 +70,8 @@ def test_the_columns_are_the_contract(tmp_path: Path) -> None:
     lost = frame["valid"] == 0
     assert lost.sum() == 24
     assert frame.loc[lost, "theta_deg"].isna().all()
-    assert (frame["forearm_loss"] == np.where(lost, "blank", "")).all()
-    assert (frame["arm_loss"] == "").all()
+    assert (frame["distal_loss"] == np.where(lost, "blank", "")).all()
+    assert (frame["proximal_loss"] == "").all()
 
 
 def test_units_change_names_and_values_together(tmp_path: Path) -> None:

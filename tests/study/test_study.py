@@ -128,7 +128,7 @@ def test_hostile_names_stay_in_the_output_folder_and_out_of_formulas(tmp_path: P
     found = rows(tmp_path / "batch_elbowscrew" / "summary.csv")
     assert len({row["trial"].casefold() for row in found}) == len(names)
     assert sorted(entry.name for entry in tmp_path.iterdir()) == ["batch_elbowscrew", "in"]
-    assert {row["arm_body"] for row in found} == {"'=Upper Arm"}
+    assert {row["proximal_body"] for row in found} == {"'=Upper Arm"}
     for row in [*found, *rows(tmp_path / "batch_elbowscrew" / "failures.csv")]:
         for cell in row.values():
             assert "\n" not in cell

@@ -16,16 +16,16 @@ _NORMAL = 1.959964
 IDENTITY = np.array([1.0, 0, 0, 0, 0, 0, 0, 0])
 
 
-def coverage(angle: float, trials: int, *, arm_moves: bool, seed: int) -> tuple[float, float, float, float]:
+def coverage(angle: float, trials: int, *, proximal_moves: bool, seed: int) -> tuple[float, float, float, float]:
     """Shares of trials in which angle, slide, direction and place lie within their 95 % intervals."""
     rng = np.random.default_rng(seed)
     slide = 0.02 * angle / np.pi
     poses = joint_poses(np.array([[0.0], [angle]]), np.array([[0.0], [slide]]))
-    seen = noisy_joint(np.broadcast_to(poses, (2, trials, 8)), rng, arm_moves=arm_moves)
+    seen = noisy_joint(np.broadcast_to(poses, (2, trials, 8)), rng, proximal_moves=proximal_moves)
     D = dq.multiply(dq.conjugate(seen[0]), seen[1])
     D = np.where(D[:, :1] < 0.0, -D, D)
     noise = [PoseNoise(covariance=pose_covariance(m), source="known", marker_noise=None) for m in (ARM, FOREARM)]
-    proximal = noise[0] if arm_moves else None
+    proximal = noise[0] if proximal_moves else None
     before, after = (joint_covariance(poses, proximal, noise[1]) for poses in seen)
     errors = errors_from_covariance(D, after, before, IDENTITY)
     screw = screw_from_dual_quat(D)

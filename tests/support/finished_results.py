@@ -17,8 +17,8 @@ HOSTILE = "</script><script>alert('x')</script><img src=x onerror=alert(1)>\"'&\
 
 def hostile_recording() -> Recording:
     """Names that would be markup, script or template if anything took them for it."""
-    recording = simulate_trial(frames=120, inversion=60, arm="moving", gaps=1, seed=2).recording
-    arm, forearm = recording.bodies
+    recording = simulate_trial(frames=120, inversion=60, proximal="moving", gaps=1, seed=2).recording
+    proximal, distal = recording.bodies
     source = Source(
         path=f"in/{HOSTILE.replace('/', '|')}.csv",
         sha256="0" * 64,
@@ -27,7 +27,7 @@ def hostile_recording() -> Recording:
         length_unit="m",
         rotation_type="quaternion",
     )
-    bodies = (replace(arm, name=f"arm {HOSTILE}"), replace(forearm, name=f"forearm {HOSTILE}"))
+    bodies = (replace(proximal, name=f"arm {HOSTILE}"), replace(distal, name=f"forearm {HOSTILE}"))
     return replace(recording, bodies=bodies, source=source)
 
 

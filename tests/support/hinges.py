@@ -44,14 +44,16 @@ def hinge_errors(top_deg: float, trials: int, *, seed: int, robust_too: bool = F
         note("weighted mean", dq.transform_lines(joint[0], np.concatenate([weighted.direction, np.zeros(3)])))
         note("SARA", sara_lines(joint, theta)[0])
         S = joint_covariance(joint, *noise)
-        note("maximum likelihood", dq.transform_lines(fit_joint(joint, S, LINE, near).arm, _Z))
+        note("maximum likelihood", dq.transform_lines(fit_joint(joint, S, LINE, near).proximal, _Z))
         if robust_too:
             stray = dq.exp(0.5 * (rng.random(FRAMES) < 0.1)[:, None] * rng.normal(size=(FRAMES, 6)) * OUTLIERS)
             bad = dq.multiply(joint, stray)
             S_bad = joint_covariance(bad, *noise)
-            note("robust, clean", dq.transform_lines(fit_joint(joint, S, LINE, near, robust=True).arm, _Z))
-            note("robust, 10 % outliers", dq.transform_lines(fit_joint(bad, S_bad, LINE, near, robust=True).arm, _Z))
-            note("least squares, 10 % outliers", dq.transform_lines(fit_joint(bad, S_bad, LINE, near).arm, _Z))
+            note("robust, clean", dq.transform_lines(fit_joint(joint, S, LINE, near, robust=True).proximal, _Z))
+            note(
+                "robust, 10 % outliers", dq.transform_lines(fit_joint(bad, S_bad, LINE, near, robust=True).proximal, _Z)
+            )
+            note("least squares, 10 % outliers", dq.transform_lines(fit_joint(bad, S_bad, LINE, near).proximal, _Z))
     errors = {name: np.array(values) for name, values in found.items()}
     errors["bound"] = np.array([np.sqrt(bound[0, 0] + bound[1, 1])])
     return errors

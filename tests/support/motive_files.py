@@ -31,8 +31,8 @@ def bodies_of(
     rng = np.random.default_rng(seed)
     flips = None if seed is None else rng.random((2, len(trial.angle))) < 0.5
     return [
-        BodyData(names[0], "A" * 32, trial.arm_R, trial.arm_p, flips=None if flips is None else flips[0]),
-        BodyData(names[1], "B" * 32, trial.forearm_R, trial.forearm_p, flips=None if flips is None else flips[1]),
+        BodyData(names[0], "A" * 32, trial.proximal_R, trial.proximal_p, flips=None if flips is None else flips[0]),
+        BodyData(names[1], "B" * 32, trial.distal_R, trial.distal_p, flips=None if flips is None else flips[1]),
     ]
 
 

@@ -66,10 +66,10 @@ def quaternion_xyzw(R: Float) -> Float:
 class KnownTrial:
     """A hinge with slide, the arm moving, all by matrices; meters, radians, the line in the arm's frame."""
 
-    arm_R: Float
-    arm_p: Float
-    forearm_R: Float
-    forearm_p: Float
+    proximal_R: Float
+    proximal_p: Float
+    distal_R: Float
+    distal_p: Float
     angle: Float
     slide: Float
     direction: Float
@@ -77,13 +77,13 @@ class KnownTrial:
 
     def line_in(self, frame: str) -> tuple[Float, Float]:
         """Direction and point nearest the origin, in "arm", in "forearm" at frame 0, or in "lab" at frame 0."""
-        if frame == "arm":
+        if frame == "proximal":
             h, p = self.direction, self.point
         elif frame == "lab":
-            h, p = self.arm_R[0] @ self.direction, self.arm_R[0] @ self.point + self.arm_p[0]
+            h, p = self.proximal_R[0] @ self.direction, self.proximal_R[0] @ self.point + self.proximal_p[0]
         else:
-            J_R = self.arm_R[0].T @ self.forearm_R[0]
-            J_p = self.arm_R[0].T @ (self.forearm_p[0] - self.arm_p[0])
+            J_R = self.proximal_R[0].T @ self.distal_R[0]
+            J_p = self.proximal_R[0].T @ (self.distal_p[0] - self.proximal_p[0])
             h, p = J_R.T @ self.direction, J_R.T @ (self.point - J_p)
         return h, p - (p @ h) * h
 
@@ -101,20 +101,20 @@ def known_trial(
     direction /= np.linalg.norm(direction)
     point = rng.normal(scale=0.1, size=3)
     t = i / 100.0
-    arm_R = rodrigues(rng.normal(size=3), 0.4 * np.sin(0.9 * t) + 0.3) @ rodrigues(rng.normal(size=3), 0.2 * t)
-    arm_p = np.array([0.3, 1.2, -0.4]) + 0.05 * np.stack([np.sin(t), np.cos(2 * t), np.sin(0.5 * t)], axis=1)
+    proximal_R = rodrigues(rng.normal(size=3), 0.4 * np.sin(0.9 * t) + 0.3) @ rodrigues(rng.normal(size=3), 0.2 * t)
+    proximal_p = np.array([0.3, 1.2, -0.4]) + 0.05 * np.stack([np.sin(t), np.cos(2 * t), np.sin(0.5 * t)], axis=1)
     J0_R, J0_p = rodrigues(rng.normal(size=3), np.array([0.7]))[0], np.array([0.02, -0.25, 0.04])
     H = rodrigues(direction, angle)
     J_R = H @ J0_R
     J_p = (H @ (J0_p - point)[:, None])[..., 0] + point + s[:, None] * direction
-    forearm_p = (arm_R @ J_p[:, :, None])[..., 0] + arm_p
-    return KnownTrial(arm_R, arm_p, arm_R @ J_R, forearm_p, angle, s, direction, point)
+    distal_p = (proximal_R @ J_p[:, :, None])[..., 0] + proximal_p
+    return KnownTrial(proximal_R, proximal_p, proximal_R @ J_R, distal_p, angle, s, direction, point)
 
 
 def relative_motion(trial: KnownTrial) -> tuple[Float, Float]:
     """Displacement of the forearm in its own reference frame (eq. 35): rotations (N, 3, 3) and translations (N, 3)."""
-    J_R = np.swapaxes(trial.arm_R, 1, 2) @ trial.forearm_R
-    J_p = (np.swapaxes(trial.arm_R, 1, 2) @ (trial.forearm_p - trial.arm_p)[:, :, None])[..., 0]
+    J_R = np.swapaxes(trial.proximal_R, 1, 2) @ trial.distal_R
+    J_p = (np.swapaxes(trial.proximal_R, 1, 2) @ (trial.distal_p - trial.proximal_p)[:, :, None])[..., 0]
     return J_R[0].T @ J_R, (J_p - J_p[0]) @ J_R[0]
 
 

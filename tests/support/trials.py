@@ -24,14 +24,14 @@ def joint_poses(angle: Float, slide: Float) -> Float:
     return dq.multiply(dual_quat_from_screw(angle, slide, LINE[:3], LINE[3:]), START)
 
 
-def noisy_joint(poses: Float, rng: np.random.Generator, *, arm_moves: bool = True) -> Float:
+def noisy_joint(poses: Float, rng: np.random.Generator, *, proximal_moves: bool = True) -> Float:
     """Forearm in the arm as both bodies' markers tell it, each coordinate with `SIGMA`."""
-    forearm = _seen(FOREARM, poses, rng)
-    if not arm_moves:
-        return forearm
+    distal = _seen(FOREARM, poses, rng)
+    if not proximal_moves:
+        return distal
     identity = np.zeros(poses.shape)
     identity[..., 0] = 1.0
-    return dq.multiply(dq.conjugate(_seen(ARM, identity, rng)), forearm)
+    return dq.multiply(dq.conjugate(_seen(ARM, identity, rng)), distal)
 
 
 def pose_covariance(offsets: Float) -> Float:

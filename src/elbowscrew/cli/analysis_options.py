@@ -16,21 +16,42 @@ _BODIES, _MOTION, _MODEL, OUTPUT = "Bodies and file", "Motion", "Model", "Output
 
 
 def settings_given(
-    arm: Annotated[
+    joint: Annotated[
+        Literal["elbow", "wrist", "knee", "ankle", "hip", "shoulder", "finger"] | None,
+        typer.Option(rich_help_panel=_BODIES, help="What the joint is called.", show_default="by the bodies' names"),
+    ] = None,
+    proximal: Annotated[
         str | None,
-        typer.Option(metavar="NAME", rich_help_panel=_BODIES, help="Upper arm: name or id; none if it stands still."),
+        typer.Option(
+            "--proximal",
+            "--arm",
+            metavar="NAME",
+            rich_help_panel=_BODIES,
+            help="Name or id; none if still.",
+        ),
     ] = None,
-    forearm: Annotated[
-        str | None, typer.Option(metavar="NAME", rich_help_panel=_BODIES, help="Forearm: name or id.")
+    distal: Annotated[
+        str | None,
+        typer.Option("--distal", "--forearm", metavar="NAME", rich_help_panel=_BODIES, help="Name or id."),
     ] = None,
-    arm_markers: Annotated[
-        list[str] | None,
-        typer.Option(metavar="NAMES", rich_help_panel=_BODIES, help="Markers of the arm, or patterns; with commas."),
-    ] = None,
-    forearm_markers: Annotated[
+    proximal_markers: Annotated[
         list[str] | None,
         typer.Option(
-            metavar="NAMES", rich_help_panel=_BODIES, help="Markers of the forearm, or patterns; with commas."
+            "--proximal-markers",
+            "--arm-markers",
+            metavar="NAMES",
+            rich_help_panel=_BODIES,
+            help="Names or patterns.",
+        ),
+    ] = None,
+    distal_markers: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--distal-markers",
+            "--forearm-markers",
+            metavar="NAMES",
+            rich_help_panel=_BODIES,
+            help="Names or patterns.",
         ),
     ] = None,
     pose_method: Annotated[
@@ -76,8 +97,8 @@ def settings_given(
         typer.Option(metavar="N", rich_help_panel=_MOTION, help="Mean of N frames as reference.", show_default="1"),
     ] = None,
     express_in: Annotated[
-        Literal["forearm", "arm", "lab"] | None,
-        typer.Option(rich_help_panel=_MOTION, help="Frame the screw is written in.", show_default="forearm"),
+        Literal["distal", "proximal", "lab", "forearm", "arm"] | None,
+        typer.Option(rich_help_panel=_MOTION, help="Frame the screw is written in.", show_default="distal"),
     ] = None,
     max_gap: Annotated[
         float | None,
@@ -235,7 +256,7 @@ def settings_given(
     A new option of the analysis is one parameter here, named as the field of `Settings` without its unit.
     """
     given = dict(locals())
-    for name in ("arm_markers", "forearm_markers"):
+    for name in ("proximal_markers", "distal_markers"):
         given[name] = options.names(given[name])
     given["keyframes"] = options.frame_numbers(keyframes)
     for name in ("figure_format", "export"):

@@ -94,21 +94,32 @@ def compare(
             show_default="the forearm's markers, else 50",
         ),
     ] = None,
-    arm: Annotated[
+    proximal: Annotated[
         str | None,
-        typer.Option(metavar="NAME", rich_help_panel=_RECORDING, help="Upper arm: name, id, or none."),
+        typer.Option("--proximal", "--arm", metavar="NAME", rich_help_panel=_RECORDING, help="Name, id, or none."),
     ] = None,
-    forearm: Annotated[
-        str | None, typer.Option(metavar="NAME", rich_help_panel=_RECORDING, help="Forearm: name or id.")
+    distal: Annotated[
+        str | None,
+        typer.Option("--distal", "--forearm", metavar="NAME", rich_help_panel=_RECORDING, help="Name or id."),
     ] = None,
-    arm_markers: Annotated[
-        list[str] | None,
-        typer.Option(metavar="NAMES", rich_help_panel=_RECORDING, help="Markers of the arm, or patterns; with commas."),
-    ] = None,
-    forearm_markers: Annotated[
+    proximal_markers: Annotated[
         list[str] | None,
         typer.Option(
-            metavar="NAMES", rich_help_panel=_RECORDING, help="Markers of the forearm, or patterns; with commas."
+            "--proximal-markers",
+            "--arm-markers",
+            metavar="NAMES",
+            rich_help_panel=_RECORDING,
+            help="Names or patterns.",
+        ),
+    ] = None,
+    distal_markers: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--distal-markers",
+            "--forearm-markers",
+            metavar="NAMES",
+            rich_help_panel=_RECORDING,
+            help="Names or patterns.",
         ),
     ] = None,
     units: Annotated[
@@ -167,10 +178,10 @@ def compare(
             "inversion": inversion,
             "lowpass": lowpass,
             "radius": radius,
-            "arm": arm,
-            "forearm": forearm,
-            "arm_markers": options.names(arm_markers),
-            "forearm_markers": options.names(forearm_markers),
+            "proximal": proximal,
+            "distal": distal,
+            "proximal_markers": options.names(proximal_markers),
+            "distal_markers": options.names(distal_markers),
             "units": units,
             "rotation": rotation,
             "figure_format": [kind.value for kind in figure_format] if figure_format else None,

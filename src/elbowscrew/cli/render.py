@@ -54,7 +54,7 @@ def analysis_table(summary: Mapping[str, Any], folder: Path) -> None:
     """Write the result of one trial at a glance."""
     trial, motion, model = summary["trial"], summary["motion"], summary["interpolation"]
     rows = [
-        ("Bodies", f"{_body(trial['arm'])} → {_body(trial['forearm'])}"),
+        ("Bodies", f"{_body(trial['proximal'])} → {_body(trial['distal'])}"),
         ("Frames", _frames(trial)),
         ("Angle θ", f"{motion['theta_min_deg']:.2f} to {motion['theta_max_deg']:.2f} deg"),
         ("Inversion", _inversions(motion["inversion_frames"])),

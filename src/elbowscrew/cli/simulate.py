@@ -26,7 +26,10 @@ def simulate(
     law: Annotated[
         Literal["minimum-jerk", "cycloidal"], typer.Option(rich_help_panel=_MOTION, help="Law of motion.")
     ] = "minimum-jerk",
-    arm: Annotated[Literal["moving", "still"], typer.Option(rich_help_panel=_MOTION, help="The upper arm.")] = "still",
+    proximal: Annotated[
+        Literal["moving", "still"],
+        typer.Option("--proximal", "--arm", rich_help_panel=_MOTION, help="Proximal body."),
+    ] = "still",
     repetitions: Annotated[int, typer.Option(rich_help_panel=_MOTION, help="Flexion-extension cycles.")] = 1,
     rest_before: Annotated[
         float, typer.Option(metavar="SECONDS", rich_help_panel=_MOTION, help="Rest before the movement.")
@@ -81,7 +84,7 @@ def simulate(
         gaps=gaps,
         gap_frames=gap_frames,
         sign_flips=sign_flips,
-        arm=arm,
+        proximal=proximal,
         repetitions=repetitions,
         rest_before_s=rest_before,
         hold_s=hold,

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 Float = NDArray[np.float64]
 
 Side = Literal["right", "left"]
-LandmarkFrame = Literal["arm", "forearm", "lab"]
+LandmarkFrame = Literal["proximal", "distal", "lab"]
 
 LANDMARKS: Final[Mapping[str, str]] = {
     "EL": "lateral epicondyle",
@@ -111,7 +111,7 @@ class AnatomicalMotion(Brief):
         Plücker vector in the arm's frame, from the medial to the lateral epicondyle.
     epicondyle_midpoint : ndarray, shape (3,)
         In the arm's frame, meters.
-    dual_quat_arm_humerus, dual_quat_forearm_isb : ndarray, shape (8,)
+    dual_quat_proximal_humerus, dual_quat_distal_isb : ndarray, shape (8,)
         The ISB's frames of humerus and forearm, as poses in the frames of the two bodies.
     places : mapping of str to ndarray, shape (3,)
         EL, EM and GH in the arm's frame, US and RS in the forearm's, meters.
@@ -135,8 +135,8 @@ class AnatomicalMotion(Brief):
     joint_axis_distance: float
     epicondyle_line: Float
     epicondyle_midpoint: Float
-    dual_quat_arm_humerus: Float
-    dual_quat_forearm_isb: Float
+    dual_quat_proximal_humerus: Float
+    dual_quat_distal_isb: Float
     places: Mapping[str, Float]
     landmarks: Landmarks
 

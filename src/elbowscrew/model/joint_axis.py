@@ -43,16 +43,16 @@ class LineEstimate(Brief):
     ----------
     direction, point : ndarray, shape (3,)
         Unit vector, and the point (m) nearest the origin.
-    direction_arm, point_arm, direction_forearm, point_forearm : ndarray, shape (3,)
+    direction_proximal, point_proximal, direction_distal, point_distal : ndarray, shape (3,)
         The same line in the frames of the two bodies.
     """
 
     direction: Float
     point: Float
-    direction_arm: Float
-    point_arm: Float
-    direction_forearm: Float
-    point_forearm: Float
+    direction_proximal: Float
+    point_proximal: Float
+    direction_distal: Float
+    point_distal: Float
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)

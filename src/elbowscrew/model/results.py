@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowscrew import tables
+from elbowscrew.joints import Joint
 from elbowscrew.model.anatomy import AnatomicalMotion
 from elbowscrew.model.axes import HelicalSteps, InstantaneousMotion
 from elbowscrew.model.brief import Brief
@@ -64,7 +65,7 @@ class ScrewMotion(Brief):
     frame, time_s : ndarray, shape (N,)
     valid, filled : ndarray of bool, shape (N,)
         Pose measured; pose of a short gap filled in.
-    arm_loss, forearm_loss : ndarray of str, shape (N,)
+    proximal_loss, distal_loss : ndarray of str, shape (N,)
         Why the body has no measured pose; empty where it has.
     angle : ndarray, shape (N,)
         Rotation theta, radians, continuous in time, positive where it is largest.
@@ -86,8 +87,8 @@ class ScrewMotion(Brief):
     time_s: Float
     valid: Bool
     filled: Bool
-    arm_loss: NDArray[np.str_]
-    forearm_loss: NDArray[np.str_]
+    proximal_loss: NDArray[np.str_]
+    distal_loss: NDArray[np.str_]
     angle: Float
     slide: Float
     axis_direction: Float
@@ -150,9 +151,11 @@ class Analysis(Brief):
     ----------
     recording : Recording
     settings : Settings
-    arm : RigidBody or None
+    proximal : RigidBody or None
         None where the file has no arm and it is taken to stand still.
-    forearm : RigidBody
+    distal : RigidBody
+    named_joint : Joint
+        What the joint and its segments are called.
     joint : JointMotion
     elapsed : ndarray, shape (N,)
         Even clock, seconds since the first frame.
@@ -187,8 +190,9 @@ class Analysis(Brief):
 
     recording: Recording
     settings: Settings
-    arm: RigidBody | None
-    forearm: RigidBody
+    proximal: RigidBody | None
+    distal: RigidBody
+    named_joint: Joint
     joint: JointMotion
     elapsed: Float
     displacement: Float

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat
 from elbowscrew.model import Analysis, InterpolatedMotion, Landmarks, QualityWarning, Recording
-from elbowscrew.motion.anatomy.anatomy import anatomical_motion, arm_lines
+from elbowscrew.motion.anatomy.anatomy import anatomical_motion, proximal_lines
 from elbowscrew.motion.axes.measured import measured_instantaneous_motion, measured_mean_axis, measured_steps
 from elbowscrew.motion.difference import (
     angle_between,
@@ -97,10 +97,10 @@ def analyze(recording: Recording, settings: Settings | None = None, *, landmarks
         anatomy, doubts = anatomical_motion(
             landmarks,
             recording,
-            measured.arm,
-            measured.forearm,
+            measured.proximal,
+            measured.distal,
             joint,
-            axis_lines=arm_lines(measured.line, joint, wanted.express_in),
+            axis_lines=proximal_lines(measured.line, joint, wanted.express_in),
             joint_line=None if joint_axis.best is None else joint_axis.best.line,
         )
         warnings += doubts
@@ -108,8 +108,9 @@ def analyze(recording: Recording, settings: Settings | None = None, *, landmarks
     return Analysis(
         recording=recording,
         settings=wanted,
-        arm=measured.arm,
-        forearm=measured.forearm,
+        proximal=measured.proximal,
+        distal=measured.distal,
+        named_joint=measured.named_joint,
         joint=joint,
         elapsed=elapsed,
         displacement=measured.displacement,

@@ -43,8 +43,8 @@ def plot_axes_in_space(ax: Axes3D, analysis: Shown) -> Axes3D:
     """Draw the axes with the mean axis, the path of the forearm and the arm, in the frame they are expressed in."""
     unit = analysis.settings.length_unit
     bodies = bodies_in_space(analysis)
-    arm = bodies.arm
-    clusters = [markers for markers in (bodies.arm_markers, bodies.forearm_markers) if markers is not None]
+    proximal = bodies.proximal
+    clusters = [markers for markers in (bodies.proximal_markers, bodies.distal_markers) if markers is not None]
     mean = _mean_frame(analysis, bodies)
     half = half_length(bodies, mean.center)
     rows, segments = axis_segments(analysis, mean.center, half)
@@ -55,9 +55,9 @@ def plot_axes_in_space(ax: Axes3D, analysis: Shown) -> Axes3D:
     ax.plot(*ends.T, color="black", linewidth=1.6, label="mean axis")
     plot_path(ax, bodies.path, unit)
     shown = [segments.reshape(-1, 3), ends, length_in(bodies.corners, unit)]
-    if arm is not None:
-        ax.plot(*length_in(arm[None], unit).T, "^", color="#0072B2", markersize=5, label="arm")
-        shown.append(length_in(arm[None], unit))
+    if proximal is not None:
+        ax.plot(*length_in(proximal[None], unit).T, "^", color="#0072B2", markersize=5, label="proximal")
+        shown.append(length_in(proximal[None], unit))
     for k, cluster in enumerate(clusters):
         label = "markers" if k == 0 else None
         ax.plot(*length_in(cluster, unit).T, ".", color="#666666", markersize=3, label=label)

@@ -17,7 +17,8 @@ from elbowscrew.model.anatomy import LANDMARKS, Landmark, LandmarkFrame, Landmar
 
 _FARTHEST_MM: Final = 10_000.0
 _SIDES: Final = get_args(Side)
-_FRAMES: Final = get_args(LandmarkFrame)
+_FRAMES: Final[dict[str, LandmarkFrame]] = {"arm": "proximal", "forearm": "distal", "lab": "lab"}
+"""Words of the file for the frames, an elbow's own."""
 _EXPECTED: Final = 'a marker\'s name, a list of names, or { body = "arm", mm = [x, y, z] }'
 
 
@@ -90,7 +91,7 @@ def _landmark(name: str, value: object, faults: list[str]) -> Landmark | None:
         faults += [f"{place}: {fault}" for fault in _coordinate_faults(value)]
         if len(faults) > before:
             return None
-        return Landmark(point=np.array(value["mm"], dtype=np.float64) / 1000.0, frame=value["body"])
+        return Landmark(point=np.array(value["mm"], dtype=np.float64) / 1000.0, frame=_FRAMES[value["body"]])
     given = value if isinstance(value, list) else [value]
     markers = tuple(marker for marker in given if isinstance(marker, str) and marker.strip())
     if not markers or len(markers) < len(given):
@@ -103,7 +104,7 @@ def _coordinate_faults(table: Mapping[str, Any]) -> list[str]:
     faults = _unknown(table, ("body", "mm"), "key")
     body, mm = table.get("body"), table.get("mm")
     if not isinstance(body, str) or body not in _FRAMES:
-        faults.append(f"body: expected {_either(_FRAMES)}, found {_found(table, 'body')}")
+        faults.append(f"body: expected {_either(tuple(_FRAMES))}, found {_found(table, 'body')}")
     if not isinstance(mm, list) or len(mm) != 3 or any(type(x) not in (int, float) for x in mm):
         faults.append(f"mm: expected three numbers, [x, y, z], found {_found(table, 'mm')}")
     elif not all(abs(x) <= _FARTHEST_MM for x in mm):

@@ -12,7 +12,7 @@ from elbowscrew.tables import METERS
 
 _UNIT_NAMES: Final = {"meters": "m", "centimeters": "cm", "millimeters": "mm"}
 
-ASK_FOR_MARKERS: Final = "give --arm-markers and --forearm-markers"
+ASK_FOR_MARKERS: Final = "give --proximal-markers and --distal-markers"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

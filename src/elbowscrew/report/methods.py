@@ -8,8 +8,8 @@ from typing import Any, Final
 from elbowscrew.view.finished import FinishedTrial
 
 _FRAMES: Final = {
-    "forearm": "the forearm's frame at the reference",
-    "arm": "the upper arm's frame",
+    "distal": "the forearm's frame at the reference",
+    "proximal": "the upper arm's frame",
     "lab": "the laboratory frame, with the upper arm where it was at the reference",
 }
 _METHODS: Final = {
@@ -55,7 +55,7 @@ def citations_of(trial: FinishedTrial) -> tuple[str, ...]:
 def _sentences(trial: FinishedTrial) -> Iterator[str]:
     settings, summary = trial.settings, trial.summary
     yield from _recording(trial, summary["trial"])
-    if trial.arm is None:
+    if trial.proximal is None:
         yield "The upper arm was taken to stand still, so that poses of the forearm are relative motion."
     else:
         yield "Motion of the forearm relative to the upper arm was described by unit dual quaternions."
@@ -82,7 +82,7 @@ def _recording(trial: FinishedTrial, figures: Mapping[str, Any]) -> Iterator[str
         yield f"Poses of the segments were recorded at {figures['rate_hz']:.6g} Hz."
     else:
         yield "Poses of the segments were recorded."
-    if settings.arm_markers or settings.forearm_markers:
+    if settings.proximal_markers or settings.distal_markers:
         way = {"svd": "least squares", "dual-qr": "the dual QR decomposition"}[settings.pose_method]
         yield f"Poses were found from marker positions by {way}."
     lowpass = figures["lowpass_hz"]
@@ -97,7 +97,7 @@ def _recording(trial: FinishedTrial, figures: Mapping[str, Any]) -> Iterator[str
         )
     if settings.resample_hz is not None:
         yield f"They were resampled to {settings.resample_hz:g} Hz by screw linear interpolation (ScLERP)."
-    who = "The forearm was" if trial.arm is None else "Both segments were"
+    who = "The forearm was" if trial.proximal is None else "Both segments were"
     missing = f"{who} tracked in {100.0 * (1.0 - figures['missing_share']):.1f} % of {figures['frames']} frames"
     if figures["filled_frames"]:
         yield (

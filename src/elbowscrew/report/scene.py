@@ -36,7 +36,7 @@ def scene_of(trial: FinishedTrial) -> dict[str, Any]:
     """
     screw = trial.screw
     bundle = joint_bundle(trial).scaled(1000.0)
-    arm, forearm = _bodies(trial)
+    proximal, distal = _bodies(trial)
     across, _ = directions_across(bundle.direction)
     rows = thinned(np.arange(screw.frame.size), MOST_FRAMES)
     angle = np.degrees(screw.angle)
@@ -60,8 +60,8 @@ def scene_of(trial: FinishedTrial) -> dict[str, Any]:
         "across": _rounded(np.stack(across), _PURE_DECIMALS),
         "spread": _region(bundle.spread),
         "confidence": None if bundle.confidence is None else _region(bundle.confidence),
-        "arm": arm,
-        "forearm": forearm,
+        "proximal": proximal,
+        "distal": distal,
         "colors": list(COLORS),
     }
 
@@ -69,7 +69,7 @@ def scene_of(trial: FinishedTrial) -> dict[str, Any]:
 def _bodies(trial: FinishedTrial) -> tuple[dict[str, Any] | None, dict[str, Any] | None]:
     """Arm and forearm at the reference."""
     bodies = bodies_in_space(trial)
-    return _body(bodies.arm, bodies.arm_markers), _body(bodies.start, bodies.forearm_markers)
+    return _body(bodies.proximal, bodies.proximal_markers), _body(bodies.start, bodies.distal_markers)
 
 
 def _body(origin: Float | None, markers: Float | None) -> dict[str, Any] | None:

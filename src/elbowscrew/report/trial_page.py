@@ -40,8 +40,8 @@ _FILES: Final = (
     ("joint.json", "joint axis by all estimators"),
 )
 _FRAME_NAMES: Final = {
-    "forearm": "forearm’s frame at the reference",
-    "arm": "upper arm’s frame",
+    "distal": "forearm’s frame at the reference",
+    "proximal": "upper arm’s frame",
     "lab": "laboratory frame, upper arm as at the reference",
 }
 
@@ -80,9 +80,9 @@ def trial_page(trial: FinishedTrial) -> str:
         "model": summary["interpolation"],
         "joint": joint,
         "title": summary["source"]["name"] or "trial",
-        "arm_name": "still upper arm" if trial.arm is None else trial.arm.name,
-        "forearm_name": trial.forearm.name,
-        "bodies": [body for body in (summary["trial"]["arm"], summary["trial"]["forearm"]) if body is not None],
+        "proximal_name": "still upper arm" if trial.proximal is None else trial.proximal.name,
+        "distal_name": trial.distal.name,
+        "bodies": [body for body in (summary["trial"]["proximal"], summary["trial"]["distal"]) if body is not None],
         "frame_name": _FRAME_NAMES[trial.settings.express_in],
         "lost_frames": int((~trial.screw.valid & ~trial.screw.filled).sum()),
         "warnings": [warning for warning in warnings if warning["severity"] == "warning"],

@@ -75,10 +75,10 @@ def _line(line: LineEstimate) -> dict[str, list[float]]:
     return {
         "direction": line.direction.tolist(),
         "point_mm": (1000.0 * line.point).tolist(),
-        "direction_in_arm": line.direction_arm.tolist(),
-        "point_in_arm_mm": (1000.0 * line.point_arm).tolist(),
-        "direction_in_forearm": line.direction_forearm.tolist(),
-        "point_in_forearm_mm": (1000.0 * line.point_forearm).tolist(),
+        "direction_in_proximal": line.direction_proximal.tolist(),
+        "point_in_proximal_mm": (1000.0 * line.point_proximal).tolist(),
+        "direction_in_distal": line.direction_distal.tolist(),
+        "point_in_distal_mm": (1000.0 * line.point_distal).tolist(),
     }
 
 
@@ -104,8 +104,8 @@ def _anatomy(motion: AnatomicalMotion | None) -> dict[str, Any] | None:
         "side": motion.side,
         "axis_angle_deg": known(np.degrees(motion.joint_axis_angle)),
         "axis_distance_mm": known(1000.0 * motion.joint_axis_distance),
-        "epicondyle_direction_in_arm": motion.epicondyle_line[:3].tolist(),
-        "epicondyle_midpoint_in_arm_mm": (1000.0 * motion.epicondyle_midpoint).tolist(),
+        "epicondyle_direction_in_proximal": motion.epicondyle_line[:3].tolist(),
+        "epicondyle_midpoint_in_proximal_mm": (1000.0 * motion.epicondyle_midpoint).tolist(),
         "landmarks_mm": {name: (1000.0 * place).tolist() for name, place in motion.places.items()},
     }
 
@@ -114,10 +114,10 @@ def _bodies(analysis: Analysis) -> dict[str, Any]:
     """Say where the bodies are at the reference, and where their markers: with `screw.csv`, all that figures show."""
     joint = analysis.joint
     return {
-        "forearm_in_arm": _pose(joint.reference),
-        "arm_in_lab": _pose(joint.dual_quat_lab_proximal),
-        "arm_markers_mm": _markers(analysis.arm),
-        "forearm_markers_mm": _markers(analysis.forearm),
+        "distal_in_proximal": _pose(joint.reference),
+        "proximal_in_lab": _pose(joint.dual_quat_lab_proximal),
+        "proximal_markers_mm": _markers(analysis.proximal),
+        "distal_markers_mm": _markers(analysis.distal),
     }
 
 

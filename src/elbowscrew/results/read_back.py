@@ -156,10 +156,10 @@ def _finished(
         joint_summary=joint_summary,
         settings=Settings.model_validate(summary["settings"]),
         recording=FinishedClock(rate_hz=float(trial["rate_hz"])),
-        arm=None if trial["arm"] is None else _body(trial["arm"], bodies["arm_markers_mm"]),
-        forearm=_body(trial["forearm"], bodies["forearm_markers_mm"]),
+        proximal=None if trial["proximal"] is None else _body(trial["proximal"], bodies["proximal_markers_mm"]),
+        distal=_body(trial["distal"], bodies["distal_markers_mm"]),
         joint=FinishedJoint(
-            reference=_pose(bodies["forearm_in_arm"]), dual_quat_lab_proximal=_pose(bodies["arm_in_lab"])
+            reference=_pose(bodies["distal_in_proximal"]), dual_quat_lab_proximal=_pose(bodies["proximal_in_lab"])
         ),
         screw=read.screw,
         mean_axis=_mean(summary["motion"]["mean_axis"], joint_summary["dispersion"]),
@@ -200,8 +200,8 @@ def _screw(columns: Columns) -> ScrewMotion:
         **_axis(columns),
         valid=columns["valid"] == 1,
         filled=columns["filled"] == 1,
-        arm_loss=columns["arm_loss"],
-        forearm_loss=columns["forearm_loss"],
+        proximal_loss=columns["proximal_loss"],
+        distal_loss=columns["distal_loss"],
         angle_sd=columns["theta_sd"],
         slide_sd=columns["slide_sd"],
         axis_sd=columns["axis_sd"],

@@ -142,14 +142,21 @@ def _spread_mm(spread: Spread | None) -> dict[str, float] | None:
 
 def _roles(recording: Recording) -> dict[str, str | None]:
     if not recording.bodies:
-        return {"arm": None, "forearm": None, "text": f"no rigid bodies; {ASK_FOR_MARKERS} to analyze"}
+        return {
+            "proximal": None,
+            "distal": None,
+            "joint": None,
+            "text": f"no rigid bodies; {ASK_FOR_MARKERS} to analyze",
+        }
     try:
-        arm, forearm = choose_bodies(recording, None, None)
+        chosen = choose_bodies(recording, None, None)
     except SettingError as error:
-        return {"arm": None, "forearm": None, "text": str(error)}
-    name = arm.name if arm is not None else None
-    text = f"arm {name!r}, forearm {forearm.name!r}" if arm is not None else f"forearm {forearm.name!r}, still arm"
-    return {"arm": name, "forearm": forearm.name, "text": text}
+        return {"proximal": None, "distal": None, "joint": None, "text": str(error)}
+    joint, distal = chosen.joint, chosen.distal.name
+    name = chosen.proximal.name if chosen.proximal is not None else None
+    first = f"{joint.proximal.name} {name!r}" if name is not None else f"{joint.proximal.name} that stands still"
+    text = f"{first}, {joint.distal.name} {distal!r}"
+    return {"proximal": name, "distal": distal, "joint": joint.name, "text": text}
 
 
 def source_summary(recording: Recording) -> dict[str, Any]:
@@ -182,9 +189,10 @@ def recording_summary(recording: Recording) -> dict[str, Any]:
 def _trial(analysis: Analysis) -> dict[str, Any]:
     screw = analysis.screw
     return {
+        "joint": analysis.named_joint.name,
         "bodies": [{"name": body.name, "id": body.identifier} for body in analysis.recording.bodies],
-        "arm": None if analysis.arm is None else quality_summary(analysis.quality[0]),
-        "forearm": quality_summary(analysis.quality[-1]),
+        "proximal": None if analysis.proximal is None else quality_summary(analysis.quality[0]),
+        "distal": quality_summary(analysis.quality[-1]),
         "measured_frames": int(screw.valid.sum()),
         "filled_frames": int(screw.filled.sum()),
         "missing_share": float(1.0 - screw.valid.mean()),

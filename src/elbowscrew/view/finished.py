@@ -90,8 +90,8 @@ class FinishedTrial(Brief):
         ``summary.json`` and ``joint.json``, degrees and millimeters.
     settings : Settings
     recording : FinishedClock
-    arm : FinishedBody or None
-    forearm : FinishedBody
+    proximal : FinishedBody or None
+    distal : FinishedBody
     joint : FinishedJoint
     screw : ScrewMotion
     mean_axis : FinishedMean
@@ -111,8 +111,8 @@ class FinishedTrial(Brief):
     joint_summary: Mapping[str, Any]
     settings: Settings
     recording: FinishedClock
-    arm: FinishedBody | None
-    forearm: FinishedBody
+    proximal: FinishedBody | None
+    distal: FinishedBody
     joint: FinishedJoint
     screw: ScrewMotion
     mean_axis: FinishedMean

@@ -29,9 +29,9 @@ class Bodies(NamedTuple):
     middle: Float
     corners: Float
     start: Float
-    arm: Float | None
-    arm_markers: Float | None
-    forearm_markers: Float | None
+    proximal: Float | None
+    proximal_markers: Float | None
+    distal_markers: Float | None
 
 
 class Region(NamedTuple):
@@ -77,16 +77,16 @@ class Bundle(NamedTuple):
 
 def bodies_in_space(shown: Shown) -> Bodies:
     """Place the bodies in the frame the screws are expressed in."""
-    reference, arm = shown.joint.reference, shown.joint.dual_quat_lab_proximal
+    reference, proximal = shown.joint.reference, shown.joint.dual_quat_lab_proximal
     identity = np.array([1.0, 0, 0, 0, 0, 0, 0, 0])
     change, at_reference = {
-        "forearm": (conjugate(reference), identity),
-        "arm": (identity, reference),
-        "lab": (arm, multiply(arm, reference)),
+        "distal": (conjugate(reference), identity),
+        "proximal": (identity, reference),
+        "lab": (proximal, multiply(proximal, reference)),
     }[shown.settings.express_in]
     markers = [
         None if body is None or body.marker_offsets is None else transform_points(pose, body.marker_offsets)
-        for body, pose in ((shown.arm, change), (shown.forearm, at_reference))
+        for body, pose in ((shown.proximal, change), (shown.distal, at_reference))
     ]
     start = pose_from_dual_quat(at_reference)[1]
     # The displacement takes the forearm's origin along from where it is at the reference.
@@ -98,9 +98,9 @@ def bodies_in_space(shown: Shown) -> Bodies:
         middle=np.mean(path, axis=0, where=np.isfinite(path)),
         corners=np.stack([np.fmin.reduce(path, axis=0), np.fmax.reduce(path, axis=0)]),
         start=start,
-        arm=None if shown.arm is None else pose_from_dual_quat(change)[1],
-        arm_markers=markers[0],
-        forearm_markers=markers[1],
+        proximal=None if shown.proximal is None else pose_from_dual_quat(change)[1],
+        proximal_markers=markers[0],
+        distal_markers=markers[1],
     )
 
 

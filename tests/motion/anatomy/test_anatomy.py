@@ -24,11 +24,11 @@ from elbowscrew.model.anatomy import AnatomicalMotion, Landmark, LandmarkFrame, 
 from elbowscrew.motion.anatomy.anatomy import (
     anatomical_motion,
     angle_to_epicondyles,
-    arm_lines,
+    distal_frame,
     distance_from_point,
     elbow_angles,
-    forearm_frame,
     humerus_frame,
+    proximal_lines,
 )
 from elbowscrew.motion.screws.relative import joint_from_bodies
 
@@ -58,15 +58,15 @@ class Arm:
     """An arm by matrices alone: its landmarks in the laboratory, shape (N, 3), and the poses of two bodies on it."""
 
     landmarks: dict[str, Float]
-    arm_R: Float
-    arm_p: Float
-    forearm_R: Float
-    forearm_p: Float
+    proximal_R: Float
+    proximal_p: Float
+    distal_R: Float
+    distal_p: Float
 
     def bodies(self) -> tuple[RigidBody, RigidBody]:
         return (
-            RigidBody.from_matrices("arm", self.arm_R, self.arm_p),
-            RigidBody.from_matrices("forearm", self.forearm_R, self.forearm_p),
+            RigidBody.from_matrices("proximal", self.proximal_R, self.proximal_p),
+            RigidBody.from_matrices("distal", self.distal_R, self.distal_p),
         )
 
     def moved(self, R: Float, p: Float) -> Arm:
@@ -74,22 +74,22 @@ class Arm:
         turn = R * np.linalg.det(R)  # a reflected body is held by a turned one, its frame being any
         return Arm(
             {name: place @ R.T + p for name, place in self.landmarks.items()},
-            turn @ self.arm_R,
-            self.arm_p @ R.T + p,
-            turn @ self.forearm_R,
-            self.forearm_p @ R.T + p,
+            turn @ self.proximal_R,
+            self.proximal_p @ R.T + p,
+            turn @ self.distal_R,
+            self.distal_p @ R.T + p,
         )
 
-    def in_body(self, name: str, body: Literal["arm", "forearm", "lab"], row: int = 0) -> Float:
+    def in_body(self, name: str, body: Literal["proximal", "distal", "lab"], row: int = 0) -> Float:
         place: Float = self.landmarks[name][row]
         if body == "lab":
             return place
-        R, p = (self.arm_R, self.arm_p) if body == "arm" else (self.forearm_R, self.forearm_p)
+        R, p = (self.proximal_R, self.proximal_p) if body == "proximal" else (self.distal_R, self.distal_p)
         inside: Float = R[row].T @ (place - p[row])
         return inside
 
 
-def known_arm(flexion: Float, carrying: Float, pronation: Float, seed: int = 0) -> Arm:
+def known_proximal(flexion: Float, carrying: Float, pronation: Float, seed: int = 0) -> Arm:
     """Turn the forearm by the ISB's angles about the middle of the epicondyles while the whole arm moves."""
     rng = np.random.default_rng(seed)
     J = Rotation.from_euler("ZXY", np.stack([flexion, carrying, pronation], axis=1)).as_matrix()
@@ -105,10 +105,11 @@ def known_arm(flexion: Float, carrying: Float, pronation: Float, seed: int = 0) 
     return Arm(places, R @ body_R[0], R @ body_p[0] + p, R @ J @ body_R[1], R @ J @ body_p[1] + R @ ELBOW + p)
 
 
-def by_coordinates(arm: Arm, side: Side = "right", frames: dict[str, LandmarkFrame] | None = None) -> Landmarks:
-    own: dict[str, LandmarkFrame] = {name: "arm" if name in ON_ARM else "forearm" for name in NAMES}
+def by_coordinates(proximal: Arm, side: Side = "right", frames: dict[str, LandmarkFrame] | None = None) -> Landmarks:
+    own: dict[str, LandmarkFrame] = {name: "proximal" if name in ON_ARM else "distal" for name in NAMES}
     marks: dict[str, Any] = {
-        name: Landmark(point=arm.in_body(name, frame), frame=frame) for name, frame in (own | (frames or {})).items()
+        name: Landmark(point=proximal.in_body(name, frame), frame=frame)
+        for name, frame in (own | (frames or {})).items()
     }
     return Landmarks(side=side, **marks)
 
@@ -118,9 +119,9 @@ def by_markers(side: Side = "right", **names: tuple[str, ...]) -> Landmarks:
     return Landmarks(side=side, **marks)
 
 
-def recorded(arm: Arm) -> Recording:
-    markers = tuple(Marker(name=name, position=place) for name, place in arm.landmarks.items())
-    return replace(Recording.from_bodies(arm.bodies(), rate_hz=100), markers=markers)
+def recorded(proximal: Arm) -> Recording:
+    markers = tuple(Marker(name=name, position=place) for name, place in proximal.landmarks.items())
+    return replace(Recording.from_bodies(proximal.bodies(), rate_hz=100), markers=markers)
 
 
 def joint_of(recording: Recording, reference: int = 0) -> JointMotion:
@@ -132,8 +133,8 @@ def joint_of(recording: Recording, reference: int = 0) -> JointMotion:
 def measured(
     landmarks: Landmarks, recording: Recording, reference: int = 0
 ) -> tuple[AnatomicalMotion, tuple[QualityWarning, ...]]:
-    arm, forearm = recording.bodies
-    return anatomical_motion(landmarks, recording, arm, forearm, joint_of(recording, reference), **NO_AXES)
+    proximal, distal = recording.bodies
+    return anatomical_motion(landmarks, recording, proximal, distal, joint_of(recording, reference), **NO_AXES)
 
 
 def angles_of(landmarks: Landmarks, recording: Recording, reference: int = 0) -> Float:
@@ -148,7 +149,7 @@ def test_frames_are_orthonormal_and_right_handed(side: Side, a: Float, b: Float,
     assume(min(np.linalg.norm(v) for v in (a - b, a - c, b - c, a - 0.5 * (b + c))) > 1e-6)
     for frame, proximal in (
         (humerus_frame(a, b, c, side), a - 0.5 * (b + c)),
-        (forearm_frame(a, b, c, c, side), c - a),
+        (distal_frame(a, b, c, c, side), c - a),
     ):
         if np.isnan(frame).any():
             continue
@@ -164,8 +165,8 @@ def test_frames_of_an_arm_that_hangs_down_are_the_anatomical_directions() -> Non
     for side in SIDES:
         at = STANDING if side == "right" else {name: MIRROR @ place for name, place in STANDING.items()}
         humerus = humerus_frame(at["GH"], at["EL"], at["EM"], side)
-        forearm = forearm_frame(at["US"], at["RS"], at["EL"], at["EM"], side)
-        for frame in (humerus, forearm):
+        distal = distal_frame(at["US"], at["RS"], at["EL"], at["EM"], side)
+        for frame in (humerus, distal):
             assert dq.matrix_from_dual_quat(frame)[:3, :3] == pytest.approx(np.eye(3), abs=1e-12)
 
 
@@ -176,7 +177,7 @@ def test_frames_broadcast_and_are_nan_where_the_landmarks_lie_on_one_line() -> N
     frames = humerus_frame(GH, EL, EM, "right")
     assert np.isnan(frames).any(axis=1).tolist() == [False, True, True, False]
     assert humerus_frame(GH[None], EL[None], EM, "left").shape == (1, 4, 8)
-    assert np.isnan(forearm_frame([0, 0, 0], [0, 1, 0], [0, 2, 0], [0, 2, 0], "left")).all()
+    assert np.isnan(distal_frame([0, 0, 0], [0, 1, 0], [0, 2, 0], [0, 2, 0], "left")).all()
 
 
 def test_angles_agree_with_scipy() -> None:
@@ -199,16 +200,16 @@ def test_angles_are_those_the_pose_was_made_of(angles: tuple[float, float, float
 
 
 def test_flexion_about_the_epicondyles_is_flexion_alone() -> None:
-    arm = known_arm(FLEX, 0 * FLEX, 0 * FLEX)
+    proximal = known_proximal(FLEX, 0 * FLEX, 0 * FLEX)
     for reference in (0, 60):
-        found = angles_of(by_markers(), recorded(arm), reference)
+        found = angles_of(by_markers(), recorded(proximal), reference)
         assert found[0] == pytest.approx(FLEX, abs=1e-10)
         assert np.abs(found[1:]).max() < 1e-10
 
 
 def test_pronation_about_the_forearm_is_pronation_alone() -> None:
     turn = np.radians(160.0) * np.sin(REACH) - 0.2
-    found = angles_of(by_markers(), recorded(known_arm(0 * FLEX + 1.5, 0 * FLEX, turn)))
+    found = angles_of(by_markers(), recorded(known_proximal(0 * FLEX + 1.5, 0 * FLEX, turn)))
     assert found[0] == pytest.approx(0 * FLEX + 1.5, abs=1e-10)
     assert found[2] == pytest.approx(turn, abs=1e-10)
     assert np.abs(found[1]).max() < 1e-10
@@ -232,21 +233,24 @@ def test_all_three_angles_come_back_on_both_sides_and_in_any_laboratory(side: Si
     turn = np.radians(80.0) * (1.0 - np.cos(2 * REACH))
     valgus = np.radians(-12.0) + 0.1 * np.sin(REACH)
     expected = np.stack([FLEX - 0.1, valgus, turn])
-    arm = known_arm(expected[0], expected[1], expected[2], seed)
+    proximal = known_proximal(expected[0], expected[1], expected[2], seed)
     if side == "left":
-        arm = arm.moved(MIRROR, np.zeros(3))
-    for lab in (arm, arm.moved(rodrigues(rng.normal(size=3), np.array([2.2]))[0], rng.normal(scale=5.0, size=3))):
+        proximal = proximal.moved(MIRROR, np.zeros(3))
+    for lab in (
+        proximal,
+        proximal.moved(rodrigues(rng.normal(size=3), np.array([2.2]))[0], rng.normal(scale=5.0, size=3)),
+    ):
         assert angles_of(by_coordinates(lab, side), recorded(lab)) == pytest.approx(expected, abs=1e-10)
         assert angles_of(by_markers(side), recorded(lab)) == pytest.approx(expected, abs=1e-10)
 
 
 def test_landmarks_may_be_given_in_any_frame_at_the_reference() -> None:
-    arm = known_arm(FLEX, 0.1 * FLEX, FLEX**2 - 1.0, seed=3)
-    recording = recorded(arm)
+    proximal = known_proximal(FLEX, 0.1 * FLEX, FLEX**2 - 1.0, seed=3)
+    recording = recorded(proximal)
     expected = angles_of(by_markers(), recording)
-    frames: tuple[LandmarkFrame, ...] = ("arm", "forearm", "lab")
+    frames: tuple[LandmarkFrame, ...] = ("proximal", "distal", "lab")
     for frame in frames:
-        assert angles_of(by_coordinates(arm, frames=dict.fromkeys(NAMES, frame)), recording) == pytest.approx(
+        assert angles_of(by_coordinates(proximal, frames=dict.fromkeys(NAMES, frame)), recording) == pytest.approx(
             expected, abs=1e-10
         )
 
@@ -254,54 +258,56 @@ def test_landmarks_may_be_given_in_any_frame_at_the_reference() -> None:
 @pytest.mark.parametrize("reference", [0, 77])
 def test_any_landmarks_give_the_angles_of_their_frames_by_matrices(reference: int) -> None:
     """The epicondyles are no hinge here: the forearm's frame has them where they were at the reference."""
-    arm = known_arm(FLEX, 0.2 * FLEX, FLEX - 1.0, seed=5)
+    proximal = known_proximal(FLEX, 0.2 * FLEX, FLEX - 1.0, seed=5)
     rng = np.random.default_rng(9)
     shift = {name: rng.normal(scale=0.015, size=3) for name in NAMES}
-    holder = {name: arm.arm_R if name in ON_ARM else arm.forearm_R for name in NAMES}
-    arm = replace(arm, landmarks={name: at + holder[name] @ shift[name] for name, at in arm.landmarks.items()})
+    holder = {name: proximal.proximal_R if name in ON_ARM else proximal.distal_R for name in NAMES}
+    proximal = replace(
+        proximal, landmarks={name: at + holder[name] @ shift[name] for name, at in proximal.landmarks.items()}
+    )
 
     def axes(proximal: Float, radial: Float) -> Float:
         forward = np.cross(proximal, radial)
         rows = [v / np.linalg.norm(v) for v in (forward, proximal, np.cross(forward, proximal))]
         return np.stack(rows, axis=1)
 
-    at = {name: arm.in_body(name, "arm" if name in ON_ARM else "forearm", reference) for name in NAMES}
+    at = {name: proximal.in_body(name, "proximal" if name in ON_ARM else "distal", reference) for name in NAMES}
     H = axes(at["GH"] - (at["EL"] + at["EM"]) / 2, at["EL"] - at["EM"])
-    middle = (arm.in_body("EL", "forearm", reference) + arm.in_body("EM", "forearm", reference)) / 2
+    middle = (proximal.in_body("EL", "distal", reference) + proximal.in_body("EM", "distal", reference)) / 2
     F = axes(middle - at["US"], at["RS"] - at["US"])
-    R = np.swapaxes(arm.arm_R @ H, 1, 2) @ arm.forearm_R @ F
+    R = np.swapaxes(proximal.proximal_R @ H, 1, 2) @ proximal.distal_R @ F
     expected = np.unwrap(Rotation.from_matrix(R).as_euler("ZXY"), axis=0).T
-    assert angles_of(by_markers(), recorded(arm), reference) == pytest.approx(expected, abs=1e-10)
+    assert angles_of(by_markers(), recorded(proximal), reference) == pytest.approx(expected, abs=1e-10)
 
 
 def test_a_still_arm_has_the_laboratory_for_its_frame() -> None:
-    arm = known_arm(FLEX, 0 * FLEX, 0 * FLEX, seed=2)
-    R, p = arm.arm_R, arm.arm_p
+    proximal = known_proximal(FLEX, 0 * FLEX, 0 * FLEX, seed=2)
+    R, p = proximal.proximal_R, proximal.proximal_p
     still = Arm(
-        {name: (np.swapaxes(R, 1, 2) @ (at - p)[..., None])[..., 0] for name, at in arm.landmarks.items()},
+        {name: (np.swapaxes(R, 1, 2) @ (at - p)[..., None])[..., 0] for name, at in proximal.landmarks.items()},
         np.tile(np.eye(3), (N, 1, 1)),
         np.zeros((N, 3)),
-        np.swapaxes(R, 1, 2) @ arm.forearm_R,
-        (np.swapaxes(R, 1, 2) @ (arm.forearm_p - p)[..., None])[..., 0],
+        np.swapaxes(R, 1, 2) @ proximal.distal_R,
+        (np.swapaxes(R, 1, 2) @ (proximal.distal_p - p)[..., None])[..., 0],
     )
     recording = recorded(still)
-    forearm = recording.bodies[1]
+    distal = recording.bodies[1]
     joint = joint_from_bodies(
-        None, forearm, recording.frame, recording.time_s, 100.0, reference_row=0, reference_window=1, max_gap_s=0.0
+        None, distal, recording.frame, recording.time_s, 100.0, reference_row=0, reference_window=1, max_gap_s=0.0
     )
     for landmarks in (by_markers(), by_coordinates(still), by_coordinates(still, frames=dict.fromkeys(NAMES, "lab"))):
-        motion, warnings = anatomical_motion(landmarks, recording, None, forearm, joint, **NO_AXES)
+        motion, warnings = anatomical_motion(landmarks, recording, None, distal, joint, **NO_AXES)
         assert not warnings
         assert motion.flexion == pytest.approx(FLEX, abs=1e-10)
 
 
 def test_flexion_and_pronation_go_on_through_a_half_turn_and_over_gaps() -> None:
     flexion, pronation = np.linspace(0.0, 3.6, N), np.linspace(0.2, 3.9, N)
-    recording = recorded(known_arm(flexion, 0 * flexion, pronation))
+    recording = recorded(known_proximal(flexion, 0 * flexion, pronation))
     lost = np.isin(np.arange(N), [30, 31, *range(100, 110)])
-    forearm = recording.bodies[1]
-    pose = np.where(lost[:, None], np.nan, forearm.dual_quat_lab_body)
-    gone = replace(forearm, dual_quat_lab_body=pose, loss=lost.astype(np.uint8))
+    distal = recording.bodies[1]
+    pose = np.where(lost[:, None], np.nan, distal.dual_quat_lab_body)
+    gone = replace(distal, dual_quat_lab_body=pose, loss=lost.astype(np.uint8))
     found = angles_of(by_markers(), replace(recording, bodies=(recording.bodies[0], gone)))
     assert np.isnan(found).all(axis=0).tolist() == lost.tolist()
     assert found[0, ~lost] == pytest.approx(flexion[~lost], abs=1e-10)
@@ -310,45 +316,45 @@ def test_flexion_and_pronation_go_on_through_a_half_turn_and_over_gaps() -> None
 
 def test_near_gimbal_lock_only_the_carrying_angle_is_known() -> None:
     carrying = np.radians(np.linspace(0.0, 89.0, N))
-    motion, _ = measured(by_markers(), recorded(known_arm(0 * FLEX + 0.4, carrying, 0 * FLEX + 0.3)))
+    motion, _ = measured(by_markers(), recorded(known_proximal(0 * FLEX + 0.4, carrying, 0 * FLEX + 0.3)))
     assert motion.carrying == pytest.approx(carrying, abs=1e-8)
     locked = np.degrees(carrying) > 85.0
     for angle, value in ((motion.flexion, 0.4), (motion.pronation, 0.3)):
         assert np.isnan(angle).tolist() == locked.tolist()
         assert angle[~locked] == pytest.approx(np.full(N, value)[~locked], abs=1e-9)
-    locked_throughout = known_arm(0 * FLEX, 0 * FLEX + 1.55, 0 * FLEX)
+    locked_throughout = known_proximal(0 * FLEX, 0 * FLEX + 1.55, 0 * FLEX)
     motion, warnings = measured(by_coordinates(locked_throughout), recorded(locked_throughout))
     assert np.isnan(motion.flexion).all()
     assert not warnings
 
 
 def test_a_marker_is_taken_at_its_median_and_several_at_their_middle() -> None:
-    arm = known_arm(FLEX, 0 * FLEX, 0 * FLEX, seed=7)
-    recording = recorded(arm)
+    proximal = known_proximal(FLEX, 0 * FLEX, 0 * FLEX, seed=7)
+    recording = recorded(proximal)
     expected = angles_of(by_markers(), recording)
     rng = np.random.default_rng(1)
-    seen = {name: place.copy() for name, place in arm.landmarks.items()}
+    seen = {name: place.copy() for name, place in proximal.landmarks.items()}
     seen["GH"][5:9] += 0.03  # taken for another for a moment
     seen["US"][:50] = np.nan  # not seen
     seen["RS"][70:] = 0.0  # not seen, as some systems write it
-    aside = (arm.arm_R @ rng.normal(scale=0.05, size=3)[:, None])[..., 0]
-    seen["front"], seen["back"] = seen.pop("GH") + aside, arm.landmarks["GH"] - aside
+    aside = (proximal.proximal_R @ rng.normal(scale=0.05, size=3)[:, None])[..., 0]
+    seen["front"], seen["back"] = seen.pop("GH") + aside, proximal.landmarks["GH"] - aside
     markers = tuple(Marker(name=name.lower(), position=place) for name, place in seen.items())
     found = angles_of(by_markers(GH=("Front", "BACK")), replace(recording, markers=markers))
     assert found == pytest.approx(expected, abs=1e-10)
 
 
 def test_a_name_is_taken_exactly_before_it_is_taken_in_any_case() -> None:
-    recording = recorded(known_arm(FLEX, 0 * FLEX, 0 * FLEX))
+    recording = recorded(known_proximal(FLEX, 0 * FLEX, 0 * FLEX))
     other = Marker(name="el", position=np.zeros((N, 3)))
     assert angles_of(by_markers(), replace(recording, markers=(other, *recording.markers)))[0] == pytest.approx(FLEX)
 
 
 def test_a_marker_that_does_not_rest_in_its_body_is_told() -> None:
-    arm = known_arm(FLEX, 0 * FLEX, 0 * FLEX)
+    proximal = known_proximal(FLEX, 0 * FLEX, 0 * FLEX)
     wobble = np.where(np.arange(N) % 2 == 0, 1.0, -1.0)[:, None] * np.array([1.0, 0.0, 0.0])
     for size, told in ((0.019, False), (0.022, True)):
-        shaken = replace(arm, landmarks=arm.landmarks | {"GH": arm.landmarks["GH"] + size * wobble})
+        shaken = replace(proximal, landmarks=proximal.landmarks | {"GH": proximal.landmarks["GH"] + size * wobble})
         _, warnings = measured(by_markers(), recorded(shaken))
         assert [warning.code for warning in warnings] == ["landmark-moves"] * told
         if told:
@@ -364,7 +370,7 @@ def test_a_marker_that_does_not_rest_in_its_body_is_told() -> None:
     ],
 )
 def test_landmarks_taken_for_each_other_are_told(side: Side, change: dict[str, Any], pronation: float) -> None:
-    recording = recorded(known_arm(FLEX, 0 * FLEX, 0 * FLEX + pronation))
+    recording = recorded(known_proximal(FLEX, 0 * FLEX, 0 * FLEX + pronation))
     motion, warnings = measured(by_markers(side, **change), recording)
     assert [warning.code for warning in warnings] == ["landmarks-doubtful"]
     assert "which no elbow does" in warnings[0].message
@@ -373,7 +379,7 @@ def test_landmarks_taken_for_each_other_are_told(side: Side, change: dict[str, A
 
 
 def test_markers_that_cannot_be_found_are_named_together() -> None:
-    recording = recorded(known_arm(FLEX, 0 * FLEX, 0 * FLEX))
+    recording = recorded(known_proximal(FLEX, 0 * FLEX, 0 * FLEX))
     twice = (*recording.markers, replace(recording.markers[0], name="us"), replace(recording.markers[0], name="Us"))
     never = replace(recording.markers[0], name="never", position=np.full((N, 3), np.nan))
     landmarks = replace(by_markers(EL=("elbow",), GH=("never",), US=("uS",)), source="arm.toml")
@@ -390,14 +396,14 @@ def test_markers_that_cannot_be_found_are_named_together() -> None:
 
 
 def test_a_marker_seen_only_while_its_body_is_lost_is_an_error() -> None:
-    recording = recorded(known_arm(FLEX, 0 * FLEX, 0 * FLEX))
+    recording = recorded(known_proximal(FLEX, 0 * FLEX, 0 * FLEX))
     markers = {marker.name: marker for marker in recording.markers}
     hidden = markers["RS"].position.copy()
     hidden[:-1] = np.nan
-    arm, forearm = recording.bodies
+    proximal, distal = recording.bodies
     lost = replace(
         recording,
-        bodies=(arm, replace(forearm, loss=(np.arange(N) == N - 1).astype(np.uint8))),
+        bodies=(proximal, replace(distal, loss=(np.arange(N) == N - 1).astype(np.uint8))),
         markers=(*(markers | {"RS": replace(markers["RS"], position=hidden)}).values(),),
     )
     with pytest.raises(SettingError, match="RS: marker 'RS' is never seen together with the forearm"):
@@ -413,7 +419,7 @@ def test_a_marker_seen_only_while_its_body_is_lost_is_an_error() -> None:
 )
 def test_landmarks_on_one_line_are_an_error(change: dict[str, Any], says: str) -> None:
     with pytest.raises(SettingError, match=says):
-        measured(by_markers(**change), recorded(known_arm(FLEX, 0 * FLEX, 0 * FLEX)))
+        measured(by_markers(**change), recorded(known_proximal(FLEX, 0 * FLEX, 0 * FLEX)))
 
 
 @given(h=vectors, e=vectors, point=vectors, along=st.floats(-2.0, 2.0))
@@ -432,11 +438,11 @@ def test_angle_and_distance_of_lines(h: Float, e: Float, point: Float, along: fl
         assert distance_from_point(axis, point + aside) == pytest.approx(np.linalg.norm(aside), abs=1e-9)
 
 
-@pytest.mark.parametrize("express_in", ["forearm", "arm", "lab"])
-@pytest.mark.parametrize("arm", ["moving", "still"])
-def test_the_screw_axes_of_an_analysis_beside_the_epicondyles(express_in: Any, arm: Any) -> None:
+@pytest.mark.parametrize("express_in", ["distal", "proximal", "lab"])
+@pytest.mark.parametrize("proximal", ["moving", "still"])
+def test_the_screw_axes_of_an_analysis_beside_the_epicondyles(express_in: Any, proximal: Any) -> None:
     tilt, aside = np.radians(6.6), 0.004
-    trial = simulate_trial(marker_noise_mm=0, arm=arm, slide_mm=0.0)
+    trial = simulate_trial(marker_noise_mm=0, proximal=proximal, slide_mm=0.0)
     truth = trial.truth["axis"]["lab"]
     h, p = np.array(truth["direction"]), 1e-3 * np.array(truth["point_mm"])
     across = np.cross(h, [0.0, 1.0, 0.0])
@@ -452,7 +458,7 @@ def test_the_screw_axes_of_an_analysis_beside_the_epicondyles(express_in: Any, a
         "RS": middle + down + epicondyle,
     }
     marks: dict[str, Any] = {name: Landmark(point=point, frame="lab") for name, point in points.items()}
-    settings = Settings(express_in=express_in, arm="none" if arm == "still" else None)
+    settings = Settings(express_in=express_in, proximal="none" if proximal == "still" else None)
     analysis = analyze(trial.recording, settings)
     screw, best = analysis.screw, analysis.joint_axis.best
     assert best is not None
@@ -460,10 +466,10 @@ def test_the_screw_axes_of_an_analysis_beside_the_epicondyles(express_in: Any, a
     motion, warnings = anatomical_motion(
         Landmarks(side="right", **marks),
         analysis.recording,
-        analysis.arm,
-        analysis.forearm,
+        analysis.proximal,
+        analysis.distal,
         analysis.joint,
-        axis_lines=arm_lines(lines, analysis.joint, express_in),
+        axis_lines=proximal_lines(lines, analysis.joint, express_in),
         joint_line=best.line,
     )
     assert not warnings
@@ -473,15 +479,15 @@ def test_the_screw_axes_of_an_analysis_beside_the_epicondyles(express_in: Any, a
     assert motion.axis_distance[known] == pytest.approx(np.full(known.sum(), aside), abs=1e-8)
     assert motion.joint_axis_angle == pytest.approx(tilt, abs=1e-7)
     assert motion.joint_axis_distance == pytest.approx(aside, abs=1e-7)
-    middle_in_arm = dq.transform_points(dq.conjugate(analysis.joint.dual_quat_lab_proximal), middle)
-    assert motion.epicondyle_midpoint == pytest.approx(middle_in_arm, abs=1e-12)
-    assert distance_from_point(motion.epicondyle_line, middle_in_arm) == pytest.approx(0.0, abs=1e-12)
+    middle_in_proximal = dq.transform_points(dq.conjugate(analysis.joint.dual_quat_lab_proximal), middle)
+    assert motion.epicondyle_midpoint == pytest.approx(middle_in_proximal, abs=1e-12)
+    assert distance_from_point(motion.epicondyle_line, middle_in_proximal) == pytest.approx(0.0, abs=1e-12)
     assert motion.frame is analysis.recording.frame
 
 
 def test_without_a_single_axis_its_angle_is_not_known() -> None:
-    arm = known_arm(FLEX, 0 * FLEX, 0 * FLEX)
-    motion, _ = measured(by_coordinates(arm), recorded(arm))
+    proximal = known_proximal(FLEX, 0 * FLEX, 0 * FLEX)
+    motion, _ = measured(by_coordinates(proximal), recorded(proximal))
     assert np.isnan([motion.joint_axis_angle, motion.joint_axis_distance]).all()
     assert np.isnan(motion.axis_angle).all()
     assert "flexion=<array 120>" in repr(motion)

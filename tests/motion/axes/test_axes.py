@@ -17,8 +17,8 @@ Float = NDArray[np.float64]
 
 
 def steps_of(step_deg: float, *, noise_mm: float = 0.0, seed: int = 0) -> HelicalSteps:
-    trial = simulate_trial(marker_noise_mm=noise_mm, arm="moving", seed=seed)
-    settings = Settings(step_deg=step_deg, express_in="arm", marker_noise_mm=0.2)
+    trial = simulate_trial(marker_noise_mm=noise_mm, proximal="moving", seed=seed)
+    settings = Settings(step_deg=step_deg, express_in="proximal", marker_noise_mm=0.2)
     steps = analyze(trial.recording, settings).steps
     assert steps is not None
     return steps

@@ -27,7 +27,9 @@ from elbowscrew.errors import AnalysisError, UsageError
 from elbowscrew.geometry import dual_quat_from_screw, line_through
 from elbowscrew.motion.interpolation.comparison import models_of
 
-TRIAL = simulate_trial(frames=200, inversion=90, rest_before_s=0.5, arm="moving", marker_noise_mm=0.1, seed=5).recording
+TRIAL = simulate_trial(
+    frames=200, inversion=90, rest_before_s=0.5, proximal="moving", marker_noise_mm=0.1, seed=5
+).recording
 SMALL = ComparisonPlan(laws=("cycloidal", "best"), counts=(2, 3), data=("raw",))
 
 

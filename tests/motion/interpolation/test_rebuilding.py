@@ -14,13 +14,13 @@ from elbowscrew.errors import ElbowscrewError
 from elbowscrew.geometry import dual_quat_from_screw, sclerp
 from elbowscrew.geometry.dual_quaternion import dual_quat_from_pose, pose_from_dual_quat
 
-TRIAL = simulate_trial(marker_noise_mm=0.2, arm="moving", seed=7).recording
+TRIAL = simulate_trial(marker_noise_mm=0.2, proximal="moving", seed=7).recording
 RESTING = simulate_trial(rest_before_s=1.0, hold_s=0.7, rest_after_s=0.8, repetitions=2, seed=3).recording
 CHOICES: list[dict[str, Any]] = [
     {},
     {"method": "dib", "law": "harmonic", "law_peak": 0.4, "keyframes": (0, 60, 211, 300, 380, 449)},
     {"method": "catmull-rom", "blend": "global", "keyframes": (0, 60, 211, 300, 449), "knots": "uniform"},
-    {"method": "sclerp", "blend": "global", "knots": "chord", "express_in": "arm"},
+    {"method": "sclerp", "blend": "global", "knots": "chord", "express_in": "proximal"},
     {"tolerance_mm": 4.0, "express_in": "lab"},
     {"tolerance_mm": 4.0, "law": "best", "method": "sdlb"},
     {"phases": "whole", "law": "best", "method": "sclerp"},

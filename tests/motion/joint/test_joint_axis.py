@@ -54,7 +54,7 @@ def test_the_stated_covariance_is_that_of_the_estimates() -> None:
     for _ in range(150):
         joint = noisy_joint(exact, rng)
         fit = fit_joint(joint, joint_covariance(joint, *NOISE), LINE, NEAR)
-        off = dq.transform_lines(dq.conjugate(fit.arm), LINE)
+        off = dq.transform_lines(dq.conjugate(fit.proximal), LINE)
         off = off if off[2] > 0 else -off
         # Tilt about x is -y of the direction; the shift is where the true line passes the origin of the frame.
         shift = np.cross(off[:3], off[3:])
@@ -69,7 +69,7 @@ def test_exact_poses_give_the_exact_line_in_both_bodies() -> None:
         joint = joint_poses(angle, pitch * angle)
         joint = joint * np.where(np.arange(90) % 3 == 0, -1.0, 1.0)[:, None]
         fit = fit_joint(joint, joint_covariance(joint, *NOISE), line_through(NEAR, [1.0, 0.3, 0.1]), NEAR, screw=screw)
-        lines = dq.transform_lines(fit.arm, Z), dq.transform_lines(fit.forearm, Z)
+        lines = dq.transform_lines(fit.proximal, Z), dq.transform_lines(fit.distal, Z)
         sense = np.sign(lines[0][:3] @ LINE[:3])
         assert sense * lines[0] == pytest.approx(LINE, abs=1e-10)
         assert sense * lines[1] == pytest.approx(dq.transform_lines(dq.conjugate(START), LINE), abs=1e-10)
@@ -79,9 +79,9 @@ def test_exact_poses_give_the_exact_line_in_both_bodies() -> None:
     assert sara_lines(joint_poses(angle, 0 * angle), angle)[0] == pytest.approx(LINE, abs=1e-7)
 
 
-@pytest.mark.parametrize("express_in", ["forearm", "arm", "lab"])
+@pytest.mark.parametrize("express_in", ["distal", "proximal", "lab"])
 def test_a_simulated_elbow_in_every_frame(express_in: Any) -> None:
-    trial = simulate_trial(seed=4, arm="moving", slide_mm=5.0)
+    trial = simulate_trial(seed=4, proximal="moving", slide_mm=5.0)
     axis = analyze(trial.recording, Settings(express_in=express_in, marker_noise_mm=0.2)).joint_axis
     truth = trial.truth["axis"][express_in]
     assert axis.single

@@ -165,13 +165,13 @@ REAL = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize(("name", "arm", "moves", "turns"), REAL)
+@pytest.mark.parametrize(("name", "proximal", "moves", "turns"), REAL)
 def test_real_takes_as_they_look(
-    real_data: Path, name: str, arm: int, moves: list[tuple[float, float]], turns: list[tuple[float, float, float]]
+    real_data: Path, name: str, proximal: int, moves: list[tuple[float, float]], turns: list[tuple[float, float, float]]
 ) -> None:
     """Times read off the plotted angle."""
     recording = read_recording(real_data / "real" / f"{name}.csv")
-    analysis = analyze(recording, Settings(arm=f"Rigid Body {arm}", forearm=f"Rigid Body {arm + 1}"))
+    analysis = analyze(recording, Settings(proximal=f"Rigid Body {proximal}", distal=f"Rigid Body {proximal + 1}"))
     time = recording.time_s - recording.time_s[0]
     phases, found = analysis.phases, analysis.repetitions
     bounds = np.stack([time[phases.onset_rows], time[phases.offset_rows]], axis=1)

@@ -23,7 +23,7 @@ FRAMES, TURN, COUNT, REST = 300, 120, 5, 150
 
 def repeated(**changes: Any) -> Analysis:
     given = {"repetitions": COUNT, "rest_before_s": 1.5, "rest_after_s": 1.5, "frames": FRAMES, "inversion": TURN}
-    return analyze(simulate_trial(arm="moving", **{**given, **changes}).recording, Settings(marker_noise_mm=0.2))
+    return analyze(simulate_trial(proximal="moving", **{**given, **changes}).recording, Settings(marker_noise_mm=0.2))
 
 
 def test_every_repetition_is_found_where_it_is() -> None:
@@ -158,19 +158,19 @@ def test_axes_of_repetitions_about_two_lines_are_told_apart() -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "arm", "onset_s"),
+    ("name", "proximal", "onset_s"),
     [("v121_thomazach_20230627_0117", 1, 3.6), ("v121_thomazach_20230706_122504", 1, 13.6)],
 )
-def test_real_takes_rest_before_they_move(real_data: Path, name: str, arm: int, onset_s: float) -> None:
+def test_real_takes_rest_before_they_move(real_data: Path, name: str, proximal: int, onset_s: float) -> None:
     recording = read_recording(real_data / "real" / f"{name}.csv")
-    settings = Settings(arm=f"Rigid Body {arm}", forearm=f"Rigid Body {arm + 1}")
+    settings = Settings(proximal=f"Rigid Body {proximal}", distal=f"Rigid Body {proximal + 1}")
     analysis = analyze(recording, settings)
     elapsed = recording.time_s - recording.time_s[0]
     onsets = elapsed[analysis.phases.onset_rows]
     assert np.abs(onsets - onset_s).min() < 0.15
     assert not analysis.phases.moving[elapsed < onset_s - 1.0].mean() > 0.2
     tops = elapsed[analysis.repetitions.inversion_frame - recording.frame[0]]
-    if arm == 1 and name.endswith("122504"):
+    if proximal == 1 and name.endswith("122504"):
         assert tops == pytest.approx([13.9, 15.0, 15.9, 19.8, 21.8], abs=0.15)
     else:
         assert tops.size == 0

@@ -37,7 +37,7 @@ def angle_between_deg(a: Float, b: Float) -> Float:
     return angle
 
 
-@pytest.mark.parametrize("express_in", ["forearm", "arm", "lab"])
+@pytest.mark.parametrize("express_in", ["distal", "proximal", "lab"])
 @pytest.mark.parametrize("case", TRIALS.values(), ids=TRIALS.keys())
 def test_screw_of_every_frame(tmp_path: Path, case: dict[str, Any], express_in: Any) -> None:
     options = dict(case)
@@ -95,16 +95,16 @@ def test_moving_the_laboratory_moves_nothing_seen_from_the_bodies(tmp_path: Path
     change *= np.sign(np.linalg.det(change))
     shift = np.array([2.0, -1.0, 0.5])
     moved = KnownTrial(
-        change @ trial.arm_R,
-        trial.arm_p @ change.T + shift,
-        change @ trial.forearm_R,
-        trial.forearm_p @ change.T + shift,
+        change @ trial.proximal_R,
+        trial.proximal_p @ change.T + shift,
+        change @ trial.distal_R,
+        trial.distal_p @ change.T + shift,
         trial.angle,
         trial.slide,
         trial.direction,
         trial.point,
     )
-    for express_in in ("forearm", "arm"):
+    for express_in in ("distal", "proximal"):
         settings = Settings(express_in=express_in)
         one, other = (analyzed(tmp_path, t, settings) for t in (trial, moved))
         assert other.screw.angle == pytest.approx(one.screw.angle, abs=1e-10)
@@ -114,7 +114,7 @@ def test_moving_the_laboratory_moves_nothing_seen_from_the_bodies(tmp_path: Path
         assert theirs == pytest.approx(ours, abs=1e-10)
     distances = [
         analyzed(tmp_path, trial, Settings(express_in=frame), decimals=4).mean_axis.distance
-        for frame in ("forearm", "arm", "lab")
+        for frame in ("distal", "proximal", "lab")
     ]
     assert np.nanmax(distances[0]) > 1e-4
     for distance in distances[1:]:
@@ -193,16 +193,16 @@ def test_one_body_is_the_forearm_of_a_still_arm(tmp_path: Path) -> None:
     still = KnownTrial(
         np.repeat(np.eye(3)[None], 450, axis=0),
         np.zeros((450, 3)),
-        np.swapaxes(trial.arm_R, 1, 2) @ trial.forearm_R,
-        (np.swapaxes(trial.arm_R, 1, 2) @ (trial.forearm_p - trial.arm_p)[:, :, None])[..., 0],
+        np.swapaxes(trial.proximal_R, 1, 2) @ trial.distal_R,
+        (np.swapaxes(trial.proximal_R, 1, 2) @ (trial.distal_p - trial.proximal_p)[:, :, None])[..., 0],
         trial.angle,
         trial.slide,
         trial.direction,
         trial.point,
     )
     path = write_columns(tmp_path / "one.csv", bodies_of(still, ("x", "Rigid Body 7"))[1:])
-    analysis = analyze(read_recording(path), Settings(express_in="arm"))
-    assert analysis.arm is None
+    analysis = analyze(read_recording(path), Settings(express_in="proximal"))
+    assert analysis.proximal is None
     assert analysis.screw.angle == pytest.approx(trial.angle, abs=1e-9)
     large = analysis.screw.axis_known
     assert angle_between_deg(analysis.screw.axis_direction[large], trial.direction).max() < 1e-6

@@ -21,13 +21,13 @@ from elbowscrew.simulate import SimulatedTrial
 Float = NDArray[np.float64]
 
 
-@pytest.mark.parametrize("arm_moves", [False, True])
+@pytest.mark.parametrize("proximal_moves", [False, True])
 @pytest.mark.parametrize("angle_deg", [5, 30, 100, 170])
-def test_intervals_cover_95_percent(angle_deg: int, arm_moves: bool) -> None:
+def test_intervals_cover_95_percent(angle_deg: int, proximal_moves: bool) -> None:
     trials = 3000
     # Four standard deviations of a share; the 10,000 trials of benchmarks/uncertainty.py are nearer.
     slack = 4.0 * np.sqrt(0.95 * 0.05 / trials)
-    shares = coverage(np.radians(angle_deg), trials, arm_moves=arm_moves, seed=angle_deg)
+    shares = coverage(np.radians(angle_deg), trials, proximal_moves=proximal_moves, seed=angle_deg)
     assert shares == pytest.approx((0.95,) * 4, abs=slack)
 
 
@@ -46,16 +46,16 @@ def test_the_covariance_of_a_fitted_pose(shift: float) -> None:
 
 def body(**changes: Any) -> RigidBody:
     trial = simulate_trial(marker_noise_mm=1000 * SIGMA, rest_before_s=2.0, seed=5)
-    forearm = trial.recording.bodies[1]
-    given = {name: getattr(forearm, name) for name in RigidBody.__dataclass_fields__}
+    distal = trial.recording.bodies[1]
+    given = {name: getattr(distal, name) for name in RigidBody.__dataclass_fields__}
     return RigidBody(**{**given, "marker_residual": residuals(trial), **changes})
 
 
 def residuals(trial: SimulatedTrial) -> Float:
     """RMS distance of the markers from the fitted body, frame by frame."""
-    forearm = trial.recording.bodies[1]
-    assert forearm.marker_offsets is not None
-    expected = dq.transform_points(forearm.dual_quat_lab_body[:, None, :], forearm.marker_offsets)
+    distal = trial.recording.bodies[1]
+    assert distal.marker_offsets is not None
+    expected = dq.transform_points(distal.dual_quat_lab_body[:, None, :], distal.marker_offsets)
     gap = trial.markers["Forearm"] - expected
     return np.asarray(np.sqrt(np.mean(np.sum(gap**2, axis=2), axis=1)))
 
@@ -81,7 +81,7 @@ def test_each_source_finds_the_noise_there_is() -> None:
 
 
 def test_a_body_that_never_rests_has_no_still_stretch() -> None:
-    trial = simulate_trial(marker_noise_mm=0.2, arm="moving", frames=200, inversion=90, rate_hz=100.0)
+    trial = simulate_trial(marker_noise_mm=0.2, proximal="moving", frames=200, inversion=90, rate_hz=100.0)
     assert pose_noise(trial.recording.bodies[1], 100.0, Settings(noise="still")) is None
 
 
@@ -96,10 +96,10 @@ def test_the_users_word_is_the_strongest_and_needs_no_markers() -> None:
 
 
 def analyzed(**settings: Any) -> Analysis:
-    return analyze(simulate_trial(arm="moving", seed=2).recording, Settings(marker_noise_mm=0.2, **settings))
+    return analyze(simulate_trial(proximal="moving", seed=2).recording, Settings(marker_noise_mm=0.2, **settings))
 
 
-@pytest.mark.parametrize("express_in", ["forearm", "arm", "lab"])
+@pytest.mark.parametrize("express_in", ["distal", "proximal", "lab"])
 def test_errors_do_not_depend_on_the_frame_but_for_the_points_place(express_in: Any) -> None:
     one, other = analyzed().screw, analyzed(express_in=express_in).screw
     for name in ("angle_sd", "slide_sd", "axis_sd", "axis_cone"):
@@ -137,7 +137,7 @@ def test_the_least_angle_can_be_a_precision() -> None:
 
 
 def test_without_noise_there_are_no_errors_and_no_precision_to_ask_for() -> None:
-    recording = simulate_trial(arm="moving", seed=2).recording
+    recording = simulate_trial(proximal="moving", seed=2).recording
     analysis = analyze(recording, Settings(noise="none"))
     assert np.isnan(analysis.screw.axis_sd).all()
     assert "noise-unknown" in [warning.code for warning in analysis.warnings]

@@ -259,7 +259,7 @@ def rms_error(poses: Float, truth: Float) -> float:
 @pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize(
     "settings",
-    [{"arm": "moving"}, {"rate_hz": 240.0, "frames": 1081, "inversion": 500}, {"frames": 200, "inversion": 90}],
+    [{"proximal": "moving"}, {"rate_hz": 240.0, "frames": 1081, "inversion": 500}, {"frames": 200, "inversion": 90}],
 )
 def test_the_automatic_cutoff_takes_most_of_the_noise_away(settings: dict[str, Any], seed: int) -> None:
     recording, measured, truth = simulated(**settings, seed=seed)

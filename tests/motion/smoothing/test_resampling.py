@@ -224,7 +224,7 @@ def test_a_recording_without_a_clock_is_refused() -> None:
 
 
 def test_an_analysis_at_half_the_rate_finds_the_same_motion() -> None:
-    taken = simulate_trial(frames=451, inversion=210, marker_noise_mm=0.0, arm="moving").recording
+    taken = simulate_trial(frames=451, inversion=210, marker_noise_mm=0.0, proximal="moving").recording
     full, half = analyze(taken), analyze(resample_recording(taken, 50.0))
     assert half.screw.angle == pytest.approx(full.screw.angle[::2], abs=1e-12)
     assert half.keyframes.frame.tolist() == [0, 105, 225]

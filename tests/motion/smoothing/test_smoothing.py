@@ -11,7 +11,7 @@ from elbowscrew import Settings, analyze, simulate_trial
 from elbowscrew.errors import SettingError, UsageError
 from elbowscrew.settings import settings_from
 
-TRIAL = simulate_trial(seed=9, arm="moving", gaps=3, gap_frames=4, sign_flips=True)
+TRIAL = simulate_trial(seed=9, proximal="moving", gaps=3, gap_frames=4, sign_flips=True)
 TRUTH = np.radians(TRIAL.truth["theta_deg"])
 
 
@@ -34,7 +34,7 @@ def test_a_filter_brings_the_angle_nearer_the_truth_and_says_how_near(lowpass: A
 def test_intervals_hold_after_a_filter() -> None:
     inside = []
     for seed in range(30):
-        trial = simulate_trial(seed=seed, arm="moving")
+        trial = simulate_trial(seed=seed, proximal="moving")
         screw = analyze(trial.recording, Settings(marker_noise_mm=0.2, lowpass_hz=8.0)).screw
         error = screw.angle - np.radians(trial.truth["theta_deg"])
         inside.append(np.abs(error[100:350:50]) <= 1.96 * screw.angle_sd[100:350:50])

@@ -86,7 +86,7 @@ def humerus_frame(GH: ArrayLike, EL: ArrayLike, EM: ArrayLike, side: Side) -> Fl
     return _frame(gh, gh - 0.5 * (el + em), el - em, side)
 
 
-def forearm_frame(US: ArrayLike, RS: ArrayLike, EL: ArrayLike, EM: ArrayLike, side: Side) -> Float:
+def distal_frame(US: ArrayLike, RS: ArrayLike, EL: ArrayLike, EM: ArrayLike, side: Side) -> Float:
     """Pose of the forearm's frame, shape (..., 8), in the frame that its landmarks are given in.
 
     Origin US; Y from US to the middle of EL and EM; X across the plane of US, RS and that middle, forward in
@@ -111,7 +111,7 @@ def forearm_frame(US: ArrayLike, RS: ArrayLike, EL: ArrayLike, EM: ArrayLike, si
     return _frame(us, 0.5 * (el + em) - us, rs - us, side)
 
 
-def elbow_angles(dual_quat_humerus_forearm: ArrayLike, side: Side) -> ElbowAngles:
+def elbow_angles(dual_quat_humerus_distal: ArrayLike, side: Side) -> ElbowAngles:
     """Angles of the forearm's frame seen from the humerus', each for itself.
 
     Flexion and pronation are NaN where the carrying angle is within 5 deg of a right angle (gimbal lock): there only
@@ -119,14 +119,14 @@ def elbow_angles(dual_quat_humerus_forearm: ArrayLike, side: Side) -> ElbowAngle
 
     Parameters
     ----------
-    dual_quat_humerus_forearm : array_like, shape (..., 8)
+    dual_quat_humerus_distal : array_like, shape (..., 8)
     side : {"right", "left"}
 
     References
     ----------
     Wu and others 2005, 3.4.1, the elbow.
     """
-    R = rotation_matrix_from_quat(np.asarray(dual_quat_humerus_forearm, dtype=np.float64)[..., :4])
+    R = rotation_matrix_from_quat(np.asarray(dual_quat_humerus_distal, dtype=np.float64)[..., :4])
     cosine = np.hypot(R[..., 0, 1], R[..., 1, 1])
     locked = cosine < np.sin(_GIMBAL_LOCK)
     flexion = np.where(locked, np.nan, np.arctan2(-R[..., 0, 1], R[..., 1, 1]))
@@ -162,7 +162,7 @@ def distance_from_point(axis_line: ArrayLike, point: ArrayLike) -> Float:
     return length(line[..., 3:] - np.cross(np.asarray(point, dtype=np.float64), line[..., :3]))
 
 
-def arm_lines(lines: Float, joint: JointMotion, express_in: ExpressIn) -> Float:
+def proximal_lines(lines: Float, joint: JointMotion, express_in: ExpressIn) -> Float:
     """Write lines (..., 6) of the frame that the screws are expressed in, in the arm's."""
     return transform_lines(multiply(joint.reference, conjugate(frame_change(joint, express_in))), lines)
 
@@ -170,8 +170,8 @@ def arm_lines(lines: Float, joint: JointMotion, express_in: ExpressIn) -> Float:
 def anatomical_motion(
     landmarks: Landmarks,
     recording: Recording,
-    arm: RigidBody | None,
-    forearm: RigidBody,
+    proximal: RigidBody | None,
+    distal: RigidBody,
     joint: JointMotion,
     *,
     axis_lines: Float,
@@ -187,12 +187,12 @@ def anatomical_motion(
     landmarks : Landmarks
     recording : Recording
         Read with the landmarks' markers.
-    arm : RigidBody or None
+    proximal : RigidBody or None
         None if it stands still; its frame is then the laboratory's.
-    forearm : RigidBody
+    distal : RigidBody
     joint : JointMotion
     axis_lines : ndarray, shape (N, 6)
-        Finite helical axis of each frame in the arm's frame (`arm_lines`); NaN where there is none.
+        Finite helical axis of each frame in the arm's frame (`proximal_lines`); NaN where there is none.
     joint_line : LineEstimate or None
         The axis of the joint as a whole; None if it has no single one.
 
@@ -207,20 +207,20 @@ def anatomical_motion(
     SettingError
         If a marker is not in the recording or never seen together with its body, or landmarks lie on one line.
     """
-    places, warnings = landmark_places(landmarks, recording, {"arm": arm, "forearm": forearm}, joint)
+    places, warnings = landmark_places(landmarks, recording, {"proximal": proximal, "distal": distal}, joint)
     EL, EM = (transform_points(conjugate(joint.reference), places[name]) for name in ("EL", "EM"))
     humerus = humerus_frame(places["GH"], places["EL"], places["EM"], landmarks.side)
-    distal = forearm_frame(places["US"], places["RS"], EL, EM, landmarks.side)
-    for frame, names in ((humerus, "GH, EL and EM"), (distal, "US, RS and the middle of EL and EM")):
+    distal_isb = distal_frame(places["US"], places["RS"], EL, EM, landmarks.side)
+    for frame, names in ((humerus, "GH, EL and EM"), (distal_isb, "US, RS and the middle of EL and EM")):
         if not np.isfinite(frame).all():
             msg = f"{landmarks.source}: {names} lie nearly on one line, so that they give no plane; check their places"
             raise SettingError(msg)
     angles = elbow_angles(
-        multiply(multiply(conjugate(humerus), joint.dual_quat_proximal_distal), distal), landmarks.side
+        multiply(multiply(conjugate(humerus), joint.dual_quat_proximal_distal), distal_isb), landmarks.side
     )
     line = line_through(places["EM"], places["EL"] - places["EM"])
     midpoint = 0.5 * (places["EL"] + places["EM"])
-    joint_axis = np.full(6, np.nan) if joint_line is None else _arm_line(joint_line)
+    joint_axis = np.full(6, np.nan) if joint_line is None else _proximal_line(joint_line)
     motion = AnatomicalMotion(
         side=landmarks.side,
         frame=recording.frame,
@@ -234,8 +234,8 @@ def anatomical_motion(
         joint_axis_distance=float(distance_from_point(joint_axis, midpoint)),
         epicondyle_line=line,
         epicondyle_midpoint=midpoint,
-        dual_quat_arm_humerus=humerus,
-        dual_quat_forearm_isb=distal,
+        dual_quat_proximal_humerus=humerus,
+        dual_quat_distal_isb=distal_isb,
         places=places,
         landmarks=landmarks,
     )
@@ -264,8 +264,8 @@ def _continuous(angle: Float) -> Float:
     return unwrapped
 
 
-def _arm_line(line: LineEstimate) -> Float:
-    return np.concatenate([line.direction_arm, np.cross(line.point_arm, line.direction_arm)])
+def _proximal_line(line: LineEstimate) -> Float:
+    return np.concatenate([line.direction_proximal, np.cross(line.point_proximal, line.direction_proximal)])
 
 
 def _doubts(motion: AnatomicalMotion, landmarks: Landmarks) -> tuple[QualityWarning, ...]:

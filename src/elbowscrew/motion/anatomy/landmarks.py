@@ -16,7 +16,9 @@ from elbowscrew.motion.screws.relative import IDENTITY
 Float = NDArray[np.float64]
 
 _LARGEST_RMS: Final = 0.020
-_BODY_OF: Final = {"EL": "arm", "EM": "arm", "GH": "arm", "US": "forearm", "RS": "forearm"}
+_BODY_OF: Final = {"EL": "proximal", "EM": "proximal", "GH": "proximal", "US": "distal", "RS": "distal"}
+
+_SPOKEN: Final = {"proximal": "arm", "distal": "forearm"}
 
 
 def landmark_places(
@@ -29,9 +31,9 @@ def landmark_places(
     SettingError
         Naming all that cannot be found.
     """
-    arm_from = {
-        "arm": IDENTITY,
-        "forearm": joint.reference,
+    proximal_from = {
+        "proximal": IDENTITY,
+        "distal": joint.reference,
         "lab": conjugate(joint.dual_quat_lab_proximal),
     }
     places: dict[str, Float] = {}
@@ -40,7 +42,7 @@ def landmark_places(
     for name, landmark in landmarks.by_name.items():
         role = _BODY_OF[name]
         if landmark.point is not None and landmark.frame is not None:
-            change = multiply(conjugate(arm_from[role]), arm_from[landmark.frame])
+            change = multiply(conjugate(proximal_from[role]), proximal_from[landmark.frame])
             places[name] = transform_points(change, landmark.point)
             continue
         try:
@@ -71,15 +73,15 @@ def _place_of_markers(
             inside = transform_points(conjugate(body.dual_quat_lab_body), seen)[body.tracked]
         inside = inside[np.isfinite(inside).all(axis=1)]
         if not len(inside):
-            msg = f"marker {wanted!r} is never seen together with the {role}"
+            msg = f"marker {wanted!r} is never seen together with the {_SPOKEN[role]}"
             raise SettingError(msg)
         place = np.median(inside, axis=0)
         places.append(place)
         rms = float(np.sqrt(np.mean(np.sum((inside - place) ** 2, axis=1))))
         if rms > _LARGEST_RMS:
             message = (
-                f"the marker {wanted!r} of landmark {name} moves in the {role} by {1000.0 * rms:.0f} mm RMS: it sits "
-                "loosely or on another segment, or is mistaken for another; its median place is taken"
+                f"the marker {wanted!r} of landmark {name} moves in the {_SPOKEN[role]} by {1000.0 * rms:.0f} mm RMS: "
+                "it sits loosely or on another segment, or is mistaken for another; its median place is taken"
             )
             warnings.append(QualityWarning(code="landmark-moves", message=message))
     return np.mean(places, axis=0), warnings

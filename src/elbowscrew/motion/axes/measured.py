@@ -56,7 +56,7 @@ def twist_smoothing(measured: Measurement, settings: Settings) -> Smoothing:
     """Filter that a twist needs: at the cut-off of residual analysis, and 6 Hz at most."""
     smoothing = measured.smoothing
     try:
-        found = smoothing.automatic(measured.arm, measured.forearm, settings).cutoff_hz or _TWIST_HZ
+        found = smoothing.automatic(measured.proximal, measured.distal, settings).cutoff_hz or _TWIST_HZ
     except SettingError:  # too few frames to tell motion from noise
         found = _TWIST_HZ
     low, high = (share * smoothing.rate_hz for share in _POSSIBLE_SHARES)
@@ -65,9 +65,9 @@ def twist_smoothing(measured: Measurement, settings: Settings) -> Smoothing:
 
 def smoothed_displacement(measured: Measurement, smoothing: Smoothing) -> Float:
     """Displacements (N, 8) since the reference, of the bodies as a filter leaves them."""
-    arm, forearm = smoothing.apply(measured.arm, measured.forearm)
-    arm_pose = IDENTITY if arm is None else arm.dual_quat_lab_body
-    return multiply(conjugate(measured.joint.reference), multiply(conjugate(arm_pose), forearm.dual_quat_lab_body))
+    proximal, distal = smoothing.apply(measured.proximal, measured.distal)
+    proximal_pose = IDENTITY if proximal is None else proximal.dual_quat_lab_body
+    return multiply(conjugate(measured.joint.reference), multiply(conjugate(proximal_pose), distal.dual_quat_lab_body))
 
 
 def measured_steps(measured: Measurement, mean: MeanAxis, settings: Settings) -> HelicalSteps | None:

@@ -312,8 +312,8 @@ class _Screen(NamedTuple):
     def of(cls, track: _Track, tolerance: float) -> _Screen:
         spread = np.linalg.eigvalsh(track.points.covariance)
         # E^2 >= 4 sin^2(delta/2) a^2, a the least RMS distance of the points from an axis through their centroid.
-        arm = float(np.sqrt(max(spread[0] + spread[1], 0.0)))
-        sine = (tolerance + _ROUND_OFF) / max(2.0 * arm, _ROUND_OFF)
+        proximal = float(np.sqrt(max(spread[0] + spread[1], 0.0)))
+        sine = (tolerance + _ROUND_OFF) / max(2.0 * proximal, _ROUND_OFF)
         half_turn = float(np.arcsin(sine)) if sine < 1.0 else np.pi
         return cls(np.ascontiguousarray(track.poses.pose[:, :4]), half_turn, track.method == "sclerp")
 

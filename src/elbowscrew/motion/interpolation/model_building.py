@@ -63,7 +63,7 @@ def build_model(measured: Measurement, movements: MovementPhases, velocity: Floa
         If there is a pose in one frame only.
     """
     frame, elapsed, pose = measured.screw.frame, measured.elapsed, measured.displacement
-    points = body_points(measured.forearm, settings)
+    points = body_points(measured.distal, settings)
     rows = None
     if settings.keyframes is not None:
         angle = measured.screw.angle
@@ -137,12 +137,12 @@ def model_laws(
     )
 
 
-def body_points(forearm: RigidBody, settings: Settings) -> BodyPoints:
+def body_points(distal: RigidBody, settings: Settings) -> BodyPoints:
     """Points that the RMS displacement is averaged over: of the radius asked for, the markers, or 50 mm."""
     if settings.radius_mm is not None:
         return points_from_radius(settings.radius_mm / 1000.0)
-    if forearm.marker_offsets is not None:
-        return points_from_markers(forearm.marker_offsets)
+    if distal.marker_offsets is not None:
+        return points_from_markers(distal.marker_offsets)
     return points_from_radius(DEFAULT_RADIUS)
 
 

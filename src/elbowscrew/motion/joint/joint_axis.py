@@ -47,7 +47,7 @@ def estimate_joint_axis(
     noise : JointNoise
     noise_gain : ndarray, shape (N,)
         Share of the noise's variance that a filter has left in each frame.
-    express_in : {"forearm", "arm", "lab"}
+    express_in : {"distal", "proximal", "lab"}
     robust : bool
         Weigh outliers down in the fits.
     """
@@ -55,7 +55,7 @@ def estimate_joint_axis(
     rows = rows[np.linspace(0, rows.size - 1, min(rows.size, _MOST_FRAMES)).astype(np.int64)]
     poses = joint.dual_quat_proximal_distal[rows]
     assumed = PoseNoise(covariance=_COMMON_NOISE, source="assumed", marker_noise=None)
-    proximal, distal = noise.known or (assumed if noise.arm_moves else None, assumed)
+    proximal, distal = noise.known or (assumed if noise.proximal_moves else None, assumed)
     covariance = noise_gain[rows, None, None] * joint_covariance(poses, proximal, distal)
     start = transform_lines(joint.reference, mean_line)
     near = pose_from_dual_quat(joint.reference)[1]
@@ -66,7 +66,7 @@ def estimate_joint_axis(
     unexplained = _rms(hinge.residual[:, :2], hinge.weight) / spread if spread > 0.0 else np.inf
     single = bool(unexplained <= _LARGEST_UNEXPLAINED)
     told = noise.known is not None
-    arm_line, forearm_line = sara_lines(poses, angle[rows])
+    proximal_line, distal_line = sara_lines(poses, angle[rows])
     fitted = {
         screw: _fitted_joint(fit, joint, rows, express_in, start, noise_known=told) if single else None
         for screw, fit in fits.items()
@@ -76,24 +76,24 @@ def estimate_joint_axis(
         hinge=fitted[False],
         screw_hinge=fitted[True],
         weighted_mean=_estimate(start, mean_line, joint, express_in),
-        sara=_estimate(arm_line, forearm_line, joint, express_in),
+        sara=_estimate(proximal_line, distal_line, joint, express_in),
         unexplained=unexplained,
-        noise={"arm": noise.arm, "forearm": noise.forearm},
+        noise={"proximal": noise.proximal, "distal": noise.distal},
     )
 
 
 def _fitted_joint(
     fit: LineFit, joint: JointMotion, rows: NDArray[np.int64], express_in: ExpressIn, start: Float, *, noise_known: bool
 ) -> FittedJoint:
-    arm, forearm = transform_lines(fit.arm, _Z_AXIS), transform_lines(fit.forearm, _Z_AXIS)
-    if arm[:3] @ start[:3] < 0.0:
-        arm, forearm = -arm, -forearm
+    proximal, distal = transform_lines(fit.proximal, _Z_AXIS), transform_lines(fit.distal, _Z_AXIS)
+    if proximal[:3] @ start[:3] < 0.0:
+        proximal, distal = -proximal, -distal
     covariance = fit.covariance(noise_known=noise_known)
-    first = 4 if express_in == "forearm" else 0
+    first = 4 if express_in == "distal" else 0
     tilt, shift = (covariance[k : k + 2, k : k + 2] for k in (first, first + 2))
     pitched = len(covariance) > 9
     return FittedJoint(
-        line=_estimate(arm, forearm, joint, express_in),
+        line=_estimate(proximal, distal, joint, express_in),
         covariance=covariance,
         axis_sd=float(np.sqrt(np.trace(tilt))),
         point_sd=float(np.sqrt(np.trace(shift))),
@@ -110,23 +110,23 @@ def _fitted_joint(
     )
 
 
-def _estimate(arm: Float, forearm: Float, joint: JointMotion, express_in: ExpressIn) -> LineEstimate:
+def _estimate(proximal: Float, distal: Float, joint: JointMotion, express_in: ExpressIn) -> LineEstimate:
     shown = {
-        "forearm": forearm,
-        "arm": arm,
-        "lab": transform_lines(joint.dual_quat_lab_proximal, arm),
+        "distal": distal,
+        "proximal": proximal,
+        "lab": transform_lines(joint.dual_quat_lab_proximal, proximal),
     }[express_in]
     return LineEstimate(
         direction=shown[:3],
         point=point_nearest_origin(shown),
-        direction_arm=arm[:3],
-        point_arm=point_nearest_origin(arm),
-        direction_forearm=forearm[:3],
-        point_forearm=point_nearest_origin(forearm),
+        direction_proximal=proximal[:3],
+        point_proximal=point_nearest_origin(proximal),
+        direction_distal=distal[:3],
+        point_distal=point_nearest_origin(distal),
     )
 
 
-def forearm_line(line: Float, change: Float) -> Float:
+def distal_line(line: Float, change: Float) -> Float:
     """Write a line (6,) of the frame the screws are expressed in, in the forearm's at the reference."""
     return transform_lines(conjugate(change), line)
 

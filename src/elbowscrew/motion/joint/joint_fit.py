@@ -40,7 +40,7 @@ class LineFit(NamedTuple):
 
     Attributes
     ----------
-    arm, forearm : ndarray, shape (8,)
+    proximal, distal : ndarray, shape (8,)
         Poses A and F: the line is their z axis.
     angle : ndarray, shape (F,)
         Of each frame about the line, radians.
@@ -56,8 +56,8 @@ class LineFit(NamedTuple):
         Degrees of freedom that the residuals have.
     """
 
-    arm: Float
-    forearm: Float
+    proximal: Float
+    distal: Float
     angle: Float
     pitch: float
     residual: Float
@@ -137,8 +137,8 @@ def fit_joint(
 
 
 class _Step(NamedTuple):
-    arm: Float
-    forearm: Float
+    proximal: Float
+    distal: Float
     angle: Float
     pitch: float
 
@@ -166,13 +166,13 @@ def _residual(at: _Step, joint: Float) -> Float:
     half = 0.5 * np.stack([at.angle, at.pitch * at.angle], axis=1)
     zero = np.zeros((len(joint), 2))
     screw = dq.exp(np.concatenate([zero, half[:, :1], zero, half[:, 1:]], axis=1))
-    rest = dq.multiply(dq.multiply(dq.conjugate(screw), dq.conjugate(at.arm)), dq.multiply(joint, at.forearm))
+    rest = dq.multiply(dq.multiply(dq.conjugate(screw), dq.conjugate(at.proximal)), dq.multiply(joint, at.distal))
     return 2.0 * dq.log(dq.canonical(rest))
 
 
 def _weights_in_line(at: _Step, W: Float) -> Float:
     """Information matrices in the frame of the line: ``Ad(F)^T W Ad(F)``."""
-    turned = adjoint(at.forearm)
+    turned = adjoint(at.distal)
     return np.swapaxes(turned, -1, -2) @ W @ turned
 
 
@@ -191,10 +191,10 @@ def _derivatives(at: _Step, screw: bool) -> Float:
     half = 0.5 * np.stack([at.angle, at.pitch * at.angle], axis=1)
     zero = np.zeros((at.angle.size, 2))
     back = adjoint(dq.conjugate(dq.exp(np.concatenate([zero, half[:, :1], zero, half[:, 1:]], axis=1))))
-    arm = back[:, :, list(_SHARED_HINGE)]
-    forearm = np.broadcast_to(-np.eye(6)[:, list(_SHARED_HINGE)], arm.shape)
+    proximal = back[:, :, list(_SHARED_HINGE)]
+    distal = np.broadcast_to(-np.eye(6)[:, list(_SHARED_HINGE)], proximal.shape)
     slide = np.broadcast_to(np.eye(6)[:, 5:], (at.angle.size, 6, 1))
-    columns = [arm, forearm, slide]
+    columns = [proximal, distal, slide]
     if screw:
         columns.append(slide * at.angle[:, None, None])
     return np.concatenate(columns, axis=2)
@@ -235,9 +235,9 @@ def _moved(at: _Step, step: Float, turn: Float, *, screw: bool) -> _Step:
     tilt[1, list(_SHARED_HINGE)] = step[4:8]
     # The slide at angle 0 is a shift of the forearm's frame against its line: Z(0, s) F^-1 = (F Z(0, -s))^-1.
     tilt[1, 5] = -step[8]
-    arm = dq.normalize(dq.multiply(at.arm, dq.exp(0.5 * tilt[0])))
-    forearm = dq.normalize(dq.multiply(at.forearm, dq.exp(0.5 * tilt[1])))
-    return _Step(arm, forearm, at.angle + turn, at.pitch + (float(step[9]) if screw else 0.0))
+    proximal = dq.normalize(dq.multiply(at.proximal, dq.exp(0.5 * tilt[0])))
+    distal = dq.normalize(dq.multiply(at.distal, dq.exp(0.5 * tilt[1])))
+    return _Step(proximal, distal, at.angle + turn, at.pitch + (float(step[9]) if screw else 0.0))
 
 
 def _result(at: _Step, joint: Float, W: Float, weight: Float, screw: bool) -> LineFit:
@@ -247,11 +247,11 @@ def _result(at: _Step, joint: Float, W: Float, weight: Float, screw: bool) -> Li
     square = np.einsum("fi,fij,fj->f", residual, W_line, residual)
     count = weight.sum()
     freedom = float(_FREEDOM * count - len(information))
-    in_forearm = residual @ adjoint(at.forearm).T
-    whitened = np.einsum("fji,fj->fi", np.linalg.cholesky(W), in_forearm) * np.sqrt(weight)[:, None]
+    in_distal = residual @ adjoint(at.distal).T
+    whitened = np.einsum("fji,fj->fi", np.linalg.cholesky(W), in_distal) * np.sqrt(weight)[:, None]
     return LineFit(
-        arm=at.arm,
-        forearm=at.forearm,
+        proximal=at.proximal,
+        distal=at.distal,
         angle=at.angle + own,
         pitch=at.pitch,
         residual=residual,
@@ -304,13 +304,14 @@ def sara_lines(joint: Float, angle: Float) -> tuple[Float, Float]:
     values, vectors = np.linalg.eigh(square)
     axis = vectors[:, 0]
     solution = vectors[:, 1:] @ ((vectors[:, 1:].T @ right) / values[1:])
-    forearm, arm = axis[:3] / length(axis[:3]), axis[3:] / length(axis[3:])
+    distal, proximal = axis[:3] / length(axis[:3]), axis[3:] / length(axis[3:])
     # A right-handed turn by the change of angle between the two most different frames tells the sense.
     low, high = int(np.argmin(angle)), int(np.argmax(angle))
     turn = dq.canonical(dq.multiply(dq.conjugate(joint[low]), joint[high]))
     half = 0.5 * (angle[high] - angle[low])
-    sense = np.sign(turn[1:4] @ forearm * (np.sin(half) * np.sign(np.cos(half)) or 1.0)) or 1.0
+    sense = np.sign(turn[1:4] @ distal * (np.sin(half) * np.sign(np.cos(half)) or 1.0)) or 1.0
     lines = [
-        np.concatenate([sense * h, np.cross(p, sense * h)]) for h, p in ((arm, solution[3:]), (forearm, solution[:3]))
+        np.concatenate([sense * h, np.cross(p, sense * h)])
+        for h, p in ((proximal, solution[3:]), (distal, solution[:3]))
     ]
     return lines[0], lines[1]

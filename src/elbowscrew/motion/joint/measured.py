@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 
 from elbowscrew.model import JointAxis, MeanAxis, QualityWarning
-from elbowscrew.motion.joint.joint_axis import estimate_joint_axis, forearm_line
+from elbowscrew.motion.joint.joint_axis import distal_line, estimate_joint_axis
 from elbowscrew.motion.screws.measurement import Measurement
 from elbowscrew.motion.screws.pose_noise import STILL_STRETCH
 from elbowscrew.settings import Settings
@@ -20,7 +20,7 @@ def measured_joint_axis(measured: Measurement, mean: MeanAxis, settings: Setting
     return estimate_joint_axis(
         measured.joint,
         measured.screw.angle,
-        forearm_line(np.concatenate([mean.direction, np.cross(mean.point, mean.direction)]), measured.change),
+        distal_line(np.concatenate([mean.direction, np.cross(mean.point, mean.direction)]), measured.change),
         measured.noise,
         measured.noise_gain,
         express_in=settings.express_in,
@@ -47,7 +47,8 @@ def joint_axis_warnings(joint_axis: JointAxis, measured: Measurement) -> tuple[Q
         )
         warnings.append(QualityWarning(code="beyond-noise", message=message, severity="note"))
     if any(
-        noise is not None and noise.source == STILL_STRETCH for noise in (measured.noise.arm, measured.noise.forearm)
+        noise is not None and noise.source == STILL_STRETCH
+        for noise in (measured.noise.proximal, measured.noise.distal)
     ):
         message = (
             "error bars stand on the jitter of a still stretch, which moving bodies mostly exceed many times; "

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from elbowscrew.errors import AnalysisError, SettingError
 from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat
+from elbowscrew.joints import Joint
 from elbowscrew.model import BodyQuality, JointMotion, QualityWarning, Recording, RigidBody, ScrewMotion
 from elbowscrew.motion.screws.helical import HelicalSeries, helical_series
 from elbowscrew.motion.screws.pose_noise import JointNoise
@@ -31,8 +32,8 @@ class Measurement(NamedTuple):
     ----------
     recording : Recording
         As it is analyzed: resampled if that was asked for.
-    arm : RigidBody or None
-    forearm : RigidBody
+    proximal : RigidBody or None
+    distal : RigidBody
     elapsed : ndarray, shape (N,)
         Even clock, seconds.
     joint : JointMotion
@@ -53,8 +54,8 @@ class Measurement(NamedTuple):
     """
 
     recording: Recording
-    arm: RigidBody | None
-    forearm: RigidBody
+    proximal: RigidBody | None
+    distal: RigidBody
     elapsed: Float
     joint: JointMotion
     displacement: Float
@@ -65,6 +66,7 @@ class Measurement(NamedTuple):
     line: Float
     screw: ScrewMotion
     quality: tuple[BodyQuality, ...]
+    named_joint: Joint
     warnings: tuple[QualityWarning, ...]
 
 
@@ -76,20 +78,21 @@ def measure(recording: Recording, settings: Settings) -> Measurement:
     SettingError, AnalysisError, RecordingError
         As `elbowscrew.analyze`.
     """
-    arm, forearm, broken_rows, quality, warnings = tracked_bodies(recording, settings)
+    tracked = tracked_bodies(recording, settings)
+    proximal, distal, broken_rows, warnings = tracked.proximal, tracked.distal, tracked.broken_rows, tracked.warnings
     elapsed = elapsed_time(recording)
-    smoothing = Smoothing.of(arm, forearm, elapsed, recording.rate_hz, broken_rows, settings)
-    noise = JointNoise.of(arm, forearm, recording.rate_hz, settings)
-    arm, forearm = smoothing.apply(arm, forearm)
+    smoothing = Smoothing.of(proximal, distal, elapsed, recording.rate_hz, broken_rows, settings)
+    noise = JointNoise.of(proximal, distal, recording.rate_hz, settings)
+    proximal, distal = smoothing.apply(proximal, distal)
     if settings.resample_hz is not None:
-        recording, arm, forearm, more = _resampled(recording, arm, forearm, broken_rows, settings.resample_hz)
+        recording, proximal, distal, more = _resampled(recording, proximal, distal, broken_rows, settings.resample_hz)
         folding = smoothing.cutoff_hz is None or smoothing.cutoff_hz > 0.5 * settings.resample_hz
         warnings += tuple(warning for warning in more if folding or warning.code != "aliasing")
         elapsed, broken_rows = elapsed_time(recording), np.empty(0, dtype=np.intp)
         smoothing = smoothing._replace(elapsed=elapsed, rate_hz=recording.rate_hz, broken_rows=broken_rows)
     joint = joint_from_bodies(
-        arm,
-        forearm,
+        proximal,
+        distal,
         recording.frame,
         elapsed,
         recording.rate_hz,
@@ -110,8 +113,8 @@ def measure(recording: Recording, settings: Settings) -> Measurement:
         time_s=recording.time_s,
         valid=joint.measured,
         filled=joint.filled,
-        arm_loss=np.zeros(recording.frame.size, dtype="U1") if arm is None else arm.loss_labels(),
-        forearm_loss=forearm.loss_labels(),
+        proximal_loss=np.zeros(recording.frame.size, dtype="U1") if proximal is None else proximal.loss_labels(),
+        distal_loss=distal.loss_labels(),
         angle=series.angle,
         slide=series.slide,
         axis_direction=series.direction,
@@ -127,8 +130,8 @@ def measure(recording: Recording, settings: Settings) -> Measurement:
     )
     return Measurement(
         recording=recording,
-        arm=arm,
-        forearm=forearm,
+        proximal=proximal,
+        distal=distal,
         elapsed=elapsed,
         joint=joint,
         displacement=D,
@@ -138,22 +141,23 @@ def measure(recording: Recording, settings: Settings) -> Measurement:
         noise_gain=gain,
         line=series.line,
         screw=screw,
-        quality=quality,
+        quality=tracked.quality,
+        named_joint=tracked.joint,
         warnings=warnings,
     )
 
 
 def _resampled(
     recording: Recording,
-    arm: RigidBody | None,
-    forearm: RigidBody,
+    proximal: RigidBody | None,
+    distal: RigidBody,
     broken_rows: NDArray[np.intp],
     rate_hz: float,
 ) -> tuple[Recording, RigidBody | None, RigidBody, tuple[QualityWarning, ...]]:
     """Put the two bodies, as they are now, and the markers on another clock."""
-    chosen = (forearm,) if arm is None else (arm, forearm)
+    chosen = (distal,) if proximal is None else (proximal, distal)
     resampled = resample_recording(replace(recording, bodies=chosen, warnings=()), rate_hz, broken_rows)
-    proximal = None if arm is None else resampled.bodies[0]
+    proximal = None if proximal is None else resampled.bodies[0]
     warnings = resampled.warnings
     return replace(resampled, warnings=recording.warnings), proximal, resampled.bodies[-1], warnings
 

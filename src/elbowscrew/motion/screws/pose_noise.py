@@ -61,22 +61,22 @@ def pose_noise(body: RigidBody, rate_hz: float, settings: Settings) -> PoseNoise
 class JointNoise(NamedTuple):
     """Noise of the two bodies' poses, None where it is not known."""
 
-    arm: PoseNoise | None
-    forearm: PoseNoise | None
-    arm_moves: bool
+    proximal: PoseNoise | None
+    distal: PoseNoise | None
+    proximal_moves: bool
 
     @classmethod
-    def of(cls, arm: RigidBody | None, forearm: RigidBody, rate_hz: float, settings: Settings) -> JointNoise:
+    def of(cls, proximal: RigidBody | None, distal: RigidBody, rate_hz: float, settings: Settings) -> JointNoise:
         """Find the noise of both; an arm that stands still has none."""
-        found = None if arm is None else pose_noise(arm, rate_hz, settings)
-        return cls(found, pose_noise(forearm, rate_hz, settings), arm is not None)
+        found = None if proximal is None else pose_noise(proximal, rate_hz, settings)
+        return cls(found, pose_noise(distal, rate_hz, settings), proximal is not None)
 
     @property
     def known(self) -> tuple[PoseNoise | None, PoseNoise] | None:
         """Both, the arm's None if it stands still; None if one is not known."""
-        if self.forearm is None or (self.arm is None and self.arm_moves):
+        if self.distal is None or (self.proximal is None and self.proximal_moves):
             return None
-        return self.arm, self.forearm
+        return self.proximal, self.distal
 
 
 def covariance_from_markers(offsets: Float, marker_noise: float) -> Float:

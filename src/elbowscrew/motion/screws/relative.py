@@ -13,7 +13,7 @@ from elbowscrew.geometry.dual_quaternion import conjugate, continuous_signs, mul
 from elbowscrew.model import JointMotion, RigidBody
 from elbowscrew.motion.smoothing.gaps import fill_gaps
 
-ExpressIn = Literal["forearm", "arm", "lab"]
+ExpressIn = Literal["distal", "proximal", "lab"]
 
 IDENTITY = np.array([1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])
 
@@ -61,8 +61,10 @@ def joint_from_bodies(
     SettingError
         If the reference frame has no measured pose, or fewer follow than the window wants.
     """
-    arm_pose = IDENTITY if proximal is None else proximal.dual_quat_lab_body
-    raw = np.broadcast_to(multiply(conjugate(arm_pose), distal.dual_quat_lab_body), distal.dual_quat_lab_body.shape)
+    proximal_pose = IDENTITY if proximal is None else proximal.dual_quat_lab_body
+    raw = np.broadcast_to(
+        multiply(conjugate(proximal_pose), distal.dual_quat_lab_body), distal.dual_quat_lab_body.shape
+    )
     measured = distal.tracked if proximal is None else distal.tracked & proximal.tracked
     rows = np.flatnonzero(measured)
     if rows.size == 0:
@@ -89,7 +91,7 @@ def joint_from_bodies(
         reference=_mean_pose(series[window]),
         reference_row=row,
         lowpass_hz=lowpass_hz,
-        dual_quat_lab_proximal=IDENTITY if proximal is None else _mean_pose(arm_pose[window]),
+        dual_quat_lab_proximal=IDENTITY if proximal is None else _mean_pose(proximal_pose[window]),
     )
 
 
@@ -108,7 +110,7 @@ def expressed(dual_quat: NDArray[np.float64], joint: JointMotion, express_in: Ex
     The arm's is ``J_0 D J_0^-1``, the laboratory's ``A_0 J_0 D J_0^-1 A_0^-1``: same angle, same slide, another
     description of the line.
     """
-    if express_in == "forearm":
+    if express_in == "distal":
         return dual_quat
     change = frame_change(joint, express_in)
     return multiply(multiply(change, dual_quat), conjugate(change))
@@ -117,9 +119,9 @@ def expressed(dual_quat: NDArray[np.float64], joint: JointMotion, express_in: Ex
 def frame_change(joint: JointMotion, express_in: ExpressIn) -> NDArray[np.float64]:
     """Pose of the forearm at the reference, shape (8,), in the frame screws are expressed in."""
     match express_in:
-        case "forearm":
+        case "distal":
             return IDENTITY
-        case "arm":
+        case "proximal":
             return joint.reference
         case "lab":
             return multiply(joint.dual_quat_lab_proximal, joint.reference)

@@ -46,8 +46,8 @@ class Smoothing(NamedTuple):
     @classmethod
     def of(
         cls,
-        arm: RigidBody | None,
-        forearm: RigidBody,
+        proximal: RigidBody | None,
+        distal: RigidBody,
         elapsed: Float,
         rate_hz: float,
         broken_rows: NDArray[np.intp],
@@ -56,24 +56,26 @@ class Smoothing(NamedTuple):
         """Choose the cut-off that the settings ask for."""
         none = cls(None, elapsed, rate_hz, broken_rows, settings.max_gap_s)
         if settings.lowpass_hz == "auto":
-            return none.automatic(arm, forearm, settings)
+            return none.automatic(proximal, distal, settings)
         return none._replace(cutoff_hz=settings.lowpass_hz)
 
-    def automatic(self, arm: RigidBody | None, forearm: RigidBody, settings: Settings) -> Smoothing:
+    def automatic(self, proximal: RigidBody | None, distal: RigidBody, settings: Settings) -> Smoothing:
         """Take the higher of the cut-offs that residual analysis finds for the two bodies."""
         radius = DEFAULT_RADIUS if settings.radius_mm is None else settings.radius_mm / 1000.0
         found = [
             automatic_cutoff(self._filled(body), self.elapsed, self.rate_hz, radius, self.broken_rows)
-            for body in (arm, forearm)
+            for body in (proximal, distal)
             if body is not None
         ]
         return self._replace(cutoff_hz=max(found))
 
-    def apply(self, arm: RigidBody | None, forearm: RigidBody) -> tuple[RigidBody | None, RigidBody]:
+    def apply(self, proximal: RigidBody | None, distal: RigidBody) -> tuple[RigidBody | None, RigidBody]:
         """Filter the bodies; lost frames stay lost."""
         if self.cutoff_hz is None:
-            return arm, forearm
-        return None if arm is None else self._filtered(arm, self.cutoff_hz), self._filtered(forearm, self.cutoff_hz)
+            return proximal, distal
+        return None if proximal is None else self._filtered(proximal, self.cutoff_hz), self._filtered(
+            distal, self.cutoff_hz
+        )
 
     @property
     def margin(self) -> int:

@@ -9,10 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowscrew.errors import AnalysisError, SettingError
+from elbowscrew.joints import Joint
 from elbowscrew.model import BodyQuality, QualityWarning, Recording, RigidBody, marker_matches
 from elbowscrew.motion.tracking.marker_poses import body_from_markers
 from elbowscrew.motion.tracking.quality import body_quality, check_bodies
-from elbowscrew.motion.tracking.selection import choose_bodies
+from elbowscrew.motion.tracking.selection import ChosenBodies, choose_bodies
 from elbowscrew.settings import Settings
 
 
@@ -21,9 +22,11 @@ class TrackedBodies(NamedTuple):
 
     Attributes
     ----------
-    arm : RigidBody or None
+    proximal : RigidBody or None
         None if it stands still.
-    forearm : RigidBody
+    distal : RigidBody
+    joint : Joint
+        What the joint is called.
     broken_rows : ndarray of int
         Rows that a body reaches by a leap.
     quality : tuple of BodyQuality
@@ -31,15 +34,16 @@ class TrackedBodies(NamedTuple):
         Those of the recording, too.
     """
 
-    arm: RigidBody | None
-    forearm: RigidBody
+    proximal: RigidBody | None
+    distal: RigidBody
+    joint: Joint
     broken_rows: NDArray[np.intp]
     quality: tuple[BodyQuality, ...]
     warnings: tuple[QualityWarning, ...]
 
 
 def tracked_bodies(recording: Recording, settings: Settings) -> TrackedBodies:
-    """Choose arm and forearm and take out what is no measurement.
+    """Choose the joint's bodies and take out what is no measurement.
 
     Raises
     ------
@@ -48,8 +52,9 @@ def tracked_bodies(recording: Recording, settings: Settings) -> TrackedBodies:
     AnalysisError
         If a body is tracked in too few frames.
     """
-    arm, forearm = _chosen_bodies(recording, settings)
-    chosen = (forearm,) if arm is None else (arm, forearm)
+    chosen_bodies = _chosen_bodies(recording, settings)
+    proximal, distal = chosen_bodies.proximal, chosen_bodies.distal
+    chosen = (distal,) if proximal is None else (proximal, distal)
     checked, warnings = check_bodies(recording, chosen, settings)
     for found in checked:
         body = found.body
@@ -63,14 +68,21 @@ def tracked_bodies(recording: Recording, settings: Settings) -> TrackedBodies:
             )
             raise AnalysisError(msg)
     quality = tuple(body_quality(raw, found, recording) for raw, found in zip(chosen, checked, strict=True))
-    proximal = None if arm is None else checked[0].body
+    proximal = None if proximal is None else checked[0].body
     broken_rows = np.unique(np.concatenate([found.broken_rows for found in checked]))
-    return TrackedBodies(proximal, checked[-1].body, broken_rows, quality, (*recording.warnings, *warnings))
+    return TrackedBodies(
+        proximal=proximal,
+        distal=checked[-1].body,
+        joint=chosen_bodies.joint,
+        broken_rows=broken_rows,
+        quality=quality,
+        warnings=(*recording.warnings, *chosen_bodies.warnings, *warnings),
+    )
 
 
-def _chosen_bodies(recording: Recording, settings: Settings) -> tuple[RigidBody | None, RigidBody]:
-    """Choose arm and forearm among the bodies of the file and those built from markers."""
-    patterns = {"arm": settings.arm_markers, "forearm": settings.forearm_markers}
+def _chosen_bodies(recording: Recording, settings: Settings) -> ChosenBodies:
+    """Choose the joint's bodies among the bodies of the file and those built from markers."""
+    patterns = {"proximal": settings.proximal_markers, "distal": settings.distal_markers}
     built = {
         role: body_from_markers(recording, f"{role} markers", wanted, settings.pose_method)
         for role, wanted in patterns.items()
@@ -84,9 +96,11 @@ def _chosen_bodies(recording: Recording, settings: Settings) -> tuple[RigidBody 
         if getattr(settings, role) is not None:
             msg = f"--{role} and --{role}-markers both say what the {role} is; give one of them (for {body.name!r})"
             raise SettingError(msg)
-    names = {role: built[role].name if role in built else getattr(settings, role) for role in ("arm", "forearm")}
+    names = {role: built[role].name if role in built else getattr(settings, role) for role in ("proximal", "distal")}
     bodies = (*recording.bodies, *built.values())
     if not bodies:
-        msg = "the recording has no rigid bodies and no markers were chosen: give --arm-markers and --forearm-markers"
+        msg = (
+            "the recording has no rigid bodies and no markers were chosen: give --proximal-markers and --distal-markers"
+        )
         raise SettingError(msg)
-    return choose_bodies(replace(recording, bodies=bodies), names["arm"], names["forearm"])
+    return choose_bodies(replace(recording, bodies=bodies), names["proximal"], names["distal"], settings.joint)

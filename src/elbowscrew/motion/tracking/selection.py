@@ -1,92 +1,140 @@
-"""Which body is the arm and which the forearm: by name, by id, or by names that speak; never by a guess."""
+"""Which bodies are the joint's: by name, by id, or by names that speak; never by a guess."""
 
 from __future__ import annotations
 
-import itertools
-import re
-from typing import Final
+from typing import Final, NamedTuple
 
 from elbowscrew.errors import SettingError
-from elbowscrew.model import Recording, RigidBody
-from elbowscrew.settings import STILL_ARM
+from elbowscrew.joints import JOINT_NAMES, Joint, joint_between, joints_of, segment_of, side_of
+from elbowscrew.model import QualityWarning, Recording, RigidBody
+from elbowscrew.settings import STILL
 
-_SIDES: Final = ("left", "right")
-_FOREARM: Final = {"forearm", "lowerarm", "ulna", "radius"}
-_UPPER_ARM: Final = {"arm", "upperarm", "humerus"}
+# Alone in a file, an upper arm or a thigh is more often the first body of two than the second.
+_SELDOM_ALONE: Final = ("shoulder", "hip")
 
 
-def choose_bodies(recording: Recording, arm: str | None, forearm: str | None) -> tuple[RigidBody | None, RigidBody]:
+class ChosenBodies(NamedTuple):
+    """The joint's two bodies, what it is called, and what is doubtful about the choice.
+
+    The proximal body is None where it stands still: asked for, or only one body in the file (the paper's case).
+    """
+
+    proximal: RigidBody | None
+    distal: RigidBody
+    joint: Joint
+    warnings: tuple[QualityWarning, ...] = ()
+
+
+def choose_bodies(
+    recording: Recording, proximal: str | None, distal: str | None, joint: str | None = None
+) -> ChosenBodies:
     """Choose the two bodies of the joint.
 
     Parameters
     ----------
     recording : Recording
-    arm, forearm : str or None
-        Name or id; None to go by the names in the file, and "none" as the arm for an arm that stands still.
-
-    Returns
-    -------
-    arm : RigidBody or None
-        None where the arm stands still: asked for, or only one body in the file (the paper's case).
-    forearm : RigidBody
+    proximal, distal : str or None
+        Name or id; None to go by the names in the file, and "none" for a proximal body that stands still.
+    joint : str or None
+        Name of the joint; None to go by the names of the bodies.
 
     Raises
     ------
     SettingError
-        If a name is not in the file or stands there twice, or if the choice is not clear; the bodies are listed.
+        If a name is not in the file or stands there twice, if the choice is not clear, or if names that speak are of
+        different sides; the bodies are listed.
     """
     bodies = recording.bodies
-    still = arm is not None and arm.casefold() == STILL_ARM and not _named(bodies, arm)
-    if len(bodies) == 1 and arm is None:
-        name = bodies[0].name
-        if forearm is None and segment_of(name) == "arm":
-            msg = f"the only body in the file is {name!r}: give --forearm {name!r} if it is the forearm nevertheless"
+    still = proximal is not None and proximal.casefold() == STILL and not _named(bodies, proximal)
+    first = _find(bodies, proximal, "proximal") if proximal is not None and not still else None
+    second = _find(bodies, distal, "distal") if distal is not None else None
+    if still or (proximal is None and len(bodies) == 1):
+        second = second or _alone(bodies, joint)
+        return ChosenBodies(None, second, _joint_above(second, joint))
+    if first is None or second is None:
+        first, second = _speaking_pair(bodies, first, second, joint)
+    if first is second:
+        msg = f"body {first.name!r} is named both as proximal and as distal; the file has {_listed(bodies)}"
+        raise SettingError(msg)
+    warnings = []
+    if _sides_differ(first, second):
+        sides = f"{first.name!r} is {side_of(first.name)} and {second.name!r} is {side_of(second.name)}"
+        if proximal is None or distal is None:
+            msg = f"the bodies are of different sides: {sides}; name them by --proximal and --distal if meant"
             raise SettingError(msg)
-        return None, bodies[0] if forearm is None else _find(bodies, forearm, "forearm")
-    distal = _find(bodies, forearm, "forearm") if forearm is not None else None
-    proximal = _find(bodies, arm, "arm") if arm is not None and not still else None
-    if distal is None:
-        distal = _speaking(bodies, "forearm", taken=proximal)
-    if proximal is None and not still:
-        proximal = _speaking(bodies, "arm", taken=distal)
-    if proximal is not None and arm is None and forearm is None:
-        _check_sides(proximal, distal)
-    if proximal is distal:
-        msg = f"body {distal.name!r} is named both as arm and as forearm; the file has {_listed(bodies)}"
+        warnings.append(QualityWarning(code="sides-differ", message=f"the bodies are of different sides: {sides}"))
+    return ChosenBodies(first, second, joint_between(first.name, second.name, joint), tuple(warnings))
+
+
+def _alone(bodies: tuple[RigidBody, ...], joint: str | None) -> RigidBody:
+    """Give the only body that may be the distal one beside a proximal one that stands still."""
+    if len(bodies) == 1:
+        body, segment = bodies[0], segment_of(bodies[0].name)
+        distal_of = {one.name for one in joints_of(joint) if one.distal == segment}
+        proximal_of = {one.name for one in joints_of(joint) if one.proximal == segment}
+        if proximal_of and not distal_of - (set(_SELDOM_ALONE) if joint is None else set()):
+            msg = f"the only body in the file is {body.name!r}: give --distal {body.name!r} if it is the distal one"
+            raise SettingError(msg)
+        return body
+    found = [body for body in bodies if _speaks_as_distal(body, joint)]
+    if len(found) != 1:
+        raise SettingError(_unclear(bodies, "distal", len(found)))
+    return found[0]
+
+
+def _joint_above(distal: RigidBody, name: str | None) -> Joint:
+    """Say which joint ends in a body, where the other body stands still."""
+    segment = segment_of(distal.name)
+    spoken = [one for one in joints_of(name) if one.distal == segment and (name or one.name not in _SELDOM_ALONE)]
+    return spoken[0] if spoken else joint_between("", "", name)
+
+
+def _speaks_as_distal(body: RigidBody, joint: str | None) -> bool:
+    segment = segment_of(body.name)
+    return segment is not None and any(
+        one.distal == segment and (joint is not None or one.name not in _SELDOM_ALONE) for one in joints_of(joint)
+    )
+
+
+def _speaking_pair(
+    bodies: tuple[RigidBody, ...], first: RigidBody | None, second: RigidBody | None, name: str | None
+) -> tuple[RigidBody, RigidBody]:
+    """Find the bodies whose names speak of the two segments of one joint, one of which may be given."""
+    spoken = {body.name: segment_of(body.name) for body in bodies}
+    pairs = [
+        (joint, one, other)
+        for joint in joints_of(name)
+        for one in ([first] if first is not None else bodies)
+        for other in ([second] if second is not None else bodies)
+        if one is not other
+        # The name of a body that was given by name need not speak.
+        and (spoken[one.name] == joint.proximal or (one is first and spoken[one.name] is None))
+        and (spoken[other.name] == joint.distal or (other is second and spoken[other.name] is None))
+    ]
+    agreeing = [pair for pair in pairs if not _sides_differ(pair[1], pair[2])] or pairs
+    ends = list(dict.fromkeys((id(one), id(other)) for _, one, other in agreeing))
+    if len(ends) == 1:
+        return agreeing[0][1], agreeing[0][2]
+    names = list(dict.fromkeys(joint.name for joint, _, _ in agreeing))
+    if len(names) > 1 and first is None and second is None:
+        told = "; ".join(f"{joint.name}: {one.name!r} and {other.name!r}" for joint, one, other in agreeing)
+        msg = f"several joints speak ({told}): give --joint NAME, or --proximal NAME and --distal NAME"
         raise SettingError(msg)
-    return proximal, distal
+    raise SettingError(_unclear(bodies, "distal" if first is not None else "proximal", len(ends)))
 
 
-def segment_of(name: str) -> str | None:
-    """Say which segment a body's name speaks of: "arm", "forearm", or None.
-
-    Any case, any separators, a side or a number beside it: ``Right_Upper-Arm 2`` is an arm.
-
-    Examples
-    --------
-    >>> segment_of("L ForeArm"), segment_of("Humerus_01"), segment_of("alarm")
-    ('forearm', 'arm', None)
-    """
-    spaced = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name)
-    words = [_without_side(word) for word in re.findall(r"[a-z]+", spaced.casefold())]
-    pairs = {first + second for first, second in itertools.pairwise(words)}
-    if _FOREARM & (pairs | set(words)):
-        return "forearm"
-    return "arm" if _UPPER_ARM & (pairs | set(words)) else None
+def _sides_differ(first: RigidBody, second: RigidBody) -> bool:
+    sides = side_of(first.name), side_of(second.name)
+    return None not in sides and sides[0] != sides[1]
 
 
-def _check_sides(proximal: RigidBody, distal: RigidBody) -> None:
-    sides = [{side for side in _SIDES if side in body.name.casefold()} for body in (proximal, distal)]
-    if all(sides) and not sides[0] & sides[1]:
-        msg = f"{proximal.name!r} and {distal.name!r} are of different sides; give --arm NAME and --forearm NAME"
-        raise SettingError(msg)
-
-
-def _without_side(word: str) -> str:
-    for side in _SIDES:
-        if word.startswith(side) and word != side:
-            return word.removeprefix(side)
-    return word
+def _unclear(bodies: tuple[RigidBody, ...], role: str, found: int) -> str:
+    why = "no names say which" if not found else f"the names allow {found} choices"
+    return (
+        f"which body is the {role} one? {why}; the file has {_listed(bodies)}: give --proximal NAME and --distal NAME "
+        f"(--proximal {STILL} for one that stands still and is not in the file), or --joint "
+        f"{', '.join(JOINT_NAMES)}"
+    )
 
 
 def _named(bodies: tuple[RigidBody, ...], wanted: str) -> list[RigidBody]:
@@ -96,6 +144,7 @@ def _named(bodies: tuple[RigidBody, ...], wanted: str) -> list[RigidBody]:
         [body for body in bodies if body.name == wanted]
         or [body for body in bodies if body.identifier and _same_id(body.identifier, key)]
         or [body for body in bodies if body.name.strip().casefold() == key]
+        or [body for number, body in enumerate(bodies, 1) if key == f"#{number}"]
     )
 
 
@@ -113,18 +162,6 @@ def _find(bodies: tuple[RigidBody, ...], wanted: str, role: str) -> RigidBody:
         msg = f"--{role} {wanted!r}: {len(found)} bodies have that name; give the id instead: {ids}"
         raise SettingError(msg)
     msg = f"--{role} {wanted!r}: no such body; the file has {_listed(bodies)}"
-    raise SettingError(msg)
-
-
-def _speaking(bodies: tuple[RigidBody, ...], role: str, taken: RigidBody | None) -> RigidBody:
-    found = [body for body in bodies if segment_of(body.name) == role and body is not taken]
-    if len(found) == 1:
-        return found[0]
-    why = "no name says which" if not found else f"{len(found)} names say so"
-    msg = (
-        f"which body is the {role}? {why}; the file has {_listed(bodies)}: give --arm NAME and --forearm NAME "
-        f"(--arm {STILL_ARM} for an arm that stands still and is not in the file)"
-    )
     raise SettingError(msg)
 
 

@@ -30,7 +30,7 @@
     return add(add(p, d), add(times(q[0], t), cross(v, t)));
   };
   const last = scene.frame.length - 1;
-  const path = scene.frame.map((_, k) => moved(k, scene.forearm.origin));
+  const path = scene.frame.map((_, k) => moved(k, scene.distal.origin));
   const foot = (p) => add(scene.center, times(dot(less(p, scene.center), scene.direction), scene.direction));
 
   const colorAt = (theta) => {
@@ -39,7 +39,7 @@
     return scene.colors[Math.round(place)];
   };
 
-  const everything = [...path, ...scene.forearm.markers, ...(scene.arm ? [scene.arm.origin, ...scene.arm.markers] : [])]
+  const everything = [...path, ...scene.distal.markers, ...(scene.proximal ? [scene.proximal.origin, ...scene.proximal.markers] : [])]
     .filter(Boolean);
   everything.push(add(scene.center, times(scene.half, scene.direction)), less(scene.center, times(scene.half, scene.direction)));
   const reach = Math.max(...everything.map((p) => Math.hypot(...less(p, scene.center))));
@@ -48,7 +48,7 @@
   const known = path.filter(Boolean);
   const middle = times(1 / known.length, known.reduce(add, [0, 0, 0]));
   const upright = () => {
-    const toward = scene.arm ? less(scene.arm.origin, scene.center) : less(scene.center, middle);
+    const toward = scene.proximal ? less(scene.proximal.origin, scene.center) : less(scene.center, middle);
     const flat = less(toward, times(dot(toward, scene.direction), scene.direction));
     return Math.hypot(...flat) > 1e-6 * reach ? unit(flat) : scene.across[1];
   };
@@ -220,7 +220,7 @@
     scale = (0.46 * Math.min(width, height) * view.zoom) / reach;
     const k = view.frame;
     const here = path[k];
-    if (scene.arm) line([scene.arm.origin, foot(scene.arm.origin)], "#9aa4ae", 9, 0.3);
+    if (scene.proximal) line([scene.proximal.origin, foot(scene.proximal.origin)], "#9aa4ae", 9, 0.3);
     if (here) line([here, foot(here)], "#9aa4ae", 9, 0.3);
     if (shown("cone")) surface(scene.spread, "#8c959e", 0.1);
     if (shown("axes")) {
@@ -236,14 +236,14 @@
       line(ends, "#fff", 6, 0.8);
       line(ends, colorAt(scene.theta[k]), 3.5);
     }
-    if (scene.arm) {
-      line(joined(scene.arm.markers, scene.arm.origin), "#0072b2", 1, 0.5);
-      scene.arm.markers.forEach((p) => disc(p, 4, "#0072b2"));
-      disc(scene.arm.origin, 5.5, "#0072b2");
-      label(add(scene.arm.origin, times(18 / scale, view.rows[1])), "upper arm", "#00507d");
+    if (scene.proximal) {
+      line(joined(scene.proximal.markers, scene.proximal.origin), "#0072b2", 1, 0.5);
+      scene.proximal.markers.forEach((p) => disc(p, 4, "#0072b2"));
+      disc(scene.proximal.origin, 5.5, "#0072b2");
+      label(add(scene.proximal.origin, times(18 / scale, view.rows[1])), "upper arm", "#00507d");
     }
     if (here) {
-      const markers = scene.forearm.markers.map((p) => moved(k, p));
+      const markers = scene.distal.markers.map((p) => moved(k, p));
       line(joined(markers, here), "#d55e00", 1, 0.6);
       markers.forEach((p) => disc(p, 4, "#d55e00"));
       disc(here, 5.5, "#d55e00");
