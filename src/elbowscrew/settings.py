@@ -98,6 +98,8 @@ class Settings(BaseModel):
         Noise of each coordinate of each marker.
     noise : {"auto", "residuals", "still", "error-column", "none"}
         Where the noise of the poses is known from.
+    signed : {"auto", "yes", "no"}
+        Give theta a sense: where one axis dominates the motion, always, or never.
     robust : bool
         Weigh outliers down in the joint's axis.
     inversion : int or None
@@ -176,6 +178,7 @@ class Settings(BaseModel):
     noise: Literal["auto", "residuals", "still", "error-column", "none"] = Field(
         "auto", description="Where the noise of the poses is known from"
     )
+    signed: Literal["auto", "yes", "no"] = Field("auto", description="Give theta a sense, by the dominant axis")
     robust: bool = Field(False, description="Weigh outliers down in the joint's axis")
     inversion: int | None = Field(None, description="Frame where the motion turns back")
     keyframes: tuple[int, ...] | None = Field(None, min_length=2, description="Frames the model passes through")

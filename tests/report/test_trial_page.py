@@ -117,7 +117,7 @@ def test_the_page_says_what_the_summary_says(page: str, result: Path) -> None:
         f"{motion['theta_max_deg']:.1f}",
         f"frame {motion['theta_max_frame']}",
         f"{motion['axis_dispersion_deg']:.2f} deg",
-        f"{model['rmse_theta_deg']:.2f} deg RMS",
+        f"{model['rms_angle_error_deg']:.2f} deg RMS",
         f"{100 * (1 - summary['trial']['missing_share']):.1f} %",
         f"ICC(A,1) {joint['repeatability']['icc']:.3f}",
         ", ".join(f"{part:.4f}" for part in joint[joint["preferred"]]["direction"]).replace("-", "−"),

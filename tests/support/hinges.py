@@ -11,6 +11,7 @@ from elbowscrew.model import PoseNoise
 from elbowscrew.motion.axes.mean_axis import mean_axis_of
 from elbowscrew.motion.joint.joint_fit import fit_joint, sara_lines
 from elbowscrew.motion.screws.helical import helical_series
+from elbowscrew.motion.screws.sense import sense_of
 from elbowscrew.motion.screws.uncertainty import joint_covariance
 
 Float = NDArray[np.float64]
@@ -37,7 +38,8 @@ def hinge_errors(top_deg: float, trials: int, *, seed: int, robust_too: bool = F
     for _ in range(trials):
         joint = noisy_joint(exact, rng)
         D = dq.multiply(dq.conjugate(joint[0]), joint)
-        series = helical_series(dq.continuous_signs(D), np.radians(10.0), 0)
+        sense = sense_of(D[:, :4], np.arange(len(D)) / 100.0, 0)
+        series = helical_series(D, np.radians(10.0), sense.angle, sense.sign)
         lines = series.line[np.isfinite(series.line).all(axis=1)]
         weighted = mean_axis_of(series.angle, series.line, np.zeros(3))
         note("plain mean", dq.transform_lines(joint[0], lines.mean(axis=0)) / np.linalg.norm(lines.mean(axis=0)[:3]))

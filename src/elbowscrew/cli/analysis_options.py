@@ -153,6 +153,12 @@ def settings_given(
         Literal["auto", "residuals", "still", "error-column", "none"] | None,
         typer.Option(rich_help_panel=_MOTION, help="Where the noise is known from.", show_default="auto"),
     ] = None,
+    signed: Annotated[
+        Literal["auto", "yes", "no"] | None,
+        typer.Option(
+            rich_help_panel=_MOTION, help="Give theta a sense; auto: where one axis dominates.", show_default="auto"
+        ),
+    ] = None,
     robust: Annotated[
         bool | None,
         typer.Option("--robust/--no-robust", rich_help_panel=_MOTION, help="Weigh outliers down in the joint's axis."),

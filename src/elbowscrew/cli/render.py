@@ -56,7 +56,11 @@ def analysis_table(summary: Mapping[str, Any], folder: Path) -> None:
     rows = [
         ("Bodies", f"{_body(trial['proximal'])} → {_body(trial['distal'])}"),
         ("Frames", _frames(trial)),
-        ("Angle θ", f"{motion['theta_min_deg']:.2f} to {motion['theta_max_deg']:.2f} deg"),
+        (
+            "Angle θ",
+            f"{motion['theta_min_deg']:.2f} to {motion['theta_max_deg']:.2f} deg"
+            + ("" if motion["signed"] else ", without a sense"),
+        ),
         ("Inversion", _inversions(motion["inversion_frames"])),
         (
             "Slide",
@@ -71,16 +75,19 @@ def analysis_table(summary: Mapping[str, Any], folder: Path) -> None:
         ("Joint axis", _joint_axis(motion)),
         (
             "Dispersion",
-            f"median {motion['axis_dispersion_deg']:.2f} deg over the {motion['axis_frames']} frames with an axis",
+            f"median {motion['axis_dispersion_deg']:.2f} deg by equal steps of the angle, "
+            f"{motion['axis_dispersion_all_frames_deg']:.2f} over the {motion['axis_frames']} frames with an axis",
         ),
         (
             "Model",
-            f"{model['method']} {model['blend']}, {model['law']} law, keyframes {_numbers(model['keyframes'])}",
+            f"{model['method']} {model['blend']}, {model['law']} law, keyframes {_numbers(model['keyframes'])}"
+            f"; covers {100.0 * model['covered_share']:.0f} % of the recording",
         ),
         (
             "Model error",
-            f"θ {_number(model['rmse_theta_deg'])} deg RMS, {_number(model['max_theta_error_deg'])} at most "
-            f"(frame {model['max_theta_error_frame']}); displacement {_number(model['rms_displacement_mm'])} mm RMS"
+            f"rotation {_number(model['rms_angle_error_deg'])} deg RMS, {_number(model['max_angle_error_deg'])} at "
+            f"most (frame {model['max_angle_error_frame']}); "
+            f"displacement {_number(model['rms_displacement_mm'])} mm RMS"
             + ("" if model["points"]["from"] == "markers" else f" ({_radius(model)})"),
         ),
         ("Results", str(folder)),

@@ -29,6 +29,7 @@ from elbowscrew.model.recording import (
 )
 from elbowscrew.model.repetitions import MovementPhases, Repeatability, Repetitions
 from elbowscrew.model.results import Analysis, JointMotion, MeanAxis, ScrewMotion
+from elbowscrew.model.sense import Sense
 
 __all__ = [
     "Analysis",
@@ -64,6 +65,7 @@ __all__ = [
     "RigidBody",
     "ScrewMotion",
     "Selection",
+    "Sense",
     "Source",
     "Spread",
     "TrackingLoss",

@@ -18,6 +18,7 @@ from elbowscrew.model.modeled import BodyPoints, InterpolatedMotion, Keyframes, 
 from elbowscrew.model.quality import BodyQuality
 from elbowscrew.model.recording import QualityWarning, Recording, RigidBody
 from elbowscrew.model.repetitions import MovementPhases, Repeatability, Repetitions
+from elbowscrew.model.sense import Sense
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -68,7 +69,8 @@ class ScrewMotion(Brief):
     proximal_loss, distal_loss : ndarray of str, shape (N,)
         Why the body has no measured pose; empty where it has.
     angle : ndarray, shape (N,)
-        Rotation theta, radians, continuous in time, positive where it is largest.
+        Rotation theta, radians: about the dominant axis where there is one, positive where it is largest; else without
+        a sense, from 0 to pi.
     slide : ndarray, shape (N,)
         Translation along the axis, meters.
     axis_direction, axis_point : ndarray, shape (N, 3)
@@ -126,6 +128,11 @@ class MeanAxis(Brief):
     distance : ndarray, shape (N,)
         Distance between each frame's axis and the mean axis, across the latter where it passes the forearm at the
         reference, meters; NaN where there is no axis.
+    dispersion : float
+        Median angle of the axes from their mean direction, both over equal steps (1 deg) of the rotation, radians: a
+        rest counts no more than the angle it is at.
+    weighted_dispersion : float
+        RMS angle of the axes from the mean axis, with its weights, radians.
     excursion, place_excursion : float
         Largest angle (rad) between two of the axes, and largest distance (m) between two of their places in that plane.
     """
@@ -134,6 +141,8 @@ class MeanAxis(Brief):
     point: Float
     deviation: Float
     distance: Float
+    dispersion: float
+    weighted_dispersion: float
     excursion: float
     place_excursion: float
 
@@ -162,6 +171,8 @@ class Analysis(Brief):
     displacement : ndarray, shape (N, 8)
         Since the reference, in the forearm's frame there (P 35), sign-continuous.
     screw : ScrewMotion
+    sense : Sense
+        What gives its angle a sense.
     mean_axis : MeanAxis
     joint_axis : JointAxis
     instantaneous : InstantaneousMotion
@@ -197,6 +208,7 @@ class Analysis(Brief):
     elapsed: Float
     displacement: Float
     screw: ScrewMotion
+    sense: Sense
     mean_axis: MeanAxis
     joint_axis: JointAxis
     instantaneous: InstantaneousMotion

@@ -10,9 +10,16 @@ from numpy.typing import NDArray
 from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat
 from elbowscrew.model import Analysis, InterpolatedMotion, Landmarks, QualityWarning, Recording
 from elbowscrew.motion.anatomy.anatomy import anatomical_motion, proximal_lines
-from elbowscrew.motion.axes.measured import measured_instantaneous_motion, measured_mean_axis, measured_steps
+from elbowscrew.motion.axes.measured import (
+    lines_one_way,
+    measured_instantaneous_motion,
+    measured_mean_axis,
+    measured_steps,
+    without_sense,
+)
 from elbowscrew.motion.difference import (
     angle_between,
+    angle_of_lines,
     direction_between,
     distance_across,
     origin_distance,
@@ -25,6 +32,7 @@ from elbowscrew.motion.movements.repetitions import repeatability_of, repetition
 from elbowscrew.motion.screws.helical import helical_series
 from elbowscrew.motion.screws.measurement import Measurement, measure
 from elbowscrew.motion.screws.relative import expressed
+from elbowscrew.motion.screws.sense import modeled_angle
 from elbowscrew.settings import Settings
 
 Float = NDArray[np.float64]
@@ -69,18 +77,19 @@ def analyze(recording: Recording, settings: Settings | None = None, *, landmarks
     """
     wanted = settings or Settings()
     measured = measure(recording, wanted)
-    recording, joint, screw = measured.recording, measured.joint, measured.screw
+    recording, joint, screw, sense = measured.recording, measured.joint, measured.screw, measured.sense
     elapsed = measured.elapsed
     mean = measured_mean_axis(measured)
     joint_axis = measured_joint_axis(measured, mean, wanted)
-    instantaneous = measured_instantaneous_motion(measured, mean, wanted)
+    instantaneous = measured_instantaneous_motion(measured, wanted)
     velocity, near = instantaneous.angular_velocity, pose_from_dual_quat(measured.change)[1]
-    known_velocity = velocity_everywhere(velocity, screw.angle, elapsed)
+    known_velocity = velocity_everywhere(velocity, measured.course, elapsed)
     phases = movement_phases(known_velocity, elapsed)
     model = build_model(measured, phases, known_velocity, wanted)
     warnings = measured.warnings + model.warnings + joint_axis_warnings(joint_axis, measured)
-    cycles = find_cycles(screw.angle, phases)
-    repetitions = repetitions_of(cycles, screw, measured.line, velocity, elapsed)
+    cycles = find_cycles(measured.course, phases)
+    told_velocity = velocity if sense.signed else np.full_like(velocity, np.nan)
+    repetitions = repetitions_of(cycles, screw, lines_one_way(measured), told_velocity, elapsed)
     if (
         len(cycles) > 1
         and model.inversion_rows.size < len(cycles)
@@ -115,10 +124,11 @@ def analyze(recording: Recording, settings: Settings | None = None, *, landmarks
         elapsed=elapsed,
         displacement=measured.displacement,
         screw=replace(screw, axis_direction=screw.axis_direction.copy()),  # a view would keep all of the line
+        sense=sense,
         mean_axis=mean,
         joint_axis=joint_axis,
-        instantaneous=instantaneous,
-        steps=measured_steps(measured, mean, wanted),
+        instantaneous=instantaneous if sense.signed else without_sense(instantaneous),
+        steps=measured_steps(measured, wanted),
         phases=phases,
         repetitions=repetitions,
         repeatability=repeatability_of(cycles, repetitions, screw.angle, elapsed, near),
@@ -135,18 +145,16 @@ def analyze(recording: Recording, settings: Settings | None = None, *, landmarks
 
 
 def _compared(model: JointModel, measured: Measurement, settings: Settings) -> InterpolatedMotion:
-    D, screw, modeled, keyframes = measured.displacement, measured.screw, model.poses, model.keyframes
+    D, screw, sense, modeled = measured.displacement, measured.screw, measured.sense, model.poses
     D_model = expressed(modeled.dual_quat, measured.joint, settings.express_in)
-    # The model shares its poses with the measurement at the phases' ends: there the angle and its sense are known.
-    shared = keyframes.phases.bound_rows
-    anchor = int(shared[np.argmax(np.abs(screw.angle[shared]))])
-    series = helical_series(D_model, np.radians(settings.min_angle_deg), anchor, screw.angle[anchor])
+    angle, sign = modeled_angle(D_model[:, :4], screw.euler_parameters, sense, measured.elapsed)
+    series = helical_series(D_model, np.radians(settings.min_angle_deg), angle, sign)
     near = pose_from_dual_quat(measured.change)[1]
     errors = {
         "angle_error": angle_between(D, modeled.dual_quat),
         "translation_error": origin_distance(D, modeled.dual_quat),
         "rms_displacement": rms_displacement(D, modeled.dual_quat, model.points),
-        "axis_error": direction_between(measured.line, series.line),
+        "axis_error": (direction_between if sense.signed else angle_of_lines)(measured.line, series.line),
         "axis_distance": distance_across(measured.line, series.line, near),
     }
     for error in errors.values():

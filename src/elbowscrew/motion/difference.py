@@ -46,6 +46,12 @@ def direction_between(line_a: Float, line_b: Float) -> Float:
     return angle
 
 
+def angle_of_lines(line_a: Float, line_b: Float) -> Float:
+    """Angle between two lines (..., 6), whichever way round they are, radians in [0, pi/2], shape (...)."""
+    angle = direction_between(line_a, line_b)
+    return np.minimum(angle, np.pi - angle)
+
+
 def distance_across(line: Float, other: Float, near: Float) -> Float:
     """Distance (..., ) of a line from another, across the former where it passes a point (3,); lines (..., 6)."""
     direction = line[..., :3]

@@ -75,13 +75,14 @@ def plot_path(ax: Axes3D, path: Float, unit: LengthUnit) -> None:
 
 
 def plot_axis_directions(ax: Axes, analysis: Shown) -> Axes:
-    """Draw how far each axis is tilted from the mean axis, in two directions across it."""
+    """Draw how far each axis, a line without direction, is tilted from the mean axis, in two directions across it."""
     unit = analysis.settings.angle_unit
     mean = _mean_frame(analysis, bodies_in_space(analysis))
     rows = thinned(np.flatnonzero(analysis.screw.axis_known), _MOST_POINTS)
     direction = analysis.screw.axis_direction[rows]
     along = direction @ mean.direction
-    tilts = [angle_in(np.arctan2(direction @ across, along), unit) for across in mean.across]
+    way = np.where(along < 0.0, -1.0, 1.0)
+    tilts = [angle_in(np.arctan2(way * (direction @ across), way * along), unit) for across in mean.across]
     _scatter(ax, analysis, rows, tilts)
     ax.set_xlabel(f"Tilt toward {mean.names[0]} ({unit})")
     ax.set_ylabel(f"Tilt toward {mean.names[1]} ({unit})")

@@ -66,6 +66,18 @@ def _sentences(trial: FinishedTrial) -> Iterator[str]:
         f"its finite helical (screw) axis, the rotation θ about it and the translation along it, expressed in "
         f"{_FRAMES[settings.express_in]}."
     )
+    yield (
+        (
+            "The sense of θ is that of one axis for the whole trial, the leading eigenvector of the second moments of "
+            "sin(θ/2) times the axes."
+            if summary["motion"]["signed"]
+            else "No axis dominates the motion, so that θ has no sense."
+        )
+        if settings.signed == "auto"
+        else (
+            "θ was given the sense of the leading axis." if settings.signed == "yes" else "θ was taken without a sense."
+        )
+    )
     if settings.axis_sd_deg is None:
         yield f"Axes are given for rotations of {settings.min_angle_deg:g}° and more."
     else:

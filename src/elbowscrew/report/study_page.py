@@ -38,7 +38,7 @@ class Measure(NamedTuple):
 MEASURES: Final = (
     Measure("top", "Largest angle", "deg", "motion", "theta_max_deg", 1),
     Measure("dispersion", "Dispersion of the axes", "deg", "motion", "axis_dispersion_deg", 2),
-    Measure("error", "Model error of θ, RMS", "deg", "interpolation", "rmse_theta_deg", 2),
+    Measure("error", "Model error, RMS rotation", "deg", "interpolation", "rms_angle_error_deg", 2),
 )
 
 

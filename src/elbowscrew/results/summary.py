@@ -210,6 +210,9 @@ def _motion(analysis: Analysis) -> dict[str, Any]:
         "theta_max_deg": statistic(np.nanmax, angle),
         "theta_min_deg": statistic(np.nanmin, angle),
         "theta_max_frame": int(screw.frame[int(np.nanargmax(angle))]),
+        "signed": analysis.sense.signed,
+        "dominant_axis": {"direction": analysis.sense.direction.tolist(), "ratio": analysis.sense.ratio},
+        "largest_jump_deg": float(np.degrees(analysis.sense.largest_jump)),
         "inversion_frames": screw.frame[analysis.inversion_rows].tolist(),
         "slide_median_mm": statistic(np.nanmedian, slide),
         "slide_min_mm": statistic(np.nanmin, slide),
@@ -222,7 +225,9 @@ def _motion(analysis: Analysis) -> dict[str, Any]:
         "expressed_in": analysis.settings.express_in,
         "axis_frames": int((screw.axis_known & screw.valid).sum()),
         "mean_axis": {"direction": axis.direction.tolist(), "point_mm": (1000.0 * axis.point).tolist()},
-        "axis_dispersion_deg": statistic(np.nanmedian, np.degrees(axis.deviation)),
+        "axis_dispersion_deg": float(np.degrees(axis.dispersion)),
+        "axis_dispersion_all_frames_deg": statistic(np.nanmedian, np.degrees(axis.deviation)),
+        "axis_dispersion_weighted_deg": float(np.degrees(axis.weighted_dispersion)),
         "axis_dispersion_rms_deg": statistic(rms, np.degrees(axis.deviation)),
         "axis_dispersion_max_deg": statistic(np.nanmax, np.degrees(axis.deviation)),
         "axis_distance_rms_mm": statistic(rms, 1000.0 * axis.distance),
@@ -260,6 +265,7 @@ def _interpolation(analysis: Analysis) -> dict[str, Any]:
         "selection": None
         if analysis.selection is None
         else selection_summary(analysis.selection, analysis.screw.frame),
+        "covered_share": float(np.isfinite(modeled.angle).mean()),
         "rmse_theta_deg": statistic(rms, theta_error),
         "max_theta_error_deg": statistic(np.nanmax, np.abs(theta_error)),
         "max_theta_error_frame": _frame_of_max(modeled.frame, np.abs(theta_error)),

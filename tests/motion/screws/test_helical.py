@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 from elbowscrew.geometry import dual_quat_from_screw, line_through
 from elbowscrew.geometry.dual_quaternion import continuous_signs
 from elbowscrew.motion.axes.mean_axis import mean_axis_of
-from elbowscrew.motion.screws.helical import helical_series
+from elbowscrew.motion.screws.helical import HelicalSeries, helical_series
+from elbowscrew.motion.screws.sense import sense_of
 
 Float = NDArray[np.float64]
 LINE = line_through([0.2, -0.1, 0.3], [1.0, 2.0, 2.0])
@@ -18,6 +19,11 @@ MIN_ANGLE = np.radians(10.0)
 
 def turned(angle: Float) -> Float:
     return continuous_signs(dual_quat_from_screw(angle, 0.01 * angle, LINE[:3], LINE[3:]))
+
+
+def series_of(poses: Float) -> HelicalSeries:
+    sense = sense_of(poses[:, :4], np.arange(len(poses)) / 100.0, 0)
+    return helical_series(poses, MIN_ANGLE, sense.angle, sense.sign)
 
 
 @pytest.mark.parametrize(
@@ -30,7 +36,7 @@ def turned(angle: Float) -> Float:
     ],
 )
 def test_angle_is_continuous_and_the_axis_keeps_its_direction(angle: Float) -> None:
-    series = helical_series(turned(angle), MIN_ANGLE, 0)
+    series = series_of(turned(angle))
     sense = np.sign(series.angle[10] * angle[10])
     assert sense * series.angle == pytest.approx(angle, abs=1e-9)
     known = np.isfinite(series.slide)
@@ -44,18 +50,21 @@ def test_gaps_do_not_break_the_continuity() -> None:
     angle = np.linspace(0.0, 4.0, 100)
     poses = turned(angle)
     poses[40:60] = np.nan
-    series = helical_series(continuous_signs(poses), MIN_ANGLE, 0)
+    series = series_of(continuous_signs(poses))
     known = np.isfinite(poses[:, 0])
     assert series.angle[known] == pytest.approx(angle[known], abs=1e-9)
     assert np.isnan(series.angle[~known]).all()
 
 
-def test_an_anchor_gives_sense_and_full_turns() -> None:
-    angle = np.linspace(3.0, 8.0, 60)
-    poses = turned(angle)
-    for sense in (1.0, -1.0):
-        series = helical_series(poses, MIN_ANGLE, 50, sense * angle[50])
-        assert series.angle == pytest.approx(sense * angle, abs=1e-9)
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_the_line_follows_the_sense_that_is_told_whatever_sign_a_pose_has(way: float) -> None:
+    angle = np.linspace(3.0, 6.0, 60)  # the quaternion's scalar part goes through zero
+    sign = way * np.where(angle <= np.pi, 1.0, -1.0)
+    for poses in (turned(angle), -turned(angle)):
+        series = helical_series(poses, MIN_ANGLE, way * angle, sign)
+        assert series.angle == pytest.approx(way * angle)
+        assert series.direction == pytest.approx(np.tile(way * LINE[:3], (60, 1)), abs=1e-9)
+        assert series.slide == pytest.approx(way * 0.01 * angle, abs=1e-9)
 
 
 def test_mean_axis_of_one_line_is_the_line() -> None:
@@ -94,6 +103,18 @@ def test_the_excursion_is_the_largest_of_all_distances(cloud: str) -> None:
     places = points + reach[:, None] * directions
     farthest = np.linalg.norm(places[:, None] - places[None], axis=2).max()
     assert mean.place_excursion == pytest.approx(farthest, rel=1e-9, abs=1e-12)
+
+
+def test_a_rest_counts_for_the_dispersion_no_more_than_the_angle_it_is_at() -> None:
+    angle = np.radians(np.concatenate([np.arange(20.0, 100.0), np.full(5000, 20.0)]) + 0.5)
+    tilt = np.where(np.degrees(angle) < 40.0, 0.2, 0.01) * np.where(np.arange(angle.size) % 2, 1.0, -1.0)
+    direction = np.column_stack([np.sin(tilt), np.zeros_like(tilt), np.cos(tilt)])
+    mean = mean_axis_of(angle, np.concatenate([direction, np.zeros_like(direction)], axis=1), np.zeros(3))
+    assert mean.dispersion < 0.02
+    assert np.median(mean.deviation) == pytest.approx(0.2, abs=0.01)
+    off = np.arccos(direction @ mean.direction)
+    weight = np.sin(0.5 * angle) ** 2
+    assert mean.weighted_dispersion == pytest.approx(np.sqrt(np.average(off**2, weights=weight)), rel=1e-6)
 
 
 def test_mean_axis_of_a_cone_is_its_middle_and_the_dispersion_its_half_angle() -> None:

@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 from sense_motions import KINDS, conjugate, made, noisy, product, rotation, share_wrong, smooth, strokes, unit
 
-from elbowscrew.motion.screws.sense import Sense, angle_beside, modeled_angle, rotation_noise, sense_of
+from elbowscrew.model import Sense
+from elbowscrew.motion.screws.sense import angle_beside, modeled_angle, rotation_noise, sense_of
 
 Float = NDArray[np.float64]
 

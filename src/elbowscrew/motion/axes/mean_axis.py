@@ -13,6 +13,7 @@ from elbowscrew.model import MeanAxis
 Float = NDArray[np.float64]
 
 _MOST_COMPARED: Final = 1000
+_STEP: Final = float(np.radians(1.0))
 _ROUNDING: Final = 1e-12
 
 
@@ -62,14 +63,33 @@ def mean_axis_of(angle: Float, line: Float, near: Float) -> MeanAxis:
     place = foot - divide(foot @ direction, along)[:, None] * line[:, :3]
     chosen = np.flatnonzero(known)
     chosen = chosen[np.linspace(0, chosen.size - 1, min(chosen.size, _MOST_COMPARED)).astype(np.int64)]
+    weights = np.sin(0.5 * angle[known]) ** 2
+    off = np.arctan2(length(np.cross(line[known, :3], direction)), np.abs(line[known, :3] @ direction))
     return MeanAxis(
         direction=direction,
         point=point,
+        dispersion=_dispersion_by_angle(angle[known], line[known, :3]),
+        weighted_dispersion=float(np.sqrt(weights @ off**2 / weights.sum())),
         deviation=deviation,
         distance=length(place),
         excursion=float(2.0 * np.arcsin(min(0.5 * _largest_distance(line[chosen, :3]), 1.0))),
         place_excursion=_largest_distance(place[chosen]),
     )
+
+
+def _dispersion_by_angle(angle: Float, direction: Float) -> float:
+    """Median angle of directions from their mean, where each degree of the motion counts as much as another.
+
+    So it does not hang on how long the joint stays at an angle.
+    """
+    step = np.floor((angle - angle.min()) / _STEP).astype(np.int64)
+    weight = 1.0 / np.bincount(step)[step]
+    mean = weight @ direction
+    deviation = np.arctan2(length(np.cross(direction, mean)), direction @ mean)
+    order = np.argsort(deviation)
+    share = np.cumsum(weight[order])
+    lower, upper = np.searchsorted(share, 0.5 * share[-1] * np.array([1.0 - _ROUNDING, 1.0 + _ROUNDING]))
+    return float(0.5 * (deviation[order[lower]] + deviation[order[min(upper, order.size - 1)]]))
 
 
 def _largest_distance(points: Float) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -26,14 +27,38 @@ _TWIST_HZ: Final = 6.0
 _POSSIBLE_SHARES: Final = (1e-3, 0.4)
 
 
+def lines_one_way(measured: Measurement) -> Float:
+    """Axes (N, 6) of the frames as lines, each the way round that is nearer the dominant, or the leading, direction.
+
+    For means and spreads of lines: beside the reference, or without a sense, an axis may point the other way.
+    """
+    against = measured.line[:, :3] @ measured.sense.direction < 0.0
+    return np.where(against[:, None], -measured.line, measured.line)
+
+
+def without_sense(motion: InstantaneousMotion) -> InstantaneousMotion:
+    """Turn every axis so that the angular velocity about it is positive: what it is where theta has no sense."""
+    way = np.where(motion.angular_velocity < 0.0, -1.0, 1.0)
+    return replace(
+        motion,
+        angular_velocity=way * motion.angular_velocity,
+        slide_velocity=way * motion.slide_velocity,
+        axis_direction=way[:, None] * motion.axis_direction,
+    )
+
+
 def measured_mean_axis(measured: Measurement) -> MeanAxis:
     """Take the mean over measured frames: a pose filled in says nothing that its neighbors do not."""
-    lines = np.where(measured.joint.measured[:, None], measured.line, np.nan)
+    lines = np.where(measured.joint.measured[:, None], lines_one_way(measured), np.nan)
     return mean_axis_of(measured.screw.angle, lines, pose_from_dual_quat(measured.change)[1])
 
 
-def measured_instantaneous_motion(measured: Measurement, mean: MeanAxis, settings: Settings) -> InstantaneousMotion:
-    """Take the twist of filtered poses: of those at hand if they are, else of poses filtered for this alone."""
+def measured_instantaneous_motion(measured: Measurement, settings: Settings) -> InstantaneousMotion:
+    """Take the twist of filtered poses: of those at hand if they are, else of poses filtered for this alone.
+
+    Its sense is that of the dominant axis or, where theta has none, of the leading direction; `without_sense` takes
+    that away from what is told.
+    """
     D, smoothing = measured.displacement, measured.smoothing
     if smoothing.cutoff_hz is None:
         smoothing = twist_smoothing(measured, settings)
@@ -46,7 +71,7 @@ def measured_instantaneous_motion(measured: Measurement, mean: MeanAxis, setting
         measured.elapsed,
         smoothing.rate_hz,
         settings.min_rate_rad_s,
-        mean.direction,
+        measured.sense.direction,
         margin=smoothing.margin,
         lowpass_hz=smoothing.cutoff_hz or np.inf,
     )
@@ -70,19 +95,19 @@ def smoothed_displacement(measured: Measurement, smoothing: Smoothing) -> Float:
     return multiply(conjugate(measured.joint.reference), multiply(conjugate(proximal_pose), distal.dual_quat_lab_body))
 
 
-def measured_steps(measured: Measurement, mean: MeanAxis, settings: Settings) -> HelicalSteps | None:
+def measured_steps(measured: Measurement, settings: Settings) -> HelicalSteps | None:
     """Take the axes from step to step; None where none are asked for."""
     if settings.step_deg is None:
         return None
     return helical_steps(
         measured.displacement,
-        measured.screw.angle,
+        measured.course,
         measured.joint,
         measured.screw.frame,
         measured.screw.time_s,
         measured.change,
         step=float(np.radians(settings.step_deg)),
-        sense=mean.direction,
+        sense=measured.sense.direction,
         noise=measured.noise.known,
         noise_gain=measured.noise_gain,
     )

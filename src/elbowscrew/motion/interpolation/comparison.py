@@ -17,14 +17,15 @@ from elbowscrew.model import (
     BodyPoints,
     ComparedModels,
     Comparison,
-    Keyframes,
     ModelPhases,
     PhaseLaw,
     Recording,
     Selection,
+    Sense,
 )
 from elbowscrew.motion.difference import (
     angle_between,
+    angle_of_lines,
     direction_between,
     distance_across,
     origin_distance,
@@ -40,6 +41,7 @@ from elbowscrew.motion.interpolation.segment_errors import BASES
 from elbowscrew.motion.screws.helical import helical_series
 from elbowscrew.motion.screws.measurement import Measurement, measure
 from elbowscrew.motion.screws.relative import expressed
+from elbowscrew.motion.screws.sense import modeled_angle
 from elbowscrew.settings import Settings
 
 Float = NDArray[np.float64]
@@ -175,7 +177,9 @@ class _Yardstick(NamedTuple):
     points: BodyPoints
     min_angle: float
     express: Callable[[Float], Float]
-    angle: Float
+    quat: Float
+    sense: Sense
+    elapsed: Float
 
     @classmethod
     def of(cls, measured: Measurement, points: BodyPoints, settings: Settings) -> _Yardstick:
@@ -188,18 +192,20 @@ class _Yardstick(NamedTuple):
             points,
             float(np.radians(settings.min_angle_deg)),
             lambda pose: expressed(pose, joint, settings.express_in),
-            measured.screw.angle,
+            measured.screw.euler_parameters,
+            measured.sense,
+            measured.elapsed,
         )
 
-    def errors(self, modeled: Float, keyframes: Keyframes) -> dict[str, Float]:
-        bounds = keyframes.phases.bound_rows
-        anchor = int(bounds[np.argmax(np.abs(self.angle[bounds]))])
-        line = helical_series(self.express(modeled), self.min_angle, anchor, self.angle[anchor]).line
+    def errors(self, modeled: Float) -> dict[str, Float]:
+        D = self.express(modeled)
+        angle, sign = modeled_angle(D[:, :4], self.quat, self.sense, self.elapsed)
+        line = helical_series(D, self.min_angle, angle, sign).line
         found = {
             "displacement": rms_displacement(self.pose, modeled, self.points),
             "angle_error": angle_between(self.pose, modeled),
             "translation_error": origin_distance(self.pose, modeled),
-            "axis_error": direction_between(self.line, line),
+            "axis_error": (direction_between if self.sense.signed else angle_of_lines)(self.line, line),
             "axis_distance": distance_across(self.line, line, self.near),
         }
         for values in found.values():
@@ -246,7 +252,7 @@ def _row(
         return {**row, "note": str(error)}
     if not np.isfinite(modeled.dual_quat[~modeled.phase.mask]).all():
         return {**row, "note": "the blended poses cancel in some frames"}
-    errors = yardstick.errors(modeled.dual_quat, keyframes)
+    errors = yardstick.errors(modeled.dual_quat)
     for name, values in errors.items():
         known = np.isfinite(values).any()
         row[f"rms_{name}"] = float(np.sqrt(np.nanmean(values**2))) if known else np.nan

@@ -18,7 +18,7 @@ from elbowscrew.model import (
     RigidBody,
     Selection,
 )
-from elbowscrew.motion.axes.measured import measured_instantaneous_motion, measured_mean_axis
+from elbowscrew.motion.axes.measured import measured_instantaneous_motion
 from elbowscrew.motion.difference import DEFAULT_RADIUS, points_from_markers, points_from_radius
 from elbowscrew.motion.interpolation.keyframe_selection import select_keyframes
 from elbowscrew.motion.interpolation.keyframes import keyframes_at, phase_time, rows_of_frames
@@ -66,12 +66,12 @@ def build_model(measured: Measurement, movements: MovementPhases, velocity: Floa
     points = body_points(measured.distal, settings)
     rows = None
     if settings.keyframes is not None:
-        angle = measured.screw.angle
+        angle = measured.course
         rows, inversion_row = rows_of_frames(angle, frame, settings.keyframes, settings.inversion)
         phases = phases_of_keyframes(rows, angle, inversion_row)
     else:
         phases = phases_of(measured, movements, velocity, settings)
-    inversions = _inversion_rows(phases, measured.screw.angle, settings)
+    inversions = _inversion_rows(phases, measured.course, settings)
     if settings.tolerance_mm is not None and settings.model_law == "linear":
         phases = one_phase(_measured_rows(measured))  # time itself needs no turns
     laws = model_laws(measured, phases, points, settings.model_law, settings.law_peak)
@@ -103,15 +103,15 @@ def build_model(measured: Measurement, movements: MovementPhases, velocity: Floa
 
 def movements_of(measured: Measurement, settings: Settings) -> tuple[MovementPhases, Float]:
     """Movements between rests, and the angular velocity (N,) that they were found from."""
-    twist = measured_instantaneous_motion(measured, measured_mean_axis(measured), settings)
-    velocity = velocity_everywhere(twist.angular_velocity, measured.screw.angle, measured.elapsed)
+    twist = measured_instantaneous_motion(measured, settings)
+    velocity = velocity_everywhere(twist.angular_velocity, measured.course, measured.elapsed)
     return movement_phases(velocity, measured.elapsed), velocity
 
 
 def phases_of(measured: Measurement, movements: MovementPhases, velocity: Float, settings: Settings) -> ModelPhases:
     """Phases of the model, as the settings say."""
     return model_phases(
-        measured.screw.angle,
+        measured.course,
         measured.screw.frame,
         measured.elapsed,
         movements,

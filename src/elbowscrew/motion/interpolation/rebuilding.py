@@ -14,6 +14,7 @@ from elbowscrew.motion.interpolation.laws import named_law
 from elbowscrew.motion.interpolation.modeling import METHODS, model_motion
 from elbowscrew.motion.screws.helical import helical_series
 from elbowscrew.motion.screws.relative import expressed
+from elbowscrew.motion.screws.sense import sense_of
 
 Float = NDArray[np.float64]
 
@@ -78,7 +79,7 @@ def interpolate(keyframes: KeyframeSet, frames: int) -> RebuiltMotion:
     Returns
     -------
     RebuiltMotion
-        The angle is 0 where there is no displacement, and positive where it is largest.
+        The angle has the sense that it has at the keyframes.
 
     Raises
     ------
@@ -122,14 +123,11 @@ def interpolate(keyframes: KeyframeSet, frames: int) -> RebuiltMotion:
     )
     chosen = np.searchsorted(time_s, wanted)
     D = modeled.dual_quat[chosen]
-    known = np.flatnonzero(np.isfinite(D[:, 0]))
-    if not known.size:
+    if not np.isfinite(D[:, 0]).any():
         msg = "the blended poses cancel in every frame: no motion comes out; give keyframes closer together"
         raise SettingError(msg)
-    least = int(known[np.argmin(np.linalg.norm(D[known, 1:4], axis=1))])
-    series = helical_series(D, _MIN_ANGLE, least)
-    if series.angle[known[np.argmax(np.abs(series.angle[known]))]] < 0.0:
-        series = series.reversed()
+    angle, sign = _angle_of_keyframes(modeled.dual_quat[:, :4], time_s, row, keyframes.angle)
+    series = helical_series(D, _MIN_ANGLE, angle[chosen], sign[chosen])
     return RebuiltMotion(
         frame=np.arange(frames, dtype=np.int64),
         time_s=wanted,
@@ -140,3 +138,18 @@ def interpolate(keyframes: KeyframeSet, frames: int) -> RebuiltMotion:
         euler_parameters=D[:, :4],
         translation=pose_from_dual_quat(D)[1],
     )
+
+
+def _angle_of_keyframes(quat: Float, time_s: Float, row: NDArray[np.intp], wanted: Float) -> tuple[Float, Float]:
+    """Theta of rebuilt poses and the sign of its axis, with the sense, or without one, that the keyframes have."""
+    least = int(row[np.argmin(np.abs(wanted))])
+    known = np.isfinite(quat[row, 0]) & np.isfinite(wanted)
+    found = []
+    for choice in ("yes", "no"):
+        sense = sense_of(quat, time_s, least, sigma=0.0, signed=choice)
+        for way in (1.0, -1.0) if sense.signed else (1.0,):
+            offset = way * sense.angle[row][known] - wanted[known]
+            whole = 2.0 * np.pi * np.round(np.median(offset) / (2.0 * np.pi)) if sense.signed and known.any() else 0.0
+            found.append((float(np.sum((offset - whole) ** 2)), way * sense.angle - whole, way * sense.sign))
+    best = min(found, key=lambda one: one[0])
+    return best[1], best[2]

@@ -19,7 +19,7 @@ def measured_joint_axis(measured: Measurement, mean: MeanAxis, settings: Setting
     """Estimate the joint's axis, starting from the mean of the finite axes."""
     return estimate_joint_axis(
         measured.joint,
-        measured.screw.angle,
+        measured.course,
         distal_line(np.concatenate([mean.direction, np.cross(mean.point, mean.direction)]), measured.change),
         measured.noise,
         measured.noise_gain,

@@ -11,11 +11,20 @@ from numpy.typing import NDArray
 from elbowscrew.errors import AnalysisError, SettingError
 from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat
 from elbowscrew.joints import Joint
-from elbowscrew.model import BodyQuality, JointMotion, QualityWarning, Recording, RigidBody, ScrewMotion
+from elbowscrew.model import BodyQuality, JointMotion, QualityWarning, Recording, RigidBody, ScrewMotion, Sense
 from elbowscrew.motion.screws.helical import HelicalSeries, helical_series
 from elbowscrew.motion.screws.pose_noise import JointNoise
 from elbowscrew.motion.screws.relative import displacement, expressed, frame_change, joint_from_bodies
-from elbowscrew.motion.screws.uncertainty import ScrewErrors, known_errors, least_angle, no_errors, screw_errors
+from elbowscrew.motion.screws.sense import sense_of
+from elbowscrew.motion.screws.sense_doubts import sense_warnings
+from elbowscrew.motion.screws.uncertainty import (
+    ScrewErrors,
+    joint_covariance,
+    known_errors,
+    least_angle,
+    no_errors,
+    screw_errors,
+)
 from elbowscrew.motion.smoothing.resampling import resample_recording
 from elbowscrew.motion.smoothing.smoothing import Smoothing
 from elbowscrew.motion.tracking.bodies import tracked_bodies
@@ -49,6 +58,8 @@ class Measurement(NamedTuple):
     line : ndarray, shape (N, 6)
         Axes as Plücker vectors, as expressed.
     screw : ScrewMotion
+    sense : Sense
+        Of the rotation since the reference, its direction as expressed.
     quality : tuple of BodyQuality
     warnings : tuple of QualityWarning
     """
@@ -65,9 +76,15 @@ class Measurement(NamedTuple):
     noise_gain: Float
     line: Float
     screw: ScrewMotion
+    sense: Sense
     quality: tuple[BodyQuality, ...]
     named_joint: Joint
     warnings: tuple[QualityWarning, ...]
+
+    @property
+    def course(self) -> Float:
+        """What turns back where the motion does, shape (N,), radians: theta, or without a sense the leading twist."""
+        return self.sense.angle if self.sense.signed else self.sense.twist
 
 
 def measure(recording: Recording, settings: Settings) -> Measurement:
@@ -107,7 +124,14 @@ def measure(recording: Recording, settings: Settings) -> Measurement:
     D = displacement(joint)
     D_expressed = expressed(D, joint, settings.express_in)
     gain = smoothing.noise_gain(joint.measured)
-    series, errors = _measured_series(D, D_expressed, joint, noise, gain, settings)
+    sense = sense_of(
+        D_expressed[:, :4],
+        elapsed,
+        joint.reference_row,
+        sigma=_rotation_sigma(joint, noise, gain),
+        signed=settings.signed,
+    )
+    series, errors = _measured_series(D, D_expressed, sense, joint, noise, gain, settings)
     screw = ScrewMotion(
         frame=recording.frame,
         time_s=recording.time_s,
@@ -141,9 +165,10 @@ def measure(recording: Recording, settings: Settings) -> Measurement:
         noise_gain=gain,
         line=series.line,
         screw=screw,
+        sense=sense,
         quality=tracked.quality,
         named_joint=tracked.joint,
-        warnings=warnings,
+        warnings=warnings + sense_warnings(sense, recording.frame, settings.signed),
     )
 
 
@@ -162,8 +187,22 @@ def _resampled(
     return replace(resampled, warnings=recording.warnings), proximal, resampled.bodies[-1], warnings
 
 
+def _rotation_sigma(joint: JointMotion, noise: JointNoise, gain: Float) -> float | None:
+    """Noise of a component of the rotation, radians, as the filter leaves it; None where it is not known."""
+    if noise.known is None:
+        return None
+    rotation = joint_covariance(joint.reference, *noise.known)[:3, :3]
+    return float(np.sqrt(np.trace(rotation) / 3.0 * np.nanmedian(gain[joint.measured])))
+
+
 def _measured_series(
-    D: Float, D_expressed: Float, joint: JointMotion, noise: JointNoise, gain: Float, settings: Settings
+    D: Float,
+    D_expressed: Float,
+    sense: Sense,
+    joint: JointMotion,
+    noise: JointNoise,
+    gain: Float,
+    settings: Settings,
 ) -> tuple[HelicalSeries, ScrewErrors]:
     """Screws of all frames, with their errors, each axis known as well as the settings want it."""
     limit, least = np.inf, np.radians(settings.min_angle_deg)
@@ -177,7 +216,7 @@ def _measured_series(
     elif settings.axis_sd_deg is not None:
         msg = "--axis-sd: the noise of the poses is not known here; give --marker-noise MM, or --min-angle in its place"
         raise SettingError(msg)
-    series = helical_series(D_expressed, least, joint.reference_row)
+    series = helical_series(D_expressed, least, sense.angle, sense.sign)
     unsure = errors.axis > limit
     series.line[unsure], series.slide[unsure] = np.nan, np.nan
     peak = int(np.nanargmax(np.abs(series.angle)))
@@ -195,5 +234,4 @@ def _measured_series(
                 f"to {best:.3g} deg; ask for less, or give --min-angle"
             )
         raise AnalysisError(msg)
-    series = series.reversed() if series.angle[peak] < 0.0 else series
     return series, known_errors(errors, series.angle, np.isfinite(series.slide))

@@ -7,13 +7,13 @@ course. Where no axis dominates there is no sense, and theta is the unsigned rot
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Final, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from elbowscrew.geometry._small_angle import length, row_length
+from elbowscrew.model import Sense
 
 Float = NDArray[np.float64]
 Bool = NDArray[np.bool_]
@@ -22,9 +22,8 @@ Rows = NDArray[np.intp]
 SignedChoice = Literal["auto", "yes", "no"]
 
 # The ratio of hinges is below 0.002, of axes that wander by 30 deg up to 0.14, of real elbows and knees 0.05 to 0.14; a
-# ball has 0.3 and two axes 0.5. Between the two bounds another reference pose may decide otherwise.
-_DOMINANT_RATIO: Final = 0.20
-DOUBTFUL_RATIO: Final = (0.15, 0.25)
+# ball has 0.3 and two axes 0.5.
+DOMINANT_RATIO: Final = 0.20
 _TURN: Final = 2.0 * np.pi
 # The twist says little of a rotation whose axis is so far from the dominant one: ``w^2 + (v.u)^2`` is that of both.
 _LEAST_TWIST_SQUARE: Final = 0.25
@@ -41,60 +40,6 @@ LARGE_JUMP: Final = float(np.radians(20.0))
 _LEAST_DIFFERENCES: Final = 20
 _MEDIAN_CHI2_3: Final = 2.366
 _THIRD_DIFFERENCE_GAIN: Final = 20.0
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Sense:
-    """Sense of the rotation in every frame, and the axis that gives it.
-
-    Attributes
-    ----------
-    signed : bool
-        Whether the angle has a sense.
-    direction : ndarray, shape (3,)
-        Unit dominant axis, about which a positive angle turns; without a sense, the leading direction.
-    ratio : float
-        Second eigenvalue over the first of the axes' second moments: 0 for one axis, 1 where none goes before others.
-    sigma : float
-        Noise of a component of the rotation, radians, as it was used.
-    counted : bool
-        Whole turns were counted along time: the motion turns all the way round.
-    tied : bool
-        The excursions to both sides are equal: the one made first is positive.
-    angle : ndarray, shape (N,)
-        Theta, radians; NaN where there is no pose.
-    sign : ndarray, shape (N,)
-        1 or -1: the axis of theta is that of the quaternion with a positive scalar part times this; NaN with the angle.
-    turns : ndarray, shape (N,)
-        Whole turns k: ``theta = sign phi + 2 pi k``, with phi from 0 to pi; NaN with the angle.
-    twist : ndarray, shape (N,)
-        Rotation about `direction` alone, radians, whole turns included: where motions turn back, and nothing else.
-    largest_jump : float
-        How far theta moves beyond the rotation between two adjacent frames, at most; radians.
-    jump_row : int or None
-        Row before that step; None where theta moves as far as the joint does.
-    jumps : int
-        Steps that go beyond by more than 20 deg.
-    """
-
-    signed: bool
-    direction: Float
-    ratio: float
-    sigma: float
-    counted: bool
-    tied: bool
-    angle: Float
-    sign: Float
-    turns: Float
-    twist: Float
-    largest_jump: float
-    jump_row: int | None
-    jumps: int
-
-    @property
-    def doubtful(self) -> bool:
-        """Whether another reference pose may decide otherwise that there is a sense, or that there is none."""
-        return DOUBTFUL_RATIO[0] < self.ratio < DOUBTFUL_RATIO[1]
 
 
 class _Rotation(NamedTuple):
@@ -157,7 +102,7 @@ def sense_of(
     noise = rotation_noise(quat) if sigma is None else sigma
     rotation = _Rotation.of(quat[rows])
     direction, ratio = _dominant(rotation.vector, noise)
-    has_sense = ratio <= _DOMINANT_RATIO if signed == "auto" else signed == "yes"
+    has_sense = ratio <= DOMINANT_RATIO if signed == "auto" else signed == "yes"
     along = rotation.vector @ direction
     psi = 2.0 * np.arctan2(along, rotation.scalar)
     good = rotation.scalar**2 + along**2 >= _LEAST_TWIST_SQUARE

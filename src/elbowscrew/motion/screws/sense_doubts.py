@@ -1,0 +1,52 @@
+"""What is doubtful about the sense of a rotation."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowscrew.model import QualityWarning, Sense
+from elbowscrew.motion.screws.sense import DOMINANT_RATIO, LARGE_JUMP, SignedChoice
+
+
+def sense_warnings(sense: Sense, frame: NDArray[np.int64], chosen: SignedChoice) -> tuple[QualityWarning, ...]:
+    """Say where the angle has no sense, where its sense hangs on little, and where it leaps.
+
+    Parameters
+    ----------
+    sense : Sense
+    frame : ndarray of int64, shape (N,)
+    chosen : {"auto", "yes", "no"}
+        The setting: what somebody has decided is not doubted.
+    """
+    found = []
+    ratio = f"the ratio of the second direction to the first is {sense.ratio:.2f}"
+    if chosen == "auto" and not sense.signed:
+        message = (
+            f"no axis dominates the motion ({ratio}; one axis leaves {DOMINANT_RATIO:.2f} at most): theta is the "
+            "rotation since the reference without a sense, and whatever carries a sense is empty; --signed yes takes "
+            "the leading direction for the axis"
+        )
+        found.append(QualityWarning(code="unsigned", message=message))
+    if chosen == "auto" and sense.doubtful:
+        answer = "has a sense" if sense.signed else "has none"
+        message = (
+            f"whether theta has a sense hangs on the reference pose here ({ratio}, close to {DOMINANT_RATIO:.2f}): it "
+            f"{answer}; --signed yes or no decides, or choose another --reference"
+        )
+        found.append(QualityWarning(code="sense-doubtful", message=message))
+    if sense.tied:
+        message = (
+            "the rotation goes as far to one side of the reference as to the other: the side it went to first is the "
+            "positive one; another --reference makes them differ"
+        )
+        found.append(QualityWarning(code="sense-tied", message=message))
+    if sense.jump_row is not None and sense.largest_jump > LARGE_JUMP:
+        steps = "1 step" if sense.jumps == 1 else f"{sense.jumps} steps"
+        message = (
+            f"in {steps} theta moves by more than {np.degrees(LARGE_JUMP):.0f} deg beyond the joint's own rotation, by "
+            f"{np.degrees(sense.largest_jump):.0f} deg after frame {frame[sense.jump_row]}: there the axis changes its "
+            "side; the rotation error of the model does not know of it"
+        )
+        found.append(QualityWarning(code="theta-jumps", message=message))
+    return tuple(found)
