@@ -255,7 +255,7 @@ def beyond_half_turn(random: Random) -> SenseMotion:
 def beyond_half_turn_gaps(random: Random) -> SenseMotion:
     """Beyond the half turn, and lost on most of the ways there and back."""
     x = strokes(np.full(4, 200.0), 60)
-    lost = (x > 50.0) & (x < 192.0) & (random.random(x.size) < 2.0)
+    lost = (x > 50.0) & (x < 192.0)
     return _finished(rotation(np.radians(x), any_axis(random)), x, random, lost=lost)
 
 

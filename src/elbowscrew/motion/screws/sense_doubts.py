@@ -20,7 +20,7 @@ def sense_warnings(sense: Sense, frame: NDArray[np.int64], chosen: SignedChoice)
         The setting: what somebody has decided is not doubted.
     """
     found = []
-    ratio = f"the ratio of the second direction to the first is {sense.ratio:.2f}"
+    ratio = f"the ratio of the second direction to the first is {sense.ratio:.3f}"
     if chosen == "auto" and not sense.signed:
         message = (
             f"no axis dominates the motion ({ratio}; one axis leaves {DOMINANT_RATIO:.2f} at most): theta is the "
