@@ -49,6 +49,8 @@ class Sense(Brief):
         Row before that step; None where theta moves as far as the joint does.
     jumps : int
         Steps that go beyond by more than 20 deg.
+    bridged_rows : tuple of int
+        Rows before gaps over which the whole turns are those that the speed beside them gives: over half a turn.
     """
 
     signed: bool
@@ -64,6 +66,7 @@ class Sense(Brief):
     largest_jump: float
     jump_row: int | None
     jumps: int
+    bridged_rows: tuple[int, ...] = ()
 
     @property
     def doubtful(self) -> bool:

@@ -10,6 +10,7 @@ from sense_motions import KINDS, conjugate, made, noisy, product, rotation, shar
 
 from elbowscrew.model import Sense
 from elbowscrew.motion.screws.sense import angle_beside, modeled_angle, rotation_noise, sense_of
+from elbowscrew.motion.screws.sense_doubts import sense_warnings
 
 Float = NDArray[np.float64]
 
@@ -133,6 +134,19 @@ def test_crank_of_several_turns_is_counted_also_over_a_gap() -> None:
     assert sense.counted
     assert np.degrees(sense.angle[known]) == pytest.approx(x[known], abs=1e-6)
     assert np.degrees(sense.twist[known]) == pytest.approx(x[known], abs=1e-6)
+    assert sense.bridged_rows == (99,)
+    told = [doubt for doubt in sense_warnings(sense, np.arange(1000, 1400), "auto") if doubt.code == "turns-over-gap"]
+    assert len(told) == 1
+    assert "after frame 1099" in told[0].message
+
+
+def test_short_gaps_of_a_crank_hide_no_turns() -> None:
+    quat = hinge(np.linspace(0.0, 1500.0, 400))
+    quat[100:110] = np.nan  # 41 deg
+    sense = sense_of(quat, np.arange(400) / 100.0, 0)
+    assert sense.counted
+    assert sense.bridged_rows == ()
+    assert not [doubt for doubt in sense_warnings(sense, np.arange(400), "auto") if doubt.code == "turns-over-gap"]
 
 
 def test_crank_with_every_second_frame_lost_is_counted() -> None:

@@ -183,6 +183,27 @@ def test_the_limits_of_a_step_can_be_changed() -> None:
     assert checked(pose, max_turn_deg_s=900.0)[1] == []
 
 
+def test_a_body_that_really_turns_fast_is_told_with_its_speed_and_the_option_that_keeps_it() -> None:
+    angle = np.radians(40.0) * np.arange(120)  # 4000 deg/s at 100 Hz
+    fast = body(dual_quat_from_screw(angle, 0.0, [0.0, 0.6, 0.8], [0.0, 0.0, 0.0]))
+    taken = Recording.from_bodies([fast], rate_hz=100)
+    with pytest.raises(AnalysisError, match=r"evenly there, at up to 4000 deg/s.* --max-turn 4800 keeps it"):
+        analyze(taken)
+    kept = analyze(taken, Settings(max_turn_deg_s=4800))
+    assert np.degrees(kept.screw.angle) == pytest.approx(np.degrees(angle), abs=1e-6)
+
+
+def test_flips_are_not_taken_for_a_fast_body() -> None:
+    pose = series(60)
+    flip = dq.dual_quat_from_pose(qn.quat_from_rotation_vector([0.0, 2.5, 0.0]), [0.0, 0.0, 0.0])
+    pose[20:30:2] = dq.multiply(pose[20:30:2], flip)
+    one = body(pose)
+    taken = Recording.from_bodies([one], rate_hz=100)
+    messages = [warning.message for warning in check_tracking(one, taken, elapsed_time(taken), Settings()).warnings]
+    assert messages
+    assert not any("evenly" in message for message in messages)
+
+
 def test_a_motion_that_goes_on_behind_a_gap_is_no_leap() -> None:
     pose = series(400)
     pose[100:200] = np.nan

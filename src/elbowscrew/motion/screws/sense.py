@@ -106,7 +106,7 @@ def sense_of(
     along = rotation.vector @ direction
     psi = 2.0 * np.arctan2(along, rotation.scalar)
     good = rotation.scalar**2 + along**2 >= _LEAST_TWIST_SQUARE
-    turns, counted = _whole_turns(psi, good, rows, time_s[rows])
+    turns, counted, bridged = _whole_turns(psi, good, rows, time_s[rows])
     turns -= turns[rows == reference_row].sum()  # of the one row, or 0 without it
     twist = psi + _TURN * turns
     if has_sense:
@@ -136,6 +136,7 @@ def sense_of(
         largest_jump=float(beyond.max()) if jumped else 0.0,
         jump_row=int(rows[np.argmax(beyond)]) if jumped else None,
         jumps=int((beyond > LARGE_JUMP).sum()),
+        bridged_rows=tuple(bridged.tolist()),
     )
 
 
@@ -229,21 +230,21 @@ def _dominant(vector: Float, noise: float) -> tuple[Float, float]:
     return directions[:, 2], ratio
 
 
-def _whole_turns(psi: Float, good: Bool, rows: Rows, time_s: Float) -> tuple[Float, bool]:
-    """Whole turns of each known row, and whether they were counted along time."""
+def _whole_turns(psi: Float, good: Bool, rows: Rows, time_s: Float) -> tuple[Float, bool, Rows]:
+    """Whole turns of each known row, whether they were counted along time, and the rows before gaps they hang on."""
     chosen = np.flatnonzero(good)
     if chosen.size < 2:
-        return np.zeros(psi.size), False
+        return np.zeros(psi.size), False, rows[:0]
     clear = psi[chosen]
     step = _wrapped(np.diff(clear))
     span = np.diff(rows[chosen])
     cut = _free_cut(clear, step, span == 1)
     if cut is None:
-        count = _turns_along_time(clear, step, span, time_s[chosen])
-        return count[np.clip(np.cumsum(good) - 1, 0, None)], True
+        count, bridged = _turns_along_time(clear, step, span, time_s[chosen])
+        return count[np.clip(np.cumsum(good) - 1, 0, None)], True, rows[chosen[bridged]]
     # The window of one turn that holds 0, the reference, begins and ends at the cut.
     outside = psi > cut if cut > 0.0 else psi < cut
-    return np.where(outside, -np.sign(cut), 0.0), False
+    return np.where(outside, -np.sign(cut), 0.0), False, rows[:0]
 
 
 def _free_cut(psi: Float, step: Float, adjacent: Bool) -> float | None:
@@ -264,8 +265,15 @@ def _free_cut(psi: Float, step: Float, adjacent: Bool) -> float | None:
     return max(cuts)[1] if cuts else None
 
 
-def _turns_along_time(psi: Float, step: Float, span: Rows, time_s: Float) -> Float:
-    """Unwrap the twist, over gaps by the mean of the slopes at their two sides."""
+def _turns_along_time(psi: Float, step: Float, span: Rows, time_s: Float) -> tuple[Float, Rows]:
+    """Unwrap the twist, over gaps by the mean of the slopes at their two sides.
+
+    Returns
+    -------
+    turns : ndarray, shape (M,)
+    bridged : ndarray of int
+        Steps over a gap in which the slopes make the motion turn by more than half a turn.
+    """
     course = np.concatenate([[0.0], np.cumsum(step)])
     gap = np.flatnonzero(span > 1)
     stretch = np.cumsum(np.concatenate([[0], (span > _LONG_GAP_ROWS).astype(np.intp)]))
@@ -281,10 +289,11 @@ def _turns_along_time(psi: Float, step: Float, span: Rows, time_s: Float) -> Flo
     sides = (gap > before).astype(np.float64) + (after > gap + 1)
     slope = slopes.sum(axis=0) / np.maximum(sides, 1.0)
     more = np.zeros(step.size)
-    more[gap] = np.round((slope * (time_s[gap + 1] - time_s[gap]) - step[gap]) / _TURN)
+    turned = slope * (time_s[gap + 1] - time_s[gap])
+    more[gap] = np.round((turned - step[gap]) / _TURN)
     course += _TURN * np.concatenate([[0.0], np.cumsum(more)])
     turns: Float = np.round((psi[0] + course - psi) / _TURN)
-    return turns
+    return turns, gap[np.abs(turned) > np.pi]
 
 
 def _passed_aside(sheets: _Sheets, phi: Float, noise: float) -> _Sheets:

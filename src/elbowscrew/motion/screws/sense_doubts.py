@@ -49,4 +49,12 @@ def sense_warnings(sense: Sense, frame: NDArray[np.int64], chosen: SignedChoice)
             "side; the rotation error of the model does not know of it"
         )
         found.append(QualityWarning(code="theta-jumps", message=message))
+    if sense.bridged_rows:
+        first = frame[sense.bridged_rows[0]]
+        gaps = "a gap" if len(sense.bridged_rows) == 1 else f"{len(sense.bridged_rows)} gaps"
+        message = (
+            f"the joint turns all the way round, and in {gaps} (the first after frame {first}) by more than half a "
+            "turn: the whole turns there are those of the speed beside the gap, and theta behind it hangs on them"
+        )
+        found.append(QualityWarning(code="turns-over-gap", message=message))
     return tuple(found)

@@ -65,6 +65,7 @@ def tracked_bodies(recording: Recording, settings: Settings) -> TrackedBodies:
                 f"body {body.name!r} is tracked in {share:.1f} % of {body.loss.size} frames ({reasons}); at least "
                 f"{settings.min_tracked_percent:g} % are needed (--min-tracked; "
                 "for leaps see --max-turn and --max-speed, for frozen poses --frozen)"
+                + "".join(f"; {warning.message}" for warning in found.warnings if warning.code == "leap")
             )
             raise AnalysisError(msg)
     quality = tuple(body_quality(raw, found, recording) for raw, found in zip(chosen, checked, strict=True))

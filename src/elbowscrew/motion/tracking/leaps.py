@@ -9,7 +9,8 @@ from typing import Final, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowscrew.geometry import sclerp
+from elbowscrew.geometry import quaternion, sclerp
+from elbowscrew.geometry._small_angle import length
 from elbowscrew.geometry.dual_quaternion import align_signs
 from elbowscrew.model import QualityWarning, Recording, RigidBody, TrackingLoss
 from elbowscrew.motion.difference import angle_between, origin_distance
@@ -39,6 +40,11 @@ _SPIKE_DISTANCE_M: Final = 0.06
 _SPIKE_SHARE: Final = 0.25
 
 _LONGEST_EXCURSION_S: Final = 1.0
+
+# So many steps beyond the limits, each like the one before it to this share, are a fast body and no flips.
+_STEADY_STEPS: Final = 3
+_STEADY_SHARE: Final = 0.25
+_ROOM_ABOVE: Final = 1.2
 
 # Two bodies are swapped if each comes to lie where the other was, much nearer than to where it was itself.
 _CROSSED_SHARE: Final = 0.25
@@ -179,13 +185,14 @@ def _without_leaps(
     leaps = np.flatnonzero(~steps.possible(steady[:-1], steady[1:]))
     outside, unresolved = _excursions(np.split(steady, leaps + 1), steps, elapsed)
     lost = np.sort(np.concatenate([spikes, outside]))
+    fast = steps.steady_turn(steady, leaps)
     arrivals = steady[leaps + 1]
     limits = f"limits {settings.max_turn_deg_s:g} deg/s and {settings.max_speed_m_s:g} m/s: --max-turn, --max-speed"
     if lost.size:
         before = known[np.maximum(np.searchsorted(known, lost) - 1, 0)]
         message = (
             f"body {body.name!r} leaps out of its motion{steps.told(before, lost)}: {_frames(lost, recording)} "
-            f"taken as lost ({limits})"
+            f"taken as lost ({limits}){_if_it_is_real(fast)}"
         )
         warnings.append(frames_warning("leap", message, lost, recording))
     if unresolved.size:
@@ -193,6 +200,7 @@ def _without_leaps(
         message = (
             f"body {body.name!r} leaps{steps.told(before, unresolved)} at {_frames(unresolved, recording)} and goes on "
             f"there: flipped, swapped or another body from there on or until then; look at the recording ({limits})"
+            f"{_if_it_is_real(fast)}"
         )
         warnings.append(frames_warning("leap-unresolved", message, unresolved, recording))
     return _lost(body, lost, TrackingLoss.LEAP), np.union1d(arrivals, spikes), unresolved
@@ -234,6 +242,32 @@ class _Steps:
         # Of two in a row neither is single: they are left to the limits of a step.
         return rows[~(np.isin(rows - 1, rows) | np.isin(rows + 1, rows))]
 
+    def steady_turn(self, rows: Index, leaps: Index) -> float | None:
+        """Fastest turn (deg/s) in a run of leaps that are alike; None where leaps are single or differ.
+
+        Parameters
+        ----------
+        rows : ndarray of int
+            Rows of the poses that are no spikes.
+        leaps : ndarray of int
+            Steps between them that are not possible.
+        """
+        if leaps.size < _STEADY_STEPS:
+            return None
+        start, end = self._pose[rows[leaps], :4], self._pose[rows[leaps + 1], :4]
+        step = quaternion.multiply(quaternion.conjugate(start), end)
+        step = np.where(step[:, :1] < 0.0, -step, step)
+        half_sine = length(step[:, 1:])
+        angle = 2.0 * np.arctan2(half_sine, step[:, 0])
+        turn = step[:, 1:] * (angle / np.maximum(half_sine, np.finfo(float).tiny))[:, None]
+        time_s = np.maximum(self._elapsed[rows[leaps + 1]] - self._elapsed[rows[leaps]], self._period_s)
+        rate = turn / time_s[:, None]
+        size = length(rate)
+        alike = (np.diff(leaps) == 1) & (length(np.diff(rate, axis=0)) <= _STEADY_SHARE * size[1:])
+        # Ends of runs: the sum of the last so many comparisons is full.
+        full = np.convolve(alike, np.ones(_STEADY_STEPS - 1), mode="valid") == _STEADY_STEPS - 1
+        return float(np.degrees(size[_STEADY_STEPS - 1 :][full].max())) if full.any() else None
+
     def told(self, start: Index, end: Index) -> str:
         """Tell of the largest step."""
         turn, distance = self._between(start, end)
@@ -242,6 +276,17 @@ class _Steps:
     def _between(self, start: Index, end: Index) -> tuple[Float, Float]:
         before, after = _taken(self._pose, start), _taken(self._pose, end)
         return angle_between(before, after), origin_distance(before, after)
+
+
+def _if_it_is_real(turn_deg_s: float | None) -> str:
+    """Tell of a body that turns faster than the limit but evenly, and of the option that keeps it."""
+    if turn_deg_s is None:
+        return ""
+    enough = 100.0 * np.ceil(_ROOM_ABOVE * turn_deg_s / 100.0 - 1e-6)
+    return (
+        f"; it turns evenly there, at up to {turn_deg_s:.0f} deg/s, as a fast body does and a flip does not: if that "
+        f"is real, --max-turn {enough:.0f} keeps it"
+    )
 
 
 def _taken(pose: Float, rows: Index) -> Float:
