@@ -18,6 +18,7 @@ from elbowscrew.motion.movements.feet import (
     pooled,
     pooled_feet,
     slope_at,
+    unsmoothed,
 )
 from elbowscrew.motion.movements.rests import IN_DOUBT_SD, SHORTEST_REST_S, Strokes, strokes_of
 from elbowscrew.motion.movements.swings import Swings, fast_content, noise_of, swings_of
@@ -53,7 +54,7 @@ class Cycles:
     start_s, inversion_s, end_s : ndarray, shape (C,)
         Foot of the movement out, middle of the time at the top, foot of the movement back.
     start_sd_s, inversion_sd_s, end_sd_s : ndarray, shape (C,)
-        Their standard deviations: noise, and 2.5 % of the distance to the half-way crossing, as the law is assumed.
+        Their standard deviations: noise, and 2 % of the distance to the half-way crossing, as the law is assumed.
     incomplete : ndarray of bool, shape (C,)
         Whether the recording begins or ends on the way: the joint comes less than 90 % of the way there.
     start_reasons, inversion_reasons, end_reasons : tuple of tuple of str
@@ -215,9 +216,10 @@ class _Flanks(NamedTuple):
     falling: Feet
     out: Float
     back: Float
+    brows: Float
 
 
-def _flanks(swings: Swings) -> _Flanks:
+def _flanks(swings: Swings, strokes: Strokes) -> _Flanks:
     """Take the tops that count, and the feet of their flanks, pooled where they do not differ."""
     smooth, turns = swings.smooth, swings.turns
     values = smooth[turns].copy()
@@ -227,19 +229,43 @@ def _flanks(swings: Swings) -> _Flanks:
     raw = values.copy()
     values[tops], values[lows] = pooled(raw[tops], variance), pooled(raw[lows], variance)
     feet = [
-        feet_of(smooth, turns[low], turns[tops], values[low], values[tops], swings.smooth_noise)
+        feet_of(smooth, turns[low], turns[tops], values[low], values[tops], swings.smooth_noise, swings.cutoff)
         for low in (tops - 1, tops + 1)
     ]
-    rising, falling = feet
+    rising, out, before = _with_first_strokes(feet[0], turns[tops - 1], turns[tops], strokes)
+    falling, back, after = _with_first_strokes(feet[1], turns[tops + 1], turns[tops], strokes)
     return _Flanks(
         tops=tops,
         turns=turns,
         values=values,
         rising=rising,
         falling=falling,
-        out=pooled_feet(rising.low, rising.low_var),
-        back=pooled_feet(falling.low, falling.low_var),
+        out=out,
+        back=back,
+        brows=np.column_stack([before, after]),
     )
+
+
+def _with_first_strokes(feet: Feet, lows: Index, tops: Index, strokes: Strokes) -> tuple[Feet, Float, Float]:
+    """Distances to the feet, pooled; where the joint stops on the way, to the foot of the flank's lowest stroke.
+
+    The last of the three is where the flank's highest stroke has its foot at the top, NaN where there are no stops.
+    """
+    first = np.searchsorted(strokes.places, np.minimum(lows, tops))
+    last = np.searchsorted(strokes.places, np.maximum(lows, tops))
+    stops = last - first > 1
+    kappa = feet.low.copy()
+    kappa[~stops] = pooled_feet(feet.low[~stops], feet.low_var[~stops])
+    variance = feet.low_foot_var.copy()
+    rises = lows < tops
+    lowest = np.where(rises, first, last - 1)[stops]
+    foot = np.where(rises[stops], strokes.begin[lowest], strokes.end[lowest])
+    kappa[stops] = np.abs(feet.half[stops] - foot)
+    variance[stops] = np.where(rises[stops], strokes.begin_sd[lowest], strokes.end_sd[lowest]) ** 2
+    highest = np.where(rises, last - 1, first)[stops]
+    brow = np.full(kappa.size, np.nan)
+    brow[stops] = np.where(rises[stops], strokes.end[highest], strokes.begin[highest])
+    return feet._replace(low_foot_var=variance), kappa, brow
 
 
 def _tops(values: Float) -> Index:
@@ -284,7 +310,7 @@ def _valley(flanks: _Flanks, k: int) -> _Turn:
 
 
 def _foot_var(feet: Feet, kappa: Float, k: int) -> float:
-    return float(feet.low_var[k] + (LAW_SD * kappa[k]) ** 2)
+    return float(feet.low_foot_var[k] + (LAW_SD * kappa[k]) ** 2)
 
 
 def _cycle_samples(swings: Swings, flanks: _Flanks) -> tuple[Float, Float]:
@@ -319,11 +345,17 @@ def _inversion(swings: Swings, flanks: _Flanks, k: int) -> tuple[float, float]:
     depth = LOW_SHARE * (flanks.values[place] - flanks.values[[place - 1, place + 1]])
     before = crossing(smooth, top, int(rise), float(smooth[top] - depth[0]))
     after = crossing(smooth, top, int(np.ceil(fall)), float(smooth[top] - depth[1]))
-    out, back = scale * (before - rise), scale * (fall - after)
-    slopes = [max(slope_at(smooth, where), 1e-12) for where in (before, after)]
-    noise = 0.25 * scale**2 * sum((swings.smooth_noise / slope) ** 2 for slope in slopes)
-    noise += 0.25 * (scale - 1.0) ** 2 * float(flanks.rising.half_var[k] + flanks.falling.half_var[k])
-    variance = noise + 0.25 * LAW_SD**2 * (out**2 + back**2)
+    out, out_gain = unsmoothed(scale * (before - rise), swings.cutoff)
+    back, back_gain = unsmoothed(scale * (fall - after), swings.cutoff)
+    brows = flanks.brows[k].tolist()
+    out = brows[0] - rise if np.isfinite(brows[0]) else out
+    back = fall - brows[1] if np.isfinite(brows[1]) else back
+    # What is unknown of the law, alike on both sides, leaves the middle between them where it is.
+    half_vars = float(flanks.rising.half_var[k]), float(flanks.falling.half_var[k])
+    variance = 0.25 * LAW_SD**2 * (out - back) ** 2
+    for gain, where, half_var in zip((out_gain, back_gain), (before, after), half_vars, strict=True):
+        slope = max(slope_at(smooth, where), 1e-12)
+        variance += 0.25 * ((gain * scale * swings.smooth_noise / slope) ** 2 + (gain * scale - 1.0) ** 2 * half_var)
     if rise + out <= fall - back:
         return 0.5 * (rise + out + fall - back), variance
     return rise + (fall - rise) * out / max(out + back, 1e-12), variance
@@ -342,7 +374,7 @@ def _cuts_of(swings: Swings | None, strokes: Strokes | None, elapsed: Float, kno
             stroke_begin_s=none, stroke_end_s=none, outward=flags, turns=flags,
         )  # fmt: skip
         return Cuts(cycles=cycles, movements=movements, cutoff_hz=np.nan, noise=np.nan, least_swing=np.nan)
-    flanks = _flanks(swings)
+    flanks = _flanks(swings, strokes)
     gaps = _gaps(elapsed, known)
     fast = bool(flanks.tops.size) and fast_content(swings, _median_rise(flanks))
     return Cuts(

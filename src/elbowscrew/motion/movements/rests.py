@@ -27,6 +27,8 @@ class Strokes(NamedTuple):
 
     Attributes
     ----------
+    places : ndarray of int64, shape (K + 1,)
+        Turns and stops between which the strokes lie.
     begin, end : ndarray
         Feet of the stroke; where two strokes overlap there, both at the turn between them.
     begin_sd, end_sd : ndarray
@@ -38,6 +40,7 @@ class Strokes(NamedTuple):
         Time between a stroke's foot and the next one's, seconds; negative where they overlap.
     """
 
+    places: Index
     begin: Float
     end: Float
     begin_sd: Float
@@ -77,7 +80,7 @@ def strokes_of(swings: Swings) -> Strokes:
         values = _pooled_levels(values, outward, swings)
     lows, tops = np.where(outward, [places[:-1], places[1:]], [places[1:], places[:-1]])
     low_values, top_values = np.where(outward, [values[:-1], values[1:]], [values[1:], values[:-1]])
-    feet = feet_of(swings.smooth, lows, tops, low_values, top_values, swings.smooth_noise)
+    feet = feet_of(swings.smooth, lows, tops, low_values, top_values, swings.smooth_noise, swings.cutoff)
     before, after, before_var, after_var = _in_time(feet, outward)
     begin, end = feet.half - before, feet.half + after
     begin_sd = np.hypot(np.sqrt(before_var), LAW_SD * before)
@@ -89,6 +92,7 @@ def strokes_of(swings: Swings) -> Strokes:
     middle = feet.half[:-1] + gap * after[:-1] / np.maximum(need, 1e-12)
     end[:-1][over] = begin[1:][over] = middle[over]
     return Strokes(
+        places=places,
         begin=np.clip(begin, 0.0, swings.smooth.size - 1.0),
         end=np.clip(end, 0.0, swings.smooth.size - 1.0),
         begin_sd=begin_sd,
@@ -107,7 +111,10 @@ def _in_time(feet: Feet, outward: Bool) -> tuple[Float, Float, Float, Float]:
     for kappa, variance in ((before, before_var), (after, after_var)):
         for kind in (outward, ~outward):
             kappa[kind] = pooled_feet(kappa[kind], variance[kind])
-    return before, after, before_var, after_var
+    before_foot, after_foot = np.where(
+        outward, [feet.low_foot_var, feet.top_foot_var], [feet.top_foot_var, feet.low_foot_var]
+    )
+    return before, after, before_foot, after_foot
 
 
 def _pooled_levels(values: Float, outward: Bool, swings: Swings) -> Float:

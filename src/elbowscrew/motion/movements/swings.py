@@ -79,6 +79,11 @@ class Swings(NamedTuple):
     close_removed: Index
     fast_rad: float
 
+    @property
+    def cutoff(self) -> float:
+        """Cut-off in cycles a sample."""
+        return self.cutoff_hz / self.rate_hz
+
 
 def swings_of(twist: Float, rate_hz: float, noise: float | None = None, least_swing: float | None = None) -> Swings:
     """Smooth a rotation and find where it turns.
