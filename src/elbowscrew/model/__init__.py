@@ -27,7 +27,7 @@ from elbowscrew.model.recording import (
     marker_matches,
     out_of_reach,
 )
-from elbowscrew.model.repetitions import MovementPhases, Repeatability, Repetitions
+from elbowscrew.model.repetitions import CycleCurves, MovementPhases, Repeatability, Repetitions
 from elbowscrew.model.results import Analysis, JointMotion, MeanAxis, ScrewMotion
 
 __all__ = [
@@ -39,6 +39,7 @@ __all__ = [
     "ComparedModels",
     "ComparedOverTrials",
     "Comparison",
+    "CycleCurves",
     "FittedJoint",
     "HelicalSteps",
     "InstantaneousMotion",

@@ -17,7 +17,7 @@ from elbowscrew.model.joint_axis import JointAxis
 from elbowscrew.model.modeled import BodyPoints, InterpolatedMotion, Keyframes, PhaseLaw, Selection
 from elbowscrew.model.quality import BodyQuality
 from elbowscrew.model.recording import QualityWarning, Recording, RigidBody
-from elbowscrew.model.repetitions import MovementPhases, Repeatability, Repetitions
+from elbowscrew.model.repetitions import CycleCurves, MovementPhases, Repeatability, Repetitions
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -169,6 +169,7 @@ class Analysis(Brief):
         None if none were asked for.
     phases : MovementPhases
     repetitions : Repetitions
+    cycle_curves : CycleCurves
     repeatability : Repeatability
     anatomy : AnatomicalMotion or None
         None without landmarks.
@@ -203,6 +204,7 @@ class Analysis(Brief):
     steps: HelicalSteps | None
     phases: MovementPhases
     repetitions: Repetitions
+    cycle_curves: CycleCurves
     repeatability: Repeatability
     anatomy: AnatomicalMotion | None
     keyframes: Keyframes

@@ -361,19 +361,24 @@ def _inversion(swings: Swings, flanks: _Flanks, k: int) -> tuple[float, float]:
     return rise + (fall - rise) * out / max(out + back, 1e-12), variance
 
 
+def no_cycles() -> Cycles:
+    """Give cycles of which there is none."""
+    none = np.empty(0)
+    return Cycles(
+        start_s=none, inversion_s=none, end_s=none, start_sd_s=none, inversion_sd_s=none, end_sd_s=none,
+        incomplete=np.empty(0, dtype=np.bool_), start_reasons=(), inversion_reasons=(), end_reasons=(),
+    )  # fmt: skip
+
+
 def _cuts_of(swings: Swings | None, strokes: Strokes | None, elapsed: Float, known: NDArray[np.intp]) -> Cuts:
     if swings is None or strokes is None:
         none = np.empty(0)
-        cycles = Cycles(
-            start_s=none, inversion_s=none, end_s=none, start_sd_s=none, inversion_sd_s=none, end_sd_s=none,
-            incomplete=np.empty(0, dtype=np.bool_), start_reasons=(), inversion_reasons=(), end_reasons=(),
-        )  # fmt: skip
         flags = np.empty(0, dtype=np.bool_)
         movements = Movements(
             onset_s=none, offset_s=none, onset_sd_s=none, offset_sd_s=none, onset_reasons=(), offset_reasons=(),
             stroke_begin_s=none, stroke_end_s=none, outward=flags, turns=flags,
         )  # fmt: skip
-        return Cuts(cycles=cycles, movements=movements, cutoff_hz=np.nan, noise=np.nan, least_swing=np.nan)
+        return Cuts(cycles=no_cycles(), movements=movements, cutoff_hz=np.nan, noise=np.nan, least_swing=np.nan)
     flanks = _flanks(swings, strokes)
     gaps = _gaps(elapsed, known)
     fast = bool(flanks.tops.size) and fast_content(swings, _median_rise(flanks))

@@ -26,6 +26,7 @@ _LOWEST_HZ: Final = 2.0
 _HIGHEST_HZ: Final = 12.0
 _HIGHEST_SHARE: Final = 0.2
 _END_SHARE: Final = 0.4
+_POSSIBLE_SHARE: Final = 1e-3
 _SETTLED_PERIODS: Final = 3.0
 
 # A swing is at least so large: twice the largest deviation that smoothed noise reaches, two degrees, a tenth of all.
@@ -184,7 +185,8 @@ def _cutoff(twist: Float, rate_hz: float, sigma: float) -> float:
     energy = np.cumsum(np.maximum(np.abs(np.fft.rfft(centered, length)) ** 2 - sigma**2 * count, 0.0))
     rhythm = float(np.searchsorted(energy, _ENERGY_SHARE * energy[-1])) * rate_hz / length if energy[-1] > 0.0 else 0.0
     highest = min(_HIGHEST_HZ, _HIGHEST_SHARE * rate_hz)
-    return float(min(max(_OVER_RHYTHM * rhythm, _LOWEST_HZ), highest))
+    possible = _POSSIBLE_SHARE * rate_hz
+    return float(max(min(max(_OVER_RHYTHM * rhythm, _LOWEST_HZ), highest), possible))
 
 
 def _end_level(series: Float, reach: int) -> float:
