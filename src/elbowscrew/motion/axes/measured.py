@@ -52,7 +52,7 @@ def measured_instantaneous_motion(measured: Measurement, mean: MeanAxis, setting
 
 
 def twist_smoothing(measured: Measurement, settings: Settings) -> Smoothing:
-    """Filter that a twist needs: at the cut-off of residual analysis, without a ceiling; fast motion keeps its speed."""
+    """Filter that a twist needs: at the cut-off of residual analysis, without a ceiling, so that speeds are kept."""
     smoothing = measured.smoothing
     try:
         found = smoothing.automatic(measured.proximal, measured.distal, settings).cutoff_hz or _TWIST_HZ
