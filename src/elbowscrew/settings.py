@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import difflib
 import itertools
 import tomllib
@@ -102,6 +103,13 @@ class Settings(BaseModel):
         Give theta a sense: where one axis dominates the motion, always, or never.
     robust : bool
         Weigh outliers down in the joint's axis.
+    cycle_swing_deg : float or None
+        Least swing between turns that counts; None for what noise and range ask for.
+    cycles : tuple of (float, float) or None
+        Start and end time of each cycle in seconds of the recording's own clock, or the CSV file that has them; None
+        to find them.
+    no_cycles : bool
+        Look for no cycles.
     inversion : int or None
         Frame where the motion turns back; None for the frame of the largest angle.
     keyframes : tuple of int or None
@@ -180,6 +188,13 @@ class Settings(BaseModel):
     )
     signed: Literal["auto", "yes", "no"] = Field("auto", description="Give theta a sense, by the dominant axis")
     robust: bool = Field(False, description="Weigh outliers down in the joint's axis")
+    cycle_swing_deg: float | None = Field(
+        None, gt=0, lt=360, description="Least swing between the turns of a cycle, in degrees"
+    )
+    cycles: tuple[tuple[float, float], ...] | None = Field(
+        None, min_length=1, description="File with start_time_s and end_time_s of each cycle"
+    )
+    no_cycles: bool = Field(False, description="Look for no cycles")
     inversion: int | None = Field(None, description="Frame where the motion turns back")
     keyframes: tuple[int, ...] | None = Field(None, min_length=2, description="Frames the model passes through")
     phases: Literal["movement", "whole"] = Field("movement", description="Phases between rests, or the whole recording")
@@ -266,6 +281,19 @@ class Settings(BaseModel):
             msg = f"expected a cut-off above 0 Hz, found {value:g}"
             raise ValueError(msg)
         return value
+
+    @field_validator("cycles", mode="before")
+    @classmethod
+    def _cycle_times(cls, value: object) -> object:
+        """Take the path of a CSV file for the times that stand in it."""
+        return _read_cycles(Path(value)) if isinstance(value, str | Path) else value
+
+    @model_validator(mode="after")
+    def _check_cycles(self) -> Settings:
+        if self.no_cycles and self.cycles is not None:
+            msg = "--no-cycles and --cycles contradict each other; give one of them"
+            raise ValueError(msg)
+        return self
 
     @field_validator("axis_sd_deg", mode="before")
     @classmethod
@@ -365,6 +393,32 @@ def settings_from(config: Path | None = None, options: Mapping[str, Any] | None 
     if config is not None:
         _validate(table, str(config))
     return _validate({**table, **given}, "settings")
+
+
+def _read_cycles(path: Path) -> list[tuple[float, float]]:
+    """Read start and end times of cycles from a CSV file with the columns start_time_s and end_time_s."""
+    columns = ("start_time_s", "end_time_s")
+    try:
+        with path.open(encoding="utf-8-sig", newline="") as stream:
+            table = csv.DictReader(stream)
+            missing = [name for name in columns if name not in (table.fieldnames or ())]
+            if missing:
+                msg = f"{path}: expected the columns start_time_s and end_time_s, found no {' and no '.join(missing)}"
+                raise ValueError(msg)
+            times = []
+            for row in table:
+                start, end = (float(row[name] or "nan") for name in columns)
+                if not (np.isfinite([start, end]).all() and start < end):
+                    msg = f"{path}:{table.line_num}: expected a start before its end, found {row['start_time_s']} and "
+                    raise ValueError(msg + f"{row['end_time_s']}")
+                times.append((start, end))
+    except OSError as error:
+        msg = f"{path}: cannot be read as a file of cycles: {error.strerror}"
+        raise ValueError(msg) from error
+    except csv.Error as error:
+        msg = f"{path}: not a CSV file: {error}"
+        raise ValueError(msg) from error
+    return times
 
 
 def _read_toml(config: Path) -> dict[str, Any]:

@@ -112,12 +112,15 @@ STEP_COLUMNS: Final = (
 REPETITION_COLUMNS: Final = (
     *(_column(name, name, Quantity.INTEGER) for name in ("number", "start_frame", "inversion_frame", "end_frame")),
     *(_column(name, name, Quantity.NUMBER) for name in ("start_time_s", "end_time_s", "duration_s")),
+    _column("start_time_sd_s", "start_time_sd_s", Quantity.NUMBER),
+    _column("end_time_sd_s", "end_time_sd_s", Quantity.NUMBER),
+    _column("incomplete", "incomplete", Quantity.INTEGER),
     _column("theta_start", "start_angle", Quantity.ANGLE),
     _column("theta_max", "top_angle", Quantity.ANGLE),
     _column("theta_range", "angle_range", Quantity.ANGLE),
     _column("slide_range", "slide_range", Quantity.LENGTH),
-    _column("flexion_speed", "flexion_speed", Quantity.ANGULAR_VELOCITY),
-    _column("extension_speed", "extension_speed", Quantity.ANGULAR_VELOCITY),
+    _column("outward_speed", "outward_speed", Quantity.ANGULAR_VELOCITY),
+    _column("back_speed", "back_speed", Quantity.ANGULAR_VELOCITY),
     *_AXIS,
     _column("axis_deviation", "axis_deviation", Quantity.ANGLE),
 )
@@ -127,6 +130,12 @@ CURVE_COLUMNS: Final = (
     _column("theta_mean", "mean", Quantity.ANGLE),
     _column("theta_sd", "sd", Quantity.ANGLE),
     _column("count", "count", Quantity.INTEGER),
+)
+
+CYCLE_COLUMNS: Final = (
+    _column("cycle", "cycle", Quantity.INTEGER),
+    _column("percent", "percent", Quantity.NUMBER),
+    _column("theta", "angle", Quantity.ANGLE),
 )
 
 ANATOMY_COLUMNS: Final = (

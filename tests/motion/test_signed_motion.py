@@ -105,8 +105,8 @@ def test_without_a_sense_what_carries_one_is_empty(unsigned: Analysis) -> None:
     assert (angle >= 0.0).all()
     assert (angle <= np.pi).all()
     assert np.nanmin(unsigned.instantaneous.angular_velocity) >= 0.0
-    assert np.isnan(unsigned.repetitions.flexion_speed).all()
-    assert np.isnan(unsigned.repetitions.extension_speed).all()
+    assert np.isnan(unsigned.repetitions.outward_speed).all()
+    assert np.isnan(unsigned.repetitions.back_speed).all()
     assert np.nanmax(unsigned.interpolated.axis_error) <= 0.5 * np.pi
     assert np.nanmin(unsigned.interpolated.angle) >= 0.0
 
@@ -129,7 +129,7 @@ def test_the_setting_decides_and_is_not_doubted() -> None:
     forced = analyze(recording_of(ball()), Settings(signed="yes"))
     assert forced.sense.signed
     assert not codes(forced) & {"unsigned", "sense-doubtful"}
-    assert np.isfinite(forced.repetitions.flexion_speed).all()
+    assert np.isfinite(forced.repetitions.outward_speed).all()
     flat = analyze(recording_of(beside_the_reference()), Settings(signed="no"))
     assert not flat.sense.signed
     assert "unsigned" not in codes(flat)

@@ -163,6 +163,24 @@ def settings_given(
         bool | None,
         typer.Option("--robust/--no-robust", rich_help_panel=_MOTION, help="Weigh outliers down in the joint's axis."),
     ] = None,
+    cycle_swing: Annotated[
+        float | None,
+        typer.Option(
+            metavar="DEG",
+            rich_help_panel=_MOTION,
+            help="Least swing between a cycle's turns.",
+            show_default="by noise and range",
+        ),
+    ] = None,
+    cycles: Annotated[
+        str | None,
+        typer.Option(
+            metavar="FILE.CSV", rich_help_panel=_MOTION, help="Times of the cycles: start_time_s, end_time_s."
+        ),
+    ] = None,
+    no_cycles: Annotated[
+        bool | None, typer.Option("--no-cycles", rich_help_panel=_MOTION, help="Look for no cycles.")
+    ] = None,
     keyframes: Annotated[
         str | None,
         typer.Option(

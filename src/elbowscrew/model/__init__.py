@@ -27,7 +27,7 @@ from elbowscrew.model.recording import (
     marker_matches,
     out_of_reach,
 )
-from elbowscrew.model.repetitions import MovementPhases, Repeatability, Repetitions
+from elbowscrew.model.repetitions import CycleCurves, MovementPhases, Repeatability, Repetitions
 from elbowscrew.model.results import Analysis, JointMotion, MeanAxis, ScrewMotion
 from elbowscrew.model.sense import Sense
 
@@ -40,6 +40,7 @@ __all__ = [
     "ComparedModels",
     "ComparedOverTrials",
     "Comparison",
+    "CycleCurves",
     "FittedJoint",
     "HelicalSteps",
     "InstantaneousMotion",

@@ -26,31 +26,34 @@ class MovementPhases(Brief):
     onset_rows, offset_rows : ndarray of int, shape (M,)
         First and last row of each movement between rests.
     moving : ndarray of bool, shape (N,)
-    threshold : float
-        Angular velocity (rad/s) that counts as movement.
     """
 
     onset_rows: NDArray[np.int64]
     offset_rows: NDArray[np.int64]
     moving: NDArray[np.bool_]
-    threshold: float
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Repetitions(Brief):
-    """Flexion-extension cycles: a value for each of them.
+    """Cycles out and back: a value for each of them.
 
     Attributes
     ----------
     number : ndarray of int64, shape (R,)
         1, 2, ...
     start_frame, inversion_frame, end_frame : ndarray of int64, shape (R,)
+        The frames nearest to the cuts.
     start_time_s, end_time_s, duration_s : ndarray, shape (R,)
+        Of the cuts themselves, between frames.
+    start_time_sd_s, end_time_sd_s : ndarray, shape (R,)
+        Standard deviations of the cuts; NaN where they were given.
+    incomplete : ndarray of bool, shape (R,)
+        Whether the recording begins or ends on the way.
     start_angle, top_angle, angle_range : ndarray, shape (R,)
         Radians; the range is that of the cycle.
     slide_range : ndarray, shape (R,)
         Largest less smallest slide where there is an axis, meters.
-    flexion_speed, extension_speed : ndarray, shape (R,)
+    outward_speed, back_speed : ndarray, shape (R,)
         Largest angular velocity before and after the inversion, rad/s.
     axis_direction, axis_point : ndarray, shape (R, 3)
         Weighted mean of the cycle's finite axes; NaN where it has none.
@@ -64,13 +67,16 @@ class Repetitions(Brief):
     end_frame: NDArray[np.int64]
     start_time_s: Float
     end_time_s: Float
+    start_time_sd_s: Float
+    end_time_sd_s: Float
     duration_s: Float
+    incomplete: NDArray[np.bool_]
     start_angle: Float
     top_angle: Float
     angle_range: Float
     slide_range: Float
-    flexion_speed: Float
-    extension_speed: Float
+    outward_speed: Float
+    back_speed: Float
     axis_direction: Float
     axis_point: Float
     axis_deviation: Float
@@ -113,3 +119,26 @@ class Repeatability(Brief):
     def to_frame(self, angle_unit: tables.AngleUnit = "deg", length_unit: tables.LengthUnit = "mm") -> pd.DataFrame:
         """Return the columns of ``repetition_curve.csv``."""
         return tables.data_frame(self, tables.CURVE_COLUMNS, angle_unit, length_unit)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class CycleCurves(Brief):
+    """Every cycle over its own time, one after the other.
+
+    Attributes
+    ----------
+    cycle : ndarray of int64, shape (101 R,)
+        Number of the cycle.
+    percent : ndarray, shape (101 R,)
+        Time normalized from its start to its end.
+    angle : ndarray, shape (101 R,)
+        Radians; NaN where a neighboring frame has none.
+    """
+
+    cycle: NDArray[np.int64]
+    percent: Float
+    angle: Float
+
+    def to_frame(self, angle_unit: tables.AngleUnit = "deg", length_unit: tables.LengthUnit = "mm") -> pd.DataFrame:
+        """Return the columns of ``cycles.csv``."""
+        return tables.data_frame(self, tables.CYCLE_COLUMNS, angle_unit, length_unit)

@@ -17,7 +17,7 @@ from elbowscrew.model.joint_axis import JointAxis
 from elbowscrew.model.modeled import BodyPoints, InterpolatedMotion, Keyframes, PhaseLaw, Selection
 from elbowscrew.model.quality import BodyQuality
 from elbowscrew.model.recording import QualityWarning, Recording, RigidBody
-from elbowscrew.model.repetitions import MovementPhases, Repeatability, Repetitions
+from elbowscrew.model.repetitions import CycleCurves, MovementPhases, Repeatability, Repetitions
 from elbowscrew.model.sense import Sense
 
 if TYPE_CHECKING:
@@ -180,6 +180,7 @@ class Analysis(Brief):
         None if none were asked for.
     phases : MovementPhases
     repetitions : Repetitions
+    cycle_curves : CycleCurves
     repeatability : Repeatability
     anatomy : AnatomicalMotion or None
         None without landmarks.
@@ -215,6 +216,7 @@ class Analysis(Brief):
     steps: HelicalSteps | None
     phases: MovementPhases
     repetitions: Repetitions
+    cycle_curves: CycleCurves
     repeatability: Repeatability
     anatomy: AnatomicalMotion | None
     keyframes: Keyframes

@@ -27,8 +27,9 @@ from elbowscrew.motion.difference import (
 )
 from elbowscrew.motion.interpolation.model_building import JointModel, build_model
 from elbowscrew.motion.joint.measured import joint_axis_warnings, measured_joint_axis
-from elbowscrew.motion.movements.phases import find_cycles, movement_phases, velocity_everywhere
-from elbowscrew.motion.movements.repetitions import repeatability_of, repetitions_of
+from elbowscrew.motion.movements.measured import cut_warnings, measured_cuts
+from elbowscrew.motion.movements.phases import movement_phases
+from elbowscrew.motion.movements.repetitions import cycle_curves_of, repeatability_of, repetitions_of
 from elbowscrew.motion.screws.helical import helical_series
 from elbowscrew.motion.screws.measurement import Measurement, measure
 from elbowscrew.motion.screws.relative import expressed
@@ -83,21 +84,21 @@ def analyze(recording: Recording, settings: Settings | None = None, *, landmarks
     joint_axis = measured_joint_axis(measured, mean, wanted)
     instantaneous = measured_instantaneous_motion(measured, wanted)
     velocity, near = instantaneous.angular_velocity, pose_from_dual_quat(measured.change)[1]
-    known_velocity = velocity_everywhere(velocity, measured.course, elapsed)
-    phases = movement_phases(known_velocity, elapsed)
-    model = build_model(measured, phases, known_velocity, wanted)
-    warnings = measured.warnings + model.warnings + joint_axis_warnings(joint_axis, measured)
-    cycles = find_cycles(measured.course, phases)
-    told_velocity = velocity if sense.signed else np.full_like(velocity, np.nan)
-    repetitions = repetitions_of(cycles, screw, lines_one_way(measured), told_velocity, elapsed)
+    cuts = measured_cuts(measured, wanted)
+    model = build_model(measured, cuts.movements, wanted)
+    warnings = measured.warnings + cut_warnings(cuts) + model.warnings + joint_axis_warnings(joint_axis, measured)
+    listed_velocity = velocity if sense.signed else np.full_like(velocity, np.nan)
+    repetitions = repetitions_of(cuts.cycles, screw, lines_one_way(measured), listed_velocity, elapsed)
+    curves = cycle_curves_of(cuts.cycles, screw.angle, elapsed)
+    cycles = cuts.cycles.start_s
     if (
-        len(cycles) > 1
-        and model.inversion_rows.size < len(cycles)
+        cycles.size > 1
+        and model.inversion_rows.size < cycles.size
         and wanted.keyframes is None
         and wanted.tolerance_mm is None
     ):
         message = (
-            f"the motion repeats {len(cycles)} times, and one model through start, inversion and end describes none of "
+            f"the motion repeats {cycles.size} times, and one model through start, inversion and end describes none of "
             "them; leave --phases and --inversion out, or give --keyframes of one repetition (repetitions.csv has them)"
         )
         warnings += (QualityWarning(code="several-repetitions", message=message),)
@@ -129,9 +130,10 @@ def analyze(recording: Recording, settings: Settings | None = None, *, landmarks
         joint_axis=joint_axis,
         instantaneous=instantaneous if sense.signed else without_sense(instantaneous),
         steps=measured_steps(measured, wanted),
-        phases=phases,
+        phases=movement_phases(cuts.movements.onset_s, cuts.movements.offset_s, elapsed),
         repetitions=repetitions,
-        repeatability=repeatability_of(cycles, repetitions, screw.angle, elapsed, near),
+        cycle_curves=curves,
+        repeatability=repeatability_of(curves, repetitions, near),
         anatomy=anatomy,
         keyframes=model.keyframes,
         inversion_rows=model.inversion_rows,

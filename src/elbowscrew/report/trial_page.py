@@ -32,7 +32,8 @@ _FILES: Final = (
     ("interpolation.csv", "modeled motion and its error, frame by frame"),
     ("keyframes.csv", "the poses of the model, with all that rebuilds it"),
     ("instantaneous.csv", "instantaneous axis, frame by frame"),
-    ("repetitions.csv", "flexion-extension cycles"),
+    ("repetitions.csv", "cycles"),
+    ("cycles.csv", "every cycle over its own time"),
     ("repetition_curve.csv", "mean and standard deviation over the cycles"),
     ("steps.csv", "axes from step to step"),
     ("anatomy.csv", "anatomical angles"),
@@ -154,8 +155,8 @@ def _repetition_rows(trial: FinishedTrial) -> list[dict[str, Any]]:
             "top": np.degrees(found.top_angle),
             "range": np.degrees(found.angle_range),
             "slide": 1000.0 * found.slide_range,
-            "flexion": np.degrees(found.flexion_speed),
-            "extension": np.degrees(found.extension_speed),
+            "outward": np.degrees(found.outward_speed),
+            "back": np.degrees(found.back_speed),
             "deviation": np.degrees(found.axis_deviation),
         }
     )

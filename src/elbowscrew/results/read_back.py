@@ -225,10 +225,14 @@ def _interpolated(columns: Columns) -> InterpolatedMotion:
 
 
 def _repetitions(columns: Columns) -> Repetitions:
-    kept = ("number", "start_frame", "inversion_frame", "end_frame", "start_time_s", "end_time_s", "duration_s")
+    kept = (
+        *("number", "start_frame", "inversion_frame", "end_frame", "start_time_s", "end_time_s", "duration_s"),
+        *("start_time_sd_s", "end_time_sd_s"),
+    )
     return Repetitions(
-        **{name: columns[name] for name in (*kept, "slide_range", "flexion_speed", "extension_speed")},
+        **{name: columns[name] for name in (*kept, "slide_range", "outward_speed", "back_speed")},
         **_axis(columns),
+        incomplete=columns["incomplete"] == 1,
         start_angle=columns["theta_start"],
         top_angle=columns["theta_max"],
         angle_range=columns["theta_range"],
@@ -297,7 +301,7 @@ def _phases(movements: list[dict[str, int]], frame: _Frames) -> MovementPhases:
     moving = np.zeros(frame.frame.size, dtype=bool)
     for first, last in zip(onset, offset, strict=True):
         moving[first : last + 1] = True
-    return MovementPhases(onset_rows=onset, offset_rows=offset, moving=moving, threshold=float("nan"))
+    return MovementPhases(onset_rows=onset, offset_rows=offset, moving=moving)
 
 
 def _keyframes(model: Mapping[str, Any], phase: np.ma.MaskedArray[Any, Any], frame: _Frames) -> Keyframes:

@@ -23,6 +23,7 @@ TABLE_NAMES: Final = (
     "instantaneous",
     "steps",
     "repetitions",
+    "cycles",
     "repetition_curve",
     "anatomy",
 )

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
-from elbowscrew import Settings, analyze, simulate_trial
+from elbowscrew import Recording, RigidBody, Settings, analyze, simulate_trial
 from elbowscrew.errors import SettingError, UsageError
+from elbowscrew.geometry import dual_quat_from_screw
+from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.settings import settings_from
 
 TRIAL = simulate_trial(seed=9, proximal="moving", gaps=3, gap_frames=4, sign_flips=True)
@@ -84,3 +87,36 @@ def test_no_rate_is_too_low_or_too_high_for_the_instantaneous_axis(rate_hz: floa
         Settings(max_turn_deg_s=1e12, max_speed_m_s=1e9),
     ).instantaneous
     assert 0.0 < found.lowpass_hz < 0.5 * rate_hz
+
+
+def test_a_clock_of_two_rates_is_not_filtered() -> None:
+    """A cut-off is one at one rate only."""
+    with pytest.raises(SettingError, match="--resample"):
+        analyze(two_rates(), Settings(lowpass_hz=3.0))
+    assert analyze(two_rates()).screw.angle.size == two_rates().frame.size
+
+
+def two_rates() -> Recording:
+    time = np.concatenate([np.arange(300) / 100.0, 3.0 + np.arange(150) / 50.0])
+    angle = np.radians(45.0) * (1.0 - np.cos(2.0 * np.pi * time / 3.0))
+    pose = dual_quat_from_screw(angle, 0.0, [0.0, 0.0, 1.0], [0.0, 0.1, 0.0])
+    body = RigidBody(name="b", dual_quat_lab_body=pose, loss=np.zeros(time.size, dtype=np.uint8))
+    recording = Recording.from_bodies([body], rate_hz=100)
+    return replace(recording, time_s=time)
+
+
+def test_a_fast_motion_keeps_its_speed() -> None:
+    """Four strokes of 90 deg in 0.15 s each way: 15/8 of the mean speed at its highest, 1125 deg/s."""
+    time = np.arange(600) / 200.0
+    angle = np.zeros(time.size)
+    for k in range(4):
+        for turn, begin in ((90.0, 0.4 + 0.6 * k), (-90.0, 0.7 + 0.6 * k)):
+            tau = np.clip((time - begin) / 0.15, 0.0, 1.0)
+            angle += np.radians(turn) * tau**3 * (10.0 - 15.0 * tau + 6.0 * tau**2)
+    pose = dual_quat_from_screw(angle, 0.0, [0.0, 0.0, 1.0], [0.0, 0.1, 0.0])
+    jitter = np.random.default_rng(0).normal(scale=5e-5, size=(time.size, 3))
+    pose = dq.multiply(pose, dq.dual_quat_from_pose([1.0, 0.0, 0.0, 0.0], jitter))
+    body = RigidBody(name="b", dual_quat_lab_body=pose, loss=np.zeros(time.size, dtype=np.uint8))
+    found = analyze(Recording.from_bodies([body], rate_hz=200)).repetitions
+    assert np.degrees(found.outward_speed) == pytest.approx(np.full(4, 1125.0), rel=0.03)
+    assert np.degrees(found.back_speed) == pytest.approx(np.full(4, 1125.0), rel=0.03)

@@ -21,8 +21,7 @@ from elbowscrew.settings import Settings
 
 Float = NDArray[np.float64]
 
-# What the field filters at: the highest cut-off, as residual analysis takes noise that is not white for motion, and
-# the one of recordings too short for it; lower where the rate asks for it.
+# What the field filters at: the cut-off of recordings too short for residual analysis, lower where the rate asks it.
 _TWIST_HZ: Final = 6.0
 _POSSIBLE_SHARES: Final = (1e-3, 0.4)
 
@@ -78,14 +77,14 @@ def measured_instantaneous_motion(measured: Measurement, settings: Settings) -> 
 
 
 def twist_smoothing(measured: Measurement, settings: Settings) -> Smoothing:
-    """Filter that a twist needs: at the cut-off of residual analysis, and 6 Hz at most."""
+    """Filter that a twist needs: at the cut-off of residual analysis, without a ceiling, so that speeds are kept."""
     smoothing = measured.smoothing
     try:
         found = smoothing.automatic(measured.proximal, measured.distal, settings).cutoff_hz or _TWIST_HZ
     except SettingError:  # too few frames to tell motion from noise
         found = _TWIST_HZ
     low, high = (share * smoothing.rate_hz for share in _POSSIBLE_SHARES)
-    return smoothing._replace(cutoff_hz=float(np.clip(min(found, _TWIST_HZ), low, high)))
+    return smoothing._replace(cutoff_hz=float(np.clip(found, low, high)))
 
 
 def smoothed_displacement(measured: Measurement, smoothing: Smoothing) -> Float:

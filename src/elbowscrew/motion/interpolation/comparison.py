@@ -35,9 +35,10 @@ from elbowscrew.motion.interpolation.keyframe_selection import select_keyframes
 from elbowscrew.motion.interpolation.keyframe_sources import ComparisonPlan, Treatment, treatments
 from elbowscrew.motion.interpolation.keyframes import KnotChoice, keyframes_at, spread_rows
 from elbowscrew.motion.interpolation.law_fit import FittedLaw, laws_of
-from elbowscrew.motion.interpolation.model_building import body_points, movements_of, phases_of
+from elbowscrew.motion.interpolation.model_building import body_points, phases_of
 from elbowscrew.motion.interpolation.modeling import METHODS, ModeledPoses, model_motion
 from elbowscrew.motion.interpolation.segment_errors import BASES
+from elbowscrew.motion.movements.measured import measured_cuts
 from elbowscrew.motion.screws.helical import helical_series
 from elbowscrew.motion.screws.measurement import Measurement, measure
 from elbowscrew.motion.screws.relative import expressed
@@ -89,8 +90,7 @@ def compare(recording: Recording, settings: Settings | None = None, plan: Compar
     wanted, plan = settings or Settings(), plan or ComparisonPlan()
     raw = wanted.model_copy(update={"lowpass_hz": None, "resample_hz": None, "keyframes": None, "tolerance_mm": None})
     measured = measure(recording, raw)
-    movements, velocity = movements_of(measured, raw)
-    phases = phases_of(measured, movements, velocity, raw)
+    phases = phases_of(measured, measured_cuts(measured, raw).movements, raw)
     points = body_points(measured.distal, raw)
     yardstick = _Yardstick.of(measured, points, raw)
     rows: list[dict[str, Any]] = []

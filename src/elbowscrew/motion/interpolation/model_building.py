@@ -12,20 +12,18 @@ from elbowscrew.model import (
     BodyPoints,
     Keyframes,
     ModelPhases,
-    MovementPhases,
     PhaseLaw,
     QualityWarning,
     RigidBody,
     Selection,
 )
-from elbowscrew.motion.axes.measured import measured_instantaneous_motion
 from elbowscrew.motion.difference import DEFAULT_RADIUS, points_from_markers, points_from_radius
 from elbowscrew.motion.interpolation.keyframe_selection import select_keyframes
 from elbowscrew.motion.interpolation.keyframes import keyframes_at, phase_time, rows_of_frames
 from elbowscrew.motion.interpolation.law_fit import FittedLaw, laws_of
 from elbowscrew.motion.interpolation.model_phases import model_phases, one_phase, phases_of_keyframes
 from elbowscrew.motion.interpolation.modeling import METHODS, ModeledPoses, model_motion
-from elbowscrew.motion.movements.phases import movement_phases, velocity_everywhere
+from elbowscrew.motion.movements.cuts import Movements
 from elbowscrew.motion.screws.measurement import Measurement
 from elbowscrew.settings import Settings
 
@@ -44,15 +42,13 @@ class JointModel(NamedTuple):
     warnings: tuple[QualityWarning, ...]
 
 
-def build_model(measured: Measurement, movements: MovementPhases, velocity: Float, settings: Settings) -> JointModel:
+def build_model(measured: Measurement, movements: Movements, settings: Settings) -> JointModel:
     """Model a measured motion as the settings say.
 
     Parameters
     ----------
     measured : Measurement
-    movements : MovementPhases
-    velocity : ndarray, shape (N,)
-        Angular velocity that the movements were found from, rad/s.
+    movements : Movements
     settings : Settings
 
     Raises
@@ -70,7 +66,7 @@ def build_model(measured: Measurement, movements: MovementPhases, velocity: Floa
         rows, inversion_row = rows_of_frames(angle, frame, settings.keyframes, settings.inversion)
         phases = phases_of_keyframes(rows, angle, inversion_row)
     else:
-        phases = phases_of(measured, movements, velocity, settings)
+        phases = phases_of(measured, movements, settings)
     inversions = _inversion_rows(phases, measured.course, settings)
     if settings.tolerance_mm is not None and settings.model_law == "linear":
         phases = one_phase(_measured_rows(measured))  # time itself needs no turns
@@ -101,21 +97,13 @@ def build_model(measured: Measurement, movements: MovementPhases, velocity: Floa
     )
 
 
-def movements_of(measured: Measurement, settings: Settings) -> tuple[MovementPhases, Float]:
-    """Movements between rests, and the angular velocity (N,) that they were found from."""
-    twist = measured_instantaneous_motion(measured, settings)
-    velocity = velocity_everywhere(twist.angular_velocity, measured.course, measured.elapsed)
-    return movement_phases(velocity, measured.elapsed), velocity
-
-
-def phases_of(measured: Measurement, movements: MovementPhases, velocity: Float, settings: Settings) -> ModelPhases:
+def phases_of(measured: Measurement, movements: Movements, settings: Settings) -> ModelPhases:
     """Phases of the model, as the settings say."""
     return model_phases(
         measured.course,
         measured.screw.frame,
         measured.elapsed,
         movements,
-        velocity,
         choice=settings.phases,
         inversion=settings.inversion,
     )

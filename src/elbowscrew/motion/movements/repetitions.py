@@ -8,8 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowscrew.geometry._small_angle import divide, length
-from elbowscrew.model import Repeatability, Repetitions, ScrewMotion
+from elbowscrew.model import CycleCurves, Repeatability, Repetitions, ScrewMotion
 from elbowscrew.motion.axes.mean_axis import mean_line_of
+from elbowscrew.motion.movements.cuts import Cycles
+from elbowscrew.motion.movements.phases import nearest_rows
 
 Float = NDArray[np.float64]
 
@@ -17,28 +19,30 @@ _POINTS: Final = 101
 
 
 def repetitions_of(
-    cycles: NDArray[np.int64], screw: ScrewMotion, line: Float, angular_velocity: Float, elapsed: Float
+    cycles: Cycles, screw: ScrewMotion, line: Float, angular_velocity: Float, elapsed: Float
 ) -> Repetitions:
     """Figures of every cycle.
 
     Parameters
     ----------
-    cycles : ndarray of int64, shape (R, 3)
-        From `find_cycles`.
+    cycles : Cycles
     screw : ScrewMotion
     line : ndarray, shape (N, 6)
         Axes of the frames, NaN where there is none.
     angular_velocity, elapsed : ndarray, shape (N,)
         rad/s and seconds.
     """
-    start, top, end = cycles.T
-    direction, point = np.full((len(cycles), 3), np.nan), np.full((len(cycles), 3), np.nan)
-    slide_range, span = np.full(len(cycles), np.nan), np.full(len(cycles), np.nan)
-    speed = np.full((len(cycles), 2), np.nan)
-    for k, (first, turn, last) in enumerate(cycles.tolist()):
+    count = cycles.start_s.size
+    time = elapsed - elapsed[0]
+    start, top, end = (nearest_rows(elapsed, seconds) for seconds in cycles.times_s.T)
+    direction, point = np.full((count, 3), np.nan), np.full((count, 3), np.nan)
+    slide_range, span = np.full(count, np.nan), np.full(count, np.nan)
+    speed = np.full((count, 2), np.nan)
+    for k, (first, turn, last) in enumerate(zip(start.tolist(), top.tolist(), end.tolist(), strict=True)):
         rows = slice(first, last + 1)
         known = first + np.flatnonzero(screw.valid[rows] & np.isfinite(line[rows]).all(axis=1))
-        span[k] = np.ptp(screw.angle[rows][np.isfinite(screw.angle[rows])])
+        angles = screw.angle[rows][np.isfinite(screw.angle[rows])]
+        span[k] = np.ptp(angles) if angles.size else np.nan
         speed[k] = _largest(angular_velocity[first : turn + 1]), _largest(-angular_velocity[turn : last + 1])
         if known.size:
             direction[k], point[k] = mean_line_of(screw.angle[known], line[known])
@@ -46,37 +50,53 @@ def repetitions_of(
             slide_range[k] = np.ptp(slides[np.isfinite(slides)])
     middle = _mean_direction(direction)
     return Repetitions(
-        number=np.arange(1, len(cycles) + 1),
+        number=np.arange(1, count + 1),
         start_frame=screw.frame[start],
         inversion_frame=screw.frame[top],
         end_frame=screw.frame[end],
-        start_time_s=screw.time_s[start],
-        end_time_s=screw.time_s[end],
-        duration_s=elapsed[end] - elapsed[start],
-        start_angle=screw.angle[start],
-        top_angle=screw.angle[top],
+        start_time_s=np.interp(cycles.start_s, time, screw.time_s),
+        end_time_s=np.interp(cycles.end_s, time, screw.time_s),
+        start_time_sd_s=cycles.start_sd_s,
+        end_time_sd_s=cycles.end_sd_s,
+        duration_s=cycles.end_s - cycles.start_s,
+        incomplete=cycles.incomplete,
+        start_angle=_angle_at(cycles.start_s, screw.angle, time),
+        top_angle=_angle_at(cycles.inversion_s, screw.angle, time),
         angle_range=span,
         slide_range=slide_range,
-        flexion_speed=speed[:, 0],
-        extension_speed=speed[:, 1],
+        outward_speed=speed[:, 0],
+        back_speed=speed[:, 1],
         axis_direction=direction,
         axis_point=point,
         axis_deviation=np.arctan2(length(np.cross(direction, middle)), direction @ middle),
     )
 
 
-def repeatability_of(
-    cycles: NDArray[np.int64], repetitions: Repetitions, angle: Float, elapsed: Float, near: Float
-) -> Repeatability:
-    """Mean curve over normalized time, ICC, CMC, and spread of the axes, of two cycles and more.
-
-    Each cycle's time is normalized from its start to its end; the angle is interpolated linearly between frames.
+def cycle_curves_of(cycles: Cycles, angle: Float, elapsed: Float) -> CycleCurves:
+    """Every cycle over its time normalized from start to end; the angle is interpolated linearly between frames.
 
     Parameters
     ----------
-    cycles : ndarray of int64, shape (R, 3)
-    repetitions : Repetitions
+    cycles : Cycles
     angle, elapsed : ndarray, shape (N,)
+    """
+    count, time = cycles.start_s.size, elapsed - elapsed[0]
+    percent = np.linspace(0.0, 100.0, _POINTS)
+    places = cycles.start_s[:, None] + 0.01 * percent * (cycles.end_s - cycles.start_s)[:, None]
+    return CycleCurves(
+        cycle=np.repeat(np.arange(1, count + 1), _POINTS),
+        percent=np.tile(percent, count),
+        angle=_between_frames(places.ravel(), angle, time),
+    )
+
+
+def repeatability_of(curves: CycleCurves, repetitions: Repetitions, near: Float) -> Repeatability:
+    """Mean curve over normalized time, ICC, CMC, and spread of the axes, of two cycles and more.
+
+    Parameters
+    ----------
+    curves : CycleCurves
+    repetitions : Repetitions
     near : ndarray, shape (3,)
 
     References
@@ -84,13 +104,12 @@ def repeatability_of(
     McGraw and Wong 1996, ICC(A,1); Kadaba and others 1989, CMC within a day.
     """
     percent = np.linspace(0.0, 100.0, _POINTS)
-    curves = np.array([_normalized(angle[a : b + 1], elapsed[a : b + 1], percent) for a, _, b in cycles.tolist()])
-    curves = curves.reshape(-1, _POINTS)
-    count = np.isfinite(curves).sum(axis=0)
-    total = np.where(np.isfinite(curves), curves, 0.0)
+    angles = curves.angle.reshape(-1, _POINTS)
+    count = np.isfinite(angles).sum(axis=0)
+    total = np.where(np.isfinite(angles), angles, 0.0)
     mean = divide(total.sum(axis=0), count.astype(np.float64))
-    square = np.where(np.isfinite(curves), (curves - mean) ** 2, 0.0).sum(axis=0)
-    whole = curves[:, np.isfinite(curves).all(axis=0)]
+    square = np.where(np.isfinite(angles), (angles - mean) ** 2, 0.0).sum(axis=0)
+    whole = angles[:, np.isfinite(angles).all(axis=0)]
     axes = repetitions.axis_direction
     return Repeatability(
         percent=percent,
@@ -101,7 +120,7 @@ def repeatability_of(
         cmc=multiple_correlation(whole),
         axis_sd=_spread(repetitions.axis_deviation),
         point_sd=_place_spread(axes, repetitions.axis_point, near),
-        top_sd=float(np.std(repetitions.top_angle, ddof=1)) if len(cycles) > 1 else float("nan"),
+        top_sd=float(np.std(repetitions.top_angle, ddof=1)) if len(angles) > 1 else float("nan"),
     )
 
 
@@ -159,13 +178,20 @@ def multiple_correlation(curves: Float) -> float:
     return float(np.sqrt(square)) if square >= 0.0 else float("nan")
 
 
-def _normalized(angle: Float, elapsed: Float, percent: Float) -> Float:
-    """Angle at percents of the time of a cycle; NaN where a neighboring frame has none."""
-    share = 100.0 * (elapsed - elapsed[0]) / (elapsed[-1] - elapsed[0])
-    after = np.clip(np.searchsorted(share, percent), 1, share.size - 1)
-    part = (percent - share[after - 1]) / (share[after] - share[after - 1])
-    curve: Float = (1.0 - part) * angle[after - 1] + part * angle[after]
-    return curve
+def _between_frames(seconds: Float, angle: Float, time: Float) -> Float:
+    """Angle at times (K,) between frames; NaN where a neighboring frame has none."""
+    after = np.clip(np.searchsorted(time, seconds), 1, time.size - 1)
+    part = (seconds - time[after - 1]) / (time[after] - time[after - 1])
+    # At a frame itself its neighbor does not matter.
+    before_angle, after_angle = angle[after - 1], angle[after]
+    found = np.where(part <= 0.0, before_angle, (1.0 - part) * before_angle + part * after_angle)
+    return np.where(part >= 1.0, after_angle, found)
+
+
+def _angle_at(seconds: Float, angle: Float, time: Float) -> Float:
+    """Angle at times (K,), across gaps by straight lines."""
+    known = np.isfinite(angle)
+    return np.interp(seconds, time[known], angle[known]) if known.any() else np.full(seconds.size, np.nan)
 
 
 def _mean_direction(directions: Float) -> Float:

@@ -34,6 +34,24 @@ from elbowscrew.settings import Settings
 Float = NDArray[np.float64]
 
 
+class Unfiltered(NamedTuple):
+    """The two bodies as they were tracked, before a filter and a change of rate.
+
+    Attributes
+    ----------
+    proximal : RigidBody or None
+    distal : RigidBody
+    elapsed : ndarray, shape (M,)
+        Their own clock, seconds.
+    rate_hz : float
+    """
+
+    proximal: RigidBody | None
+    distal: RigidBody
+    elapsed: Float
+    rate_hz: float
+
+
 class Measurement(NamedTuple):
     """What was measured, before anything is modeled.
 
@@ -51,6 +69,8 @@ class Measurement(NamedTuple):
     change : ndarray, shape (8,)
         Pose of that frame in the one the screws are expressed in.
     noise : JointNoise
+    unfiltered : Unfiltered
+        The bodies before the filter.
     smoothing : Smoothing
         The filter that the bodies have gone through.
     noise_gain : ndarray, shape (N,)
@@ -72,6 +92,7 @@ class Measurement(NamedTuple):
     displacement: Float
     change: Float
     noise: JointNoise
+    unfiltered: Unfiltered
     smoothing: Smoothing
     noise_gain: Float
     line: Float
@@ -100,6 +121,7 @@ def measure(recording: Recording, settings: Settings) -> Measurement:
     elapsed = elapsed_time(recording)
     smoothing = Smoothing.of(proximal, distal, elapsed, recording.rate_hz, broken_rows, settings)
     noise = JointNoise.of(proximal, distal, recording.rate_hz, settings)
+    unfiltered = Unfiltered(proximal, distal, elapsed, recording.rate_hz)
     proximal, distal = smoothing.apply(proximal, distal)
     if settings.resample_hz is not None:
         recording, proximal, distal, more = _resampled(recording, proximal, distal, broken_rows, settings.resample_hz)
@@ -161,6 +183,7 @@ def measure(recording: Recording, settings: Settings) -> Measurement:
         displacement=D,
         change=frame_change(joint, settings.express_in),
         noise=noise,
+        unfiltered=unfiltered,
         smoothing=smoothing,
         noise_gain=gain,
         line=series.line,

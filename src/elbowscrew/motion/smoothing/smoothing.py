@@ -8,6 +8,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowscrew.errors import SettingError
 from elbowscrew.geometry.dual_quaternion import continuous_signs
 from elbowscrew.model import RigidBody
 from elbowscrew.motion.difference import DEFAULT_RADIUS
@@ -18,6 +19,8 @@ from elbowscrew.settings import Settings
 Float = NDArray[np.float64]
 
 _STEP_TOLERANCE: Final = 0.5
+_RATE_STEPS: Final = 16
+_RATE_TOLERANCE: Final = 0.1
 
 
 def inside(measured: NDArray[np.bool_], elapsed: Float, rate_hz: float, margin: int) -> NDArray[np.bool_]:
@@ -29,6 +32,23 @@ def inside(measured: NDArray[np.bool_], elapsed: Float, rate_hz: float, margin: 
     found = np.zeros(measured.size, dtype=np.bool_)
     found[middle[known[middle + margin + 1] - known[middle - margin] == 2 * margin + 1]] = True
     return found
+
+
+def _check_even(elapsed: Float, rate_hz: float) -> None:
+    """Refuse to filter where the clock keeps another rate for a while: the cut-off would be another one there."""
+    steps = np.diff(elapsed) * rate_hz
+    count = steps.size // _RATE_STEPS
+    if not count:
+        return
+    rates = np.median(steps[: count * _RATE_STEPS].reshape(count, _RATE_STEPS), axis=1)
+    other = np.flatnonzero(np.abs(rates - 1.0) > _RATE_TOLERANCE)
+    if other.size:
+        msg = (
+            f"--lowpass: expected one rate, {rate_hz:g} frames per second, found {rate_hz / rates[other[0]]:.4g} from "
+            f"{elapsed[other[0] * _RATE_STEPS]:.4g} s on; resample the recording first "
+            "(--resample HZ, without --lowpass), or leave --lowpass out"
+        )
+        raise SettingError(msg)
 
 
 class Smoothing(NamedTuple):
@@ -54,6 +74,8 @@ class Smoothing(NamedTuple):
         settings: Settings,
     ) -> Smoothing:
         """Choose the cut-off that the settings ask for."""
+        if settings.lowpass_hz is not None:
+            _check_even(elapsed, rate_hz)
         none = cls(None, elapsed, rate_hz, broken_rows, settings.max_gap_s)
         if settings.lowpass_hz == "auto":
             return none.automatic(proximal, distal, settings)

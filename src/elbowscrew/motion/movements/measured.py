@@ -1,0 +1,149 @@
+"""The cuts of a measured motion: from the poses as they were tracked, whatever filter comes after."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowscrew.errors import SettingError
+from elbowscrew.geometry import quaternion
+from elbowscrew.geometry.dual_quaternion import conjugate, multiply
+from elbowscrew.model import QualityWarning
+from elbowscrew.motion.movements.cuts import REASONS, Cuts, Cycles, Reasons, cut, no_cycles
+from elbowscrew.motion.movements.swings import swings_of
+from elbowscrew.motion.screws.measurement import Measurement
+from elbowscrew.motion.screws.sense import sense_of
+from elbowscrew.settings import Settings
+
+Float = NDArray[np.float64]
+
+
+def measured_cuts(measured: Measurement, settings: Settings) -> Cuts:
+    """Cut a measured motion on its unfiltered twist, or take the cycles that were given.
+
+    Raises
+    ------
+    SettingError
+        If a given cycle does not lie in the recording.
+    """
+    twist = measured_twist(measured, settings)
+    elapsed, rate_hz = measured.unfiltered.elapsed, measured.unfiltered.rate_hz
+    least = None if settings.cycle_swing_deg is None else float(np.radians(settings.cycle_swing_deg))
+    cuts = cut(twist, elapsed, rate_hz, least_swing=least)
+    if not measured.sense.signed:
+        cuts = _all_doubted(cuts, "no-dominant-axis")
+    if settings.no_cycles:
+        return replace(cuts, cycles=no_cycles())
+    if settings.cycles is not None:
+        first = float(measured.recording.time_s[0])
+        return replace(cuts, cycles=_given(np.array(settings.cycles) - first, first, twist, elapsed))
+    return cuts
+
+
+def measured_twist(measured: Measurement, settings: Settings) -> Float:
+    """Rotation about the leading direction of the joint's rotations, radians, shape (M,); NaN where there is no pose.
+
+    It is the twist ``2 atan2(v.u, w)`` of the unfiltered poses since the reference, on their own clock, with u the
+    dominant or leading direction (`Sense.twist`), and positive as theta is.
+    """
+    bodies = measured.unfiltered
+    relative = bodies.distal.dual_quat_lab_body
+    if bodies.proximal is not None:
+        relative = multiply(conjugate(bodies.proximal.dual_quat_lab_body), relative)
+    known = np.flatnonzero(np.isfinite(relative).all(axis=1))
+    if not known.size:
+        return np.full(len(relative), np.nan)
+    wanted = measured.elapsed[measured.joint.reference_row]
+    reference = known[int(np.argmin(np.abs(bodies.elapsed[known] - wanted)))]
+    turned = quaternion.multiply(quaternion.conjugate(relative[reference, :4]), relative[:, :4])
+    return sense_of(turned, bodies.elapsed, int(reference), signed=settings.signed).twist
+
+
+def _all_doubted(cuts: Cuts, code: str) -> Cuts:
+    """Give every boundary one more reason to be uncertain."""
+
+    def more(reasons: tuple[Reasons, ...]) -> tuple[Reasons, ...]:
+        return tuple((*codes, code) for codes in reasons)
+
+    cycles, movements = cuts.cycles, cuts.movements
+    return replace(
+        cuts,
+        cycles=replace(
+            cycles,
+            start_reasons=more(cycles.start_reasons),
+            inversion_reasons=more(cycles.inversion_reasons),
+            end_reasons=more(cycles.end_reasons),
+        ),
+        movements=replace(
+            movements,
+            onset_reasons=more(movements.onset_reasons),
+            offset_reasons=more(movements.offset_reasons),
+        ),
+    )
+
+
+def cut_warnings(cuts: Cuts) -> tuple[QualityWarning, ...]:
+    """One warning that says which boundaries are uncertain and why; none if none is."""
+    cycles, movements = cuts.cycles, cuts.movements
+    found: dict[str, list[str]] = {}
+    for kind, reasons in (
+        ("start", cycles.start_reasons),
+        ("inversion", cycles.inversion_reasons),
+        ("end", cycles.end_reasons),
+    ):
+        for k, codes in enumerate(reasons, start=1):
+            for code in codes:
+                found.setdefault(code, []).append(f"{kind} of cycle {k}")
+    for kind, reasons in (("onset", movements.onset_reasons), ("offset", movements.offset_reasons)):
+        for k, codes in enumerate(reasons, start=1):
+            for code in codes:
+                found.setdefault(code, []).append(f"{kind} of movement {k}")
+    if not found:
+        return ()
+    parts = [f"{_listed(places)}: {REASONS[code]}" for code, places in found.items()]
+    message = (
+        f"where the motion is cut is uncertain. {'; '.join(parts)} (--cycle-swing sets the least swing, --cycles gives "
+        "the times)"
+    )
+    return (QualityWarning(code="uncertain-cuts", message=message),)
+
+
+def _listed(places: list[str]) -> str:
+    shown = ", ".join(places[:6])
+    return shown if len(places) <= 6 else f"{shown} and {len(places) - 6} more"
+
+
+def _given(times: Float, first: float, twist: Float, elapsed: Float) -> Cycles:
+    """Cycles between times that were given, each with the largest rotation of the smoothed twist as its inversion."""
+    span = float(elapsed[-1] - elapsed[0])
+    for start, end in times.tolist():
+        if not -1e-6 <= start < end <= span + 1e-6:
+            msg = (
+                f"--cycles: a cycle from {start + first:g} to {end + first:g} s; expected times that increase, within "
+                f"the recording's {first:g} to {span + first:g} s"
+            )
+            raise SettingError(msg)
+    known = np.flatnonzero(np.isfinite(twist))
+    time = elapsed - elapsed[0]
+    rate_hz = 1.0 / float(np.median(np.diff(time)))
+    even = np.arange(round(span * rate_hz) + 1) / rate_hz
+    smooth = swings_of(np.interp(even, time[known], twist[known]), rate_hz).smooth
+    tops = []
+    for start, end in times.tolist():
+        inside = slice(int(np.searchsorted(even, start)), max(int(np.searchsorted(even, end, side="right")), 1))
+        tops.append(float(even[inside][int(np.argmax(smooth[inside]))]) if smooth[inside].size else 0.5 * (start + end))
+    none, unknown = ((),) * len(times), np.full(len(times), np.nan)
+    return Cycles(
+        start_s=times[:, 0],
+        inversion_s=np.array(tops),
+        end_s=times[:, 1],
+        start_sd_s=unknown,
+        inversion_sd_s=unknown,
+        end_sd_s=unknown,
+        incomplete=np.zeros(len(times), dtype=np.bool_),
+        start_reasons=none,
+        inversion_reasons=none,
+        end_reasons=none,
+    )

@@ -1,0 +1,156 @@
+"""Movements and the rests between them, from the swings of the joint."""
+
+from __future__ import annotations
+
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowscrew.motion.movements.feet import LAW_SD, LOW_SHARE, Feet, feet_of, pooled, pooled_feet
+from elbowscrew.motion.movements.phases import runs_of
+from elbowscrew.motion.movements.swings import Swings
+
+Float = NDArray[np.float64]
+Index = NDArray[np.int64]
+Bool = NDArray[np.bool_]
+
+SHORTEST_REST_S: Final = 0.25
+"""A stop that lasts less is none."""
+IN_DOUBT_SD: Final = 2.0
+"""A rest is in doubt within so many standard deviations of the shortest."""
+_SLOW_SHARE: Final = 0.1
+
+
+class Strokes(NamedTuple):
+    """Movements in one sense, each from a turn or stop to the next; samples, shape (K,) each.
+
+    Attributes
+    ----------
+    places : ndarray of int64, shape (K + 1,)
+        Turns and stops between which the strokes lie.
+    begin, end : ndarray
+        Feet of the stroke; where two strokes overlap there, both at the turn between them.
+    begin_sd, end_sd : ndarray
+    outward : ndarray of bool
+        Whether the rotation increases.
+    turns : ndarray of bool, shape (K - 1,)
+        Whether the motion turns back between a stroke and the next, or only stops.
+    rest_s, rest_sd_s : ndarray, shape (K - 1,)
+        Time between a stroke's foot and the next one's, seconds; negative where they overlap.
+    """
+
+    places: Index
+    begin: Float
+    end: Float
+    begin_sd: Float
+    end_sd: Float
+    outward: Bool
+    turns: Bool
+    rest_s: Float
+    rest_sd_s: Float
+
+    @property
+    def rests(self) -> Bool:
+        """Whether the joint rests between a stroke and the next, shape (K - 1,)."""
+        return self.rest_s >= SHORTEST_REST_S
+
+    @property
+    def in_doubt(self) -> Bool:
+        """Whether that is in doubt, shape (K - 1,)."""
+        return np.abs(self.rest_s - SHORTEST_REST_S) < IN_DOUBT_SD * self.rest_sd_s
+
+    def movements(self) -> Index:
+        """First and last stroke of every movement between rests, shape (M, 2)."""
+        stops = np.flatnonzero(self.rests)
+        last = np.append(stops, self.begin.size - 1)
+        first = np.append(0, stops + 1)
+        return np.column_stack([first, last])[: self.begin.size]
+
+
+def strokes_of(swings: Swings) -> Strokes:
+    """Part the motion at every turn, and at every stop on the way: speed below a tenth of the stroke's highest.
+
+    The local rule has no part in this: a hesitation that is no cycle is movement all the same.
+    """
+    places, values = _with_stops(swings)
+    count = max(places.size - 1, 0)
+    outward = np.diff(values) > 0.0
+    if count:
+        values = _pooled_levels(values, outward, swings)
+    lows, tops = np.where(outward, [places[:-1], places[1:]], [places[1:], places[:-1]])
+    low_values, top_values = np.where(outward, [values[:-1], values[1:]], [values[1:], values[:-1]])
+    feet = feet_of(swings.smooth, lows, tops, low_values, top_values, swings.smooth_noise, swings.cutoff)
+    before, after, before_var, after_var = _in_time(feet, outward)
+    begin, end = feet.half - before, feet.half + after
+    begin_sd = np.hypot(np.sqrt(before_var), LAW_SD * before)
+    end_sd = np.hypot(np.sqrt(after_var), LAW_SD * after)
+    rest_s = (begin[1:] - end[:-1]) / swings.rate_hz
+    rest_sd_s = np.hypot(begin_sd[1:], end_sd[:-1]) / swings.rate_hz
+    over = rest_s < 0.0
+    gap, need = np.diff(feet.half), after[:-1] + before[1:]
+    middle = feet.half[:-1] + gap * after[:-1] / np.maximum(need, 1e-12)
+    end[:-1][over] = begin[1:][over] = middle[over]
+    return Strokes(
+        places=places,
+        begin=np.clip(begin, 0.0, swings.smooth.size - 1.0),
+        end=np.clip(end, 0.0, swings.smooth.size - 1.0),
+        begin_sd=begin_sd,
+        end_sd=end_sd,
+        outward=outward,
+        turns=outward[1:] != outward[:-1],
+        rest_s=rest_s,
+        rest_sd_s=rest_sd_s,
+    )
+
+
+def _in_time(feet: Feet, outward: Bool) -> tuple[Float, Float, Float, Float]:
+    """Distances from the half-way crossing to the foot before and after it, pooled among like ones; variances."""
+    before, after = np.where(outward, [feet.low, feet.top], [feet.top, feet.low])
+    before_var, after_var = np.where(outward, [feet.low_var, feet.top_var], [feet.top_var, feet.low_var])
+    for kappa, variance in ((before, before_var), (after, after_var)):
+        for kind in (outward, ~outward):
+            kappa[kind] = pooled_feet(kappa[kind], variance[kind])
+    before_foot, after_foot = np.where(
+        outward, [feet.low_foot_var, feet.top_foot_var], [feet.top_foot_var, feet.low_foot_var]
+    )
+    return before, after, before_foot, after_foot
+
+
+def _pooled_levels(values: Float, outward: Bool, swings: Swings) -> Float:
+    """Tops and lows, each drawn together where they do not differ; stops on the way as they are."""
+    variance = (2.0 * swings.smooth_noise) ** 2 + swings.noise**2
+    rises_to, falls_to = np.append(not outward[0], outward), np.append(outward[0], ~outward)
+    rises_on, falls_on = np.append(outward, not outward[-1]), np.append(~outward, outward[-1])
+    levels = values.copy()
+    for kind in (rises_to & falls_on, falls_to & rises_on):
+        levels[kind] = pooled(values[kind], variance)
+    return levels
+
+
+def _with_stops(swings: Swings) -> tuple[Index, Float]:
+    """Turning points and the stops between them: samples and values, shape (K + 1,) each."""
+    smooth, turns = swings.smooth, swings.all_turns
+    if turns.size < 2:
+        return np.empty(0, dtype=np.int64), np.empty(0)
+    speed = np.abs(np.gradient(smooth))
+    places, values = [int(turns[0])], [float(smooth[turns[0]])]
+    for first, last in zip(turns[:-1].tolist(), turns[1:].tolist(), strict=True):
+        for begin, end in _slow_parts(smooth[first : last + 1], speed[first : last + 1]):
+            level = float(np.median(smooth[first + begin : first + end + 1]))
+            if min(abs(level - values[-1]), abs(float(smooth[last]) - level)) >= swings.least:
+                places.append(first + (begin + end) // 2)
+                values.append(level)
+        places.append(last)
+        values.append(float(smooth[last]))
+    return np.array(places, dtype=np.int64), np.array(values)
+
+
+def _slow_parts(part: Float, speed: Float) -> list[tuple[int, int]]:
+    """Samples of a stroke, between 10 and 90 % of its swing, where it hardly moves."""
+    share = (part - part[0]) / (part[-1] - part[0])
+    inner = np.flatnonzero(share > LOW_SHARE)[0], np.flatnonzero(share < 1.0 - LOW_SHARE)[-1]
+    slow = speed < _SLOW_SHARE * speed.max()
+    slow[: inner[0]] = slow[inner[1] + 1 :] = False
+    first, last = runs_of(slow)
+    return list(zip(first.tolist(), last.tolist(), strict=True))
