@@ -18,7 +18,8 @@ from elbowscrew.results.read_back import read_finished
 from elbowscrew.saving import read_summary
 
 ANY = re.compile(
-    r"(?i)\b(upper arm|forearm|arm|elbow|humer\w*|flexion|extension|pronation|thigh|shank|knee|hand|(?:proximal |distal )?phalanx|finger"
+    r"(?i)\b(upper arm|forearm|arm|elbow|humer\w*|flexion|extension|pronation|thigh|shank|knee|hand"
+    r"|(?:proximal |distal )?phalanx|finger"
     r"|proximal segment|distal segment)\b"
 )
 CASES: dict[str, tuple[dict[str, Any], dict[str, str], set[str]]] = {
@@ -41,7 +42,7 @@ def test_no_word_of_another_joint(case: str, motion: Any, tmp_path: Path, capsys
         recording = replace(recording, bodies=bodies)
     if motion == "still":
         named = {"proximal": "none", "distal": "#2"}
-    settings = Settings(express_in="proximal", step_deg=20.0, **named)  # type: ignore[arg-type]
+    settings = Settings(express_in="proximal", step_deg=20.0, **named)
     analysis = analyze(recording, settings)
     folder = save_analysis(analysis, tmp_path / "r", figure_formats=("svg",))
     render.analysis_table(read_summary(folder), Path("r"))
