@@ -11,7 +11,7 @@ import pytest
 
 from elbowscrew import Settings, analyze, read_recording, simulate_trial
 
-NAMES = ("elbow_paper", "elbow_moving_arm_mm", "elbow_row_tagged")
+NAMES = ("elbow_paper", "elbow_moving_arm_mm", "elbow_row_tagged", "knee", "elbow_left")
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import itertools
 import re
+import unicodedata
 from dataclasses import dataclass
 from typing import Final
 
@@ -53,28 +54,39 @@ def _segment(name: str, *spoken: str, short: str = "") -> Segment:
     return Segment(name=name, short=short or name, spoken=frozenset(spoken))
 
 
-# English, German and French; Latin bones are the same in all three. Names are looked up without accents.
+# English, German and French; Latin bones are the same in all three. Names are looked up without accents; two words
+# also stand for the two written together ("upper arm", "upperarm").
 _TRUNK: Final = _segment("trunk", "trunk", "torso", "thorax", "chest", "rumpf", "brustkorb", "tronc")
-_SCAPULA: Final = _segment("scapula", "scapula", "shoulderblade", "schulterblatt", "omoplate")
+_SCAPULA: Final = _segment("scapula", "scapula", "shoulder blade", "schulterblatt", "omoplate")
 _UPPER_ARM: Final = _segment(
-    "upper arm", "arm", "upperarm", "humerus", "uarm", "ua", "oberarm", "bras", "hautbras", short="arm"
+    "upper arm", "arm", "upper arm", "humerus", "uarm", "ua", "oberarm", "bras", "haut bras", short="arm"
 )
 _FOREARM: Final = _segment(
-    "forearm", "forearm", "lowerarm", "ulna", "radius", "larm", "fa", "unterarm", "vorderarm", "avantbras"
+    "forearm", "fore arm", "lower arm", "ulna", "radius", "larm", "fa", "unterarm", "vorderarm", "avant bras", "cubitus"
 )
-_HAND: Final = _segment("hand", "hand", "metacarpus", "carpus", "main")
+_HAND: Final = _segment("hand", "hand", "metacarpus", "carpus", "handwurzel", "main")
 _PELVIS: Final = _segment("pelvis", "pelvis", "sacrum", "becken", "bassin")
-_THIGH: Final = _segment("thigh", "thigh", "femur", "upperleg", "uleg", "oberschenkel", "cuisse")
+_THIGH: Final = _segment("thigh", "thigh", "femur", "upper leg", "up leg", "uleg", "oberschenkel", "cuisse")
 _SHANK: Final = _segment(
-    "shank", "shank", "tibia", "lowerleg", "lleg", "calf", "fibula", "unterschenkel", "schienbein", "jambe"
+    "shank", "shank", "shin", "tibia", "lower leg", "lleg", "calf", "fibula", "unterschenkel", "schienbein", "wade",
+    "jambe", "perone",
+)  # fmt: skip
+_FOOT: Final = _segment(
+    "foot", "foot", "calcaneus", "talus", "hind foot", "rear foot", "heel", "fuss", "ruckfuss", "pied"
 )
-_FOOT: Final = _segment("foot", "foot", "calcaneus", "talus", "hindfoot", "rearfoot", "heel", "fuss", "pied")
-_METACARPAL: Final = _segment("metacarpal", "metacarpal", "mittelhand", "metacarpien")
-_PROXIMAL_PHALANX: Final = _segment("proximal phalanx", "proximalphalanx", "phalanxproximal", "phalanxproximalis", "pp")
+_METACARPAL: Final = _segment("metacarpal", "metacarpal", "mittelhand", "mittelhandknochen", "metacarpien")
+_PROXIMAL_PHALANX: Final = _segment(
+    "proximal phalanx", "proximal phalanx", "phalanx proximal", "phalanx proximalis", "phalange proximale",
+    "grundglied", "grundphalanx", "pp",
+)  # fmt: skip
 _MIDDLE_PHALANX: Final = _segment(
-    "middle phalanx", "middlephalanx", "phalanxmiddle", "phalanxmedia", "intermediatephalanx"
-)
-_DISTAL_PHALANX: Final = _segment("distal phalanx", "distalphalanx", "phalanxdistal", "phalanxdistalis", "dp")
+    "middle phalanx", "middle phalanx", "phalanx middle", "phalanx media", "intermediate phalanx",
+    "phalanx intermedia", "phalange intermediaire", "phalange moyenne", "mittelglied", "mittelphalanx",
+)  # fmt: skip
+_DISTAL_PHALANX: Final = _segment(
+    "distal phalanx", "distal phalanx", "phalanx distal", "phalanx distalis", "phalange distale", "endglied",
+    "endphalanx", "dp",
+)  # fmt: skip
 _PROXIMAL: Final = _segment("proximal segment", "proximal", short="proximal")
 _DISTAL: Final = _segment("distal segment", "distal", short="distal")
 
@@ -103,24 +115,50 @@ JOINTS: Final = tuple(
 )
 """Every joint; one with several pairs of segments stands once for each, the common one first."""
 
+ELBOW: Final = next(joint for joint in JOINTS if joint.name == "elbow")
+
 JOINT_NAMES: Final = tuple(dict.fromkeys(joint.name for joint in JOINTS))
 """What ``--joint`` takes."""
 
-SEGMENTS: Final = tuple(
-    dict.fromkeys(segment for joint in (*JOINTS, GENERIC) for segment in (joint.proximal, joint.distal))
-)
+_SEGMENTS: Final = tuple(dict.fromkeys(segment for joint in JOINTS for segment in (joint.proximal, joint.distal)))
 
 _SIDES: Final = {
-    "left": "left", "l": "left", "links": "left", "linker": "left", "linke": "left", "gauche": "left", "li": "left",
+    "left": "left", "l": "left", "links": "left", "linker": "left", "linke": "left", "gauche": "left",
     "right": "right", "r": "right", "rechts": "right", "rechter": "right", "rechte": "right", "droit": "right",
-    "droite": "right", "re": "right",
+    "droite": "right",
 }  # fmt: skip
-_LONG_SIDES: Final = ("left", "right")
-_ACCENTS: Final = str.maketrans({"é": "e", "è": "e", "ê": "e", "ß": "ss", "ü": "u", "ö": "o", "ä": "a"})
+_LAST_SIDES: Final = {"li": "left", "re": "right"}
+"""German abbreviations, understood at the end of a name only: ``Oberarm re``, but not ``re-test``."""
+_FRENCH_SIDES: Final = {"g": "left", "d": "right"}
+_FRENCH: Final = frozenset(
+    {"bras", "main", "pied", "jambe", "cuisse", "tronc", "bassin", "omoplate", "phalange", "metacarpien", "perone"}
+)
+
+# Words that mean something else in other company ("main camera", "hand tool", "robot arm", "pied" of a tripod): they
+# speak of a segment only where nothing but sides, numbers, single letters and neutral words stands beside them, or
+# where they end a name that says a side ("Anna left arm").
+_SHY: Final = frozenset(
+    {
+        "arm", "ua", "fa", "bras", "radius", "hand", "main", "foot", "heel", "pied", "calf", "wade", "trunk", "chest",
+        "pp", "dp", "proximal", "distal", "up leg",
+    }
+)  # fmt: skip
+_NEUTRAL: Final = frozenset(
+    {
+        "cluster", "marker", "markers", "rigid", "body", "segment", "bone", "rb", "plate", "subject", "patient",
+        "skeleton", "finger", "index", "thumb", "ring", "little", "proximal", "distal", "middle", "zeigefinger",
+        "daumen", "pouce",
+    }
+)  # fmt: skip
+# Needs another word for the side: alone it is the lower arm, or the left one.
+_SIDED: Final = frozenset({"larm", "lleg"})
+_UNCUT: Final = re.compile(r"(?<![^\W\d_])([LR])([UFL])(ARM|Arm|LEG|Leg)(?![^\W\d_])")
+_UNCUT_SHORT: Final = re.compile(r"(?<![^\W\d_])([LR])(UA|FA)(?![^\W\d_])")
+_LEVELS: Final = {"U": "upper", "F": "fore", "L": "lower"}
 
 
 def segment_of(name: str) -> Segment | None:
-    """Say which segment a body's name speaks of, None where it does not.
+    """Say which segment a body's name speaks of, None where it does not, or of more than one.
 
     Any case, any separators, a side or a number beside it: ``Right_Upper-Arm 2`` is an upper arm. Two words say more
     than one: a ``proximal phalanx`` is no proximal segment.
@@ -130,10 +168,23 @@ def segment_of(name: str) -> Segment | None:
     >>> [found and found.name for found in map(segment_of, ("L ForeArm", "Humerus_01", "RThigh", "alarm"))]
     ['forearm', 'upper arm', 'thigh', None]
     """
-    words = [_without_side(word) for word in _words(name)]
-    pairs = {first + second for first, second in itertools.pairwise(words)}
-    for spoken in (pairs, set(words)):
-        found = [segment for segment in SEGMENTS if segment.spoken & spoken]
+    words = _words(name)
+    core = [word for word in words if word not in _SIDES]
+    sided = len(core) < len(words)
+    phrases = {f"{first} {second}" for first, second in itertools.pairwise(core)}
+    joined = {_JOINED[phrase.replace(" ", "")] for phrase in phrases if phrase.replace(" ", "") in _JOINED}
+    single = {
+        word
+        for word in core
+        if (word not in _SHY or _beside_neutral(word, core) or (sided and word == core[-1]))
+        and (word not in _SIDED or sided)
+    }
+    for spoken, segments in (
+        (phrases | joined, _SEGMENTS),
+        (single | {_JOINED.get(word, word) for word in single}, _SEGMENTS),
+        (single, (_PROXIMAL, _DISTAL)),
+    ):
+        found = [segment for segment in segments if segment.spoken & spoken]
         if found:
             return found[0] if len(found) == 1 else None
     return None
@@ -147,13 +198,19 @@ def side_of(name: str) -> str | None:
     >>> side_of("Upper Arm L"), side_of("rightThigh"), side_of("Oberarm links"), side_of("shank")
     ('left', 'right', 'left', None)
     """
-    found = set()
-    for word in _words(name):
-        if word in _SIDES:
-            found.add(_SIDES[word])
-        else:
-            found |= {side for side in _LONG_SIDES if word.startswith(side)}
+    words = _words(name)
+    found = {_SIDES[word] for word in words if word in _SIDES}
+    if words[-1:] and words[-1] in _LAST_SIDES:
+        found.add(_LAST_SIDES[words[-1]])
+    if _FRENCH & set(words):
+        found |= {_FRENCH_SIDES[word] for word in words if word in _FRENCH_SIDES}
     return found.pop() if len(found) == 1 else None
+
+
+def side_between(proximal: str, distal: str) -> str | None:
+    """Say which side a joint is on by the names of its two bodies, None where they say none or disagree."""
+    sides = {side for side in (side_of(proximal), side_of(distal)) if side is not None}
+    return sides.pop() if len(sides) == 1 else None
 
 
 def joints_of(name: str | None) -> tuple[Joint, ...]:
@@ -174,13 +231,62 @@ def joint_between(proximal: str, distal: str, name: str | None = None) -> Joint:
     return spoken[0] if spoken else GENERIC if name is None else joints_of(name)[0]
 
 
+def joint_called(name: str, proximal: str, distal: str) -> Joint:
+    """Give the joint with the words that stand in a result; one that is not known here keeps its words.
+
+    Examples
+    --------
+    >>> joint_called("knee", "thigh", "shank") in JOINTS
+    True
+    """
+    words = name, proximal, distal
+    for joint in (*JOINTS, GENERIC):
+        if (joint.name, joint.proximal.name, joint.distal.name) == words:
+            return joint
+    return Joint(name=name, proximal=_segment(proximal), distal=_segment(distal), angles=GENERIC.angles)
+
+
+_JOINED: Final = {
+    phrase.replace(" ", ""): phrase for segment in _SEGMENTS for phrase in segment.spoken if " " in phrase
+}
+_SINGLE: Final = frozenset({word for segment in _SEGMENTS for word in segment.spoken if " " not in word} | set(_JOINED))
+_LONG: Final = frozenset(word for word in _SINGLE if len(word) > 3) - {
+    "uarm",
+    "larm",
+    "uleg",
+    "lleg",
+    "main",
+    "bras",
+    "pied",
+    "heel",
+    "wade",
+    "chest",
+}
+"""Words that may be written together with a side: ``rthigh``, ``lefthand``."""
+
+
 def _words(name: str) -> list[str]:
-    spaced = re.sub(r"(?<=[^\W\d_])(?=[A-Z][a-z])", " ", re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name))
-    return [word.translate(_ACCENTS) for word in re.findall(r"[^\W\d_]+", spaced.casefold())]
+    """Words of a name in lower case without accents, sides apart."""
+    spaced = _UNCUT.sub(lambda cut: f"{cut[1]} {_LEVELS[cut[2]]} {cut[3]}", name)
+    spaced = _UNCUT_SHORT.sub(r"\1 \2", spaced)
+    spaced = re.sub(r"(?<=[^\W\d_])(?=[A-Z][a-z])", " ", re.sub(r"(?<=[a-z])(?=[A-Z])", " ", spaced))
+    plain = "".join(sign for sign in unicodedata.normalize("NFD", spaced.casefold()) if not unicodedata.combining(sign))
+    return [part for word in re.findall(r"[^\W\d_]+", plain) for part in _apart(word)]
 
 
-def _without_side(word: str) -> str:
-    for side in _LONG_SIDES:
-        if word.startswith(side) and word != side:
-            return word.removeprefix(side)
-    return word
+def _apart(word: str) -> tuple[str, ...]:
+    """Cut a side off a word that is written together with it."""
+    if word in _LONG:
+        return (word,)
+    for side in ("left", "right", "l", "r"):
+        rest = word.removeprefix(side)
+        if rest != word and (rest in _LONG or (len(side) > 1 and rest in _SHY)):
+            return side, rest
+    return (word,)
+
+
+def _beside_neutral(word: str, core: list[str]) -> bool:
+    return all(
+        other == word or len(other) == 1 or other in _NEUTRAL or other in _LAST_SIDES or other in _SINGLE
+        for other in core
+    )

@@ -1,10 +1,10 @@
-"""Synthetic elbow trials whose joint line, angle and slide are known."""
+"""Synthetic trials of a joint whose joint line, angle and slide are known."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any, Final, Literal
+from typing import Any, Final, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,9 +18,11 @@ from elbowscrew.geometry.dual_quaternion import (
     transform_lines,
     transform_points,
 )
+from elbowscrew.joints import JOINT_NAMES, joints_of
 from elbowscrew.model import Recording, RigidBody, TrackingLoss
 from elbowscrew.motion.interpolation.laws import cycloidal
 from elbowscrew.motion.screws.relative import IDENTITY
+from elbowscrew.settings import JointName
 
 Float = NDArray[np.float64]
 
@@ -31,6 +33,12 @@ _DRIFT_ACROSS: Final = np.array([0.0, 1.0, 0.0])
 _FOREARM_CENTER: Final = np.array([0.018, -0.251, 0.037])
 _FOREARM_TURN: Final = np.array([0.09, 0.21, -0.06])
 _ARM_PLACE: Final = np.array([0.31, 1.24, -0.18])
+_SIZES: Final = {
+    "elbow": 1.0, "wrist": 0.8, "knee": 1.6, "ankle": 1.5, "hip": 1.5, "shoulder": 1.1, "finger": 0.3,
+}  # fmt: skip
+"""Lengths of the segments beside an arm's; the clusters of markers of smaller ones are smaller, too."""
+_ACROSS_MIRRORED: Final = np.array([-1.0, 1.0, 1.0])
+"""A left joint is the mirror image of a right one in the plane across x, which the joint's line lies near."""
 _MOST_FRAMES: Final = 10_000_000
 _ARM_TURN: Final = np.array([0.12, 0.55, -0.2])
 _ARM_MARKERS: Final = np.array([[38, 12, 31], [-41, 27, 8], [9, -44, -28], [-6, 5, -47]]) * 1e-3
@@ -43,6 +51,10 @@ class Simulation:
 
     Attributes
     ----------
+    joint : {"elbow", "wrist", "knee", "ankle", "hip", "shoulder", "finger"}
+        Names the bodies, and sets how long the segments are.
+    side : {"left", "right"} or None
+        Goes into the bodies' names; a left joint's geometry is the mirror image of a right one's.
     frames : int
         Frames of one repetition, from the start to the end of its movement.
     rate_hz : float
@@ -54,15 +66,15 @@ class Simulation:
     slide_mm : float
         Translation along the axis at the top; it grows with the angle.
     law : {"minimum-jerk", "cycloidal"}
-        Law of motion of flexion and of extension.
+        Law of motion out and back.
     marker_noise_mm : float
         Standard deviation of each coordinate of each marker; the poses are fitted to the noisy markers.
     gaps, gap_frames : int
-        How many times the forearm is lost, and for how many frames each time.
+        How many times the distal body is lost, and for how many frames each time.
     sign_flips : bool
         Flip the sign of the quaternions at random, as exports do.
     proximal : {"moving", "still"}
-        Whether the upper arm sways in the laboratory.
+        Whether the proximal body sways in the laboratory.
     repetitions : int
         How many times the movement is done.
     rest_before_s, hold_s, rest_after_s : float
@@ -75,6 +87,8 @@ class Simulation:
         Of all random numbers; the same seed gives the same trial.
     """
 
+    joint: JointName = "elbow"
+    side: Literal["left", "right"] | None = None
     frames: int = 450
     rate_hz: float = 100.0
     top_deg: float = 130.0
@@ -104,6 +118,8 @@ class Simulation:
             Naming the option.
         """
         checks = {
+            "joint": self.joint in JOINT_NAMES,
+            "side": self.side in (None, "left", "right"),
             "frames": self.frames >= 3 and self.total_frames <= _MOST_FRAMES,
             "inversion": 0 < self.inversion < self.frames - 1,
             "rate": 1e-3 <= self.rate_hz <= 1e6,
@@ -161,19 +177,19 @@ class SimulatedTrial:
 
 
 def simulate_trial(simulation: Simulation | None = None, **settings: Any) -> SimulatedTrial:
-    """Simulate an elbow that turns about and slides along one line.
+    """Simulate a joint that turns about and slides along one line.
 
     Parameters
     ----------
     simulation : Simulation, optional
-        A plain flexion and extension by default.
+        An elbow's plain flexion and extension by default.
     **settings
         Fields of `Simulation` to change.
 
     Returns
     -------
     SimulatedTrial
-        With bodies named Upper Arm and Forearm.
+        With bodies named as the joint's segments, such as Upper Arm and Forearm.
 
     Raises
     ------
@@ -195,17 +211,20 @@ def simulate_trial(simulation: Simulation | None = None, **settings: Any) -> Sim
     angle, slide = np.radians(wanted.top_deg) * progress, 1e-3 * wanted.slide_mm * progress
     fading = 4.0 * progress * (1.0 - progress)
     angle = angle + np.radians(wanted.tremor_deg) * fading * np.sin(2.0 * np.pi * wanted.tremor_hz * time_s)
-    line = line_through(_JOINT_POINT, _JOINT_DIRECTION)
-    lines = _drifting(line, np.radians(wanted.axis_drift_deg) * progress)
-    start = dual_quat_from_pose(quaternion.quat_from_rotation_vector(_FOREARM_TURN), _FOREARM_CENTER)
-    proximal_pose = _proximal_poses(time_s, wanted.proximal)
+    geometry = _geometry(wanted)
+    line = line_through(geometry.point, geometry.direction)
+    lines = _drifting(line, geometry, np.radians(wanted.axis_drift_deg) * progress)
+    start = dual_quat_from_pose(quaternion.quat_from_rotation_vector(geometry.distal_turn), geometry.distal_center)
+    proximal_pose = _proximal_poses(time_s, wanted)
     joint = multiply(dual_quat_from_screw(angle, slide, lines[:, :3], lines[:, 3:]), start)
     distal_pose = multiply(proximal_pose, joint)
     lost = _lost_frames(wanted, progress.size, rng)
+    named, side = joints_of(wanted.joint)[0], "" if wanted.side is None else f"{wanted.side.title()} "
+    names = [f"{side}{segment.name.title()}" for segment in (named.proximal, named.distal)]
     bodies, markers = [], {}
     for name, identifier, offsets, pose, gone in (
-        ("Upper Arm", "5C0E1B7A90D311EDA1EB0242AC120002", _ARM_MARKERS, proximal_pose, None),
-        ("Forearm", "5C0E1DB490D311EDA1EB0242AC120003", _FOREARM_MARKERS, distal_pose, lost),
+        (names[0], "5C0E1B7A90D311EDA1EB0242AC120002", geometry.proximal_markers, proximal_pose, None),
+        (names[1], "5C0E1DB490D311EDA1EB0242AC120003", geometry.distal_markers, distal_pose, lost),
     ):
         body, seen = _observed(name, identifier, offsets - offsets.mean(axis=0), pose, gone, wanted, rng)
         bodies.append(body)
@@ -242,29 +261,64 @@ def _progress(wanted: Simulation) -> tuple[Float, list[int]]:
     return np.concatenate([before, movement, after]), tops
 
 
-def _drifting(line: Float, tilt: Float) -> Float:
+class _Geometry(NamedTuple):
+    """The joint's line in the proximal body, the distal body's pose there at angle 0, and the clusters; meters."""
+
+    point: Float
+    direction: Float
+    across: Float
+    distal_center: Float
+    distal_turn: Float
+    proximal_markers: Float
+    distal_markers: Float
+
+
+def _geometry(wanted: Simulation) -> _Geometry:
+    size = _SIZES[wanted.joint]
+    cluster = min(size, 1.0)
+    mirror, axial = _mirrors(wanted)
+    return _Geometry(
+        point=size * mirror * _JOINT_POINT,
+        direction=axial * _JOINT_DIRECTION,
+        across=axial * _DRIFT_ACROSS,
+        distal_center=size * mirror * _FOREARM_CENTER,
+        distal_turn=axial * _FOREARM_TURN,
+        proximal_markers=cluster * mirror * _ARM_MARKERS,
+        distal_markers=cluster * mirror * _FOREARM_MARKERS,
+    )
+
+
+def _mirrors(wanted: Simulation) -> tuple[Float, Float]:
+    """Factors (3,) of points and of axes of rotation: these are axial vectors and turn round in a mirror as well."""
+    if wanted.side == "left":
+        return _ACROSS_MIRRORED, -_ACROSS_MIRRORED
+    return np.ones(3), np.ones(3)
+
+
+def _drifting(line: Float, geometry: _Geometry, tilt: Float) -> Float:
     """Lines (N, 6) through a line's point, tilted by angles (N,) in a plane through it."""
-    direction, across = line[:3], _DRIFT_ACROSS - (_DRIFT_ACROSS @ line[:3]) * line[:3]
+    direction, across = line[:3], geometry.across - (geometry.across @ line[:3]) * line[:3]
     across = across / np.sqrt(across @ across)
     tilted = np.cos(tilt)[:, None] * direction + np.sin(tilt)[:, None] * across
-    return np.concatenate([tilted, np.cross(_JOINT_POINT, tilted)], axis=1)
+    return np.concatenate([tilted, np.cross(geometry.point, tilted)], axis=1)
 
 
 def _minimum_jerk(tau: Float) -> Float:
     return tau**3 * (10.0 - 15.0 * tau + 6.0 * tau**2)
 
 
-def _proximal_poses(time_s: Float, proximal: str) -> Float:
+def _proximal_poses(time_s: Float, wanted: Simulation) -> Float:
     sway = np.zeros((time_s.size, 3))
     shift = np.zeros((time_s.size, 3))
-    if proximal == "moving":
+    if wanted.proximal == "moving":
         phase = 2.0 * np.pi * time_s[:, None] * np.array([0.31, 0.23, 0.17])
         sway = np.array([0.10, 0.16, 0.07]) * np.sin(phase)
         shift = np.array([0.03, 0.02, 0.04]) * np.sin(1.3 * phase)
+    mirror, axial = _mirrors(wanted)
     turn = quaternion.multiply(
-        quaternion.quat_from_rotation_vector(sway), quaternion.quat_from_rotation_vector(_ARM_TURN)
+        quaternion.quat_from_rotation_vector(axial * sway), quaternion.quat_from_rotation_vector(axial * _ARM_TURN)
     )
-    return dual_quat_from_pose(turn, _ARM_PLACE + shift)
+    return dual_quat_from_pose(turn, mirror * (_ARM_PLACE + shift))
 
 
 def _lost_frames(wanted: Simulation, frames: int, rng: np.random.Generator) -> NDArray[np.bool_]:

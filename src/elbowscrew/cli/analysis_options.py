@@ -251,7 +251,7 @@ def settings_given(
             metavar="MM",
             rich_help_panel=_MODEL,
             help="Radius of gyration for the RMS displacement.",
-            show_default="the forearm's markers, else 50",
+            show_default="the distal body's markers, else 50",
         ),
     ] = None,
     angle_unit: Annotated[

@@ -91,7 +91,7 @@ def compare(
             metavar="MM",
             rich_help_panel=_MODELS,
             help="Radius of gyration for the RMS displacement.",
-            show_default="the forearm's markers, else 50",
+            show_default="the distal body's markers, else 50",
         ),
     ] = None,
     proximal: Annotated[

@@ -54,7 +54,7 @@ def analysis_table(summary: Mapping[str, Any], folder: Path) -> None:
     """Write the result of one trial at a glance."""
     trial, motion, model = summary["trial"], summary["motion"], summary["interpolation"]
     rows = [
-        ("Bodies", f"{_body(trial['proximal'])} → {_body(trial['distal'])}"),
+        ("Bodies", f"{_body(trial['proximal'], trial['joint'])} → {_body(trial['distal'], trial['joint'])}"),
         ("Frames", _frames(trial)),
         (
             "Angle θ",
@@ -146,7 +146,7 @@ def comparison_table(summary: Mapping[str, Any], folder: Path) -> None:
     else:
         rows += [(f"Fewest, {method}", _fewest(found)) for method, found in summary["selections"].items()]
     rows.append(("Results", str(folder)))
-    _print(Text("RMS displacement of the forearm's points, for N keyframes in each phase", style="bold"), table)
+    _print(Text("RMS displacement of the distal body's points, for N keyframes in each phase", style="bold"), table)
     _print_rows("", rows)
 
 
@@ -238,9 +238,9 @@ def _print_rows(title: str, rows: Iterable[tuple[str, str]]) -> None:
     _print(*([Text(title, style="bold")] if title else []), table)
 
 
-def _body(body: Mapping[str, Any] | None) -> str:
+def _body(body: Mapping[str, Any] | None, joint: Mapping[str, Any]) -> str:
     if body is None:
-        return "still arm"
+        return f"still {joint['proximal']}"
     return f"{body['name']} ({100.0 * body['tracked_share']:.1f} % tracked)"
 
 

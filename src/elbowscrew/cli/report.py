@@ -88,7 +88,7 @@ def report(
         written = published.files
         for path in published.left_out:
             sys.stderr.write(
-                f"elbowscrew: warning: {one_line(str(path))}: has no flexion-extension cycle, and is left out of the "
+                f"elbowscrew: warning: {one_line(str(path))}: has no movement out and back, and is left out of the "
                 "overlay\n"
             )
     if not quiet:

@@ -14,6 +14,14 @@ _MOTION, _RECORDING, _OUTPUT = "Motion", "Recording", "Output"
 
 def simulate(
     output: Annotated[Path, typer.Argument(metavar="OUT.csv", help="File to write.", show_default=False)],
+    joint: Annotated[
+        Literal["elbow", "wrist", "knee", "ankle", "hip", "shoulder", "finger"],
+        typer.Option(rich_help_panel=_MOTION, help="Names the bodies, and sets how long they are."),
+    ] = "elbow",
+    side: Annotated[
+        Literal["left", "right"] | None,
+        typer.Option(rich_help_panel=_MOTION, help="Goes into the bodies' names; left is right in a mirror."),
+    ] = None,
     frames: Annotated[int, typer.Option(rich_help_panel=_MOTION, help="Frames of one repetition.")] = 450,
     rate: Annotated[float, typer.Option(metavar="HZ", rich_help_panel=_RECORDING, help="Frames a second.")] = 100.0,
     top: Annotated[float, typer.Option(metavar="DEG", rich_help_panel=_MOTION, help="Largest angle.")] = 130.0,
@@ -30,7 +38,7 @@ def simulate(
         Literal["moving", "still"],
         typer.Option("--proximal", "--arm", rich_help_panel=_MOTION, help="Proximal body."),
     ] = "still",
-    repetitions: Annotated[int, typer.Option(rich_help_panel=_MOTION, help="Flexion-extension cycles.")] = 1,
+    repetitions: Annotated[int, typer.Option(rich_help_panel=_MOTION, help="Movements out and back.")] = 1,
     rest_before: Annotated[
         float, typer.Option(metavar="SECONDS", rich_help_panel=_MOTION, help="Rest before the movement.")
     ] = 0.0,
@@ -48,7 +56,7 @@ def simulate(
     marker_noise: Annotated[
         float, typer.Option(metavar="MM", rich_help_panel=_RECORDING, help="SD of each marker coordinate.")
     ] = 0.2,
-    gaps: Annotated[int, typer.Option(rich_help_panel=_RECORDING, help="Times the forearm is lost.")] = 0,
+    gaps: Annotated[int, typer.Option(rich_help_panel=_RECORDING, help="Times the distal body is lost.")] = 0,
     gap_frames: Annotated[int, typer.Option(rich_help_panel=_RECORDING, help="Frames of each gap.")] = 5,
     sign_flips: Annotated[
         bool, typer.Option("--sign-flips", rich_help_panel=_RECORDING, help="Flip quaternion signs at random.")
@@ -64,7 +72,7 @@ def simulate(
         bool, typer.Option("--force", rich_help_panel=_OUTPUT, help="Replace an earlier simulation.")
     ] = False,
 ) -> None:
-    """Write a synthetic elbow trial.
+    """Write a synthetic trial of a joint.
 
     The truth about it goes to <OUT>.truth.json.
     """
@@ -74,6 +82,8 @@ def simulate(
     from elbowscrew.simulate import Simulation, simulate_trial
 
     simulation = Simulation(
+        joint=joint,
+        side=side,
         frames=frames,
         rate_hz=rate,
         top_deg=top,

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat
 from elbowscrew.model import Analysis, InterpolatedMotion, Landmarks, QualityWarning, Recording
-from elbowscrew.motion.anatomy.anatomy import anatomical_motion, proximal_lines
+from elbowscrew.motion.anatomy.anatomy import anatomical_motion, joint_of_landmarks, proximal_lines
 from elbowscrew.motion.axes.measured import (
     lines_one_way,
     measured_instantaneous_motion,
@@ -78,6 +78,7 @@ def analyze(recording: Recording, settings: Settings | None = None, *, landmarks
     """
     wanted = settings or Settings()
     measured = measure(recording, wanted)
+    named_joint = measured.named_joint if landmarks is None else joint_of_landmarks(measured.named_joint, landmarks)
     recording, joint, screw, sense = measured.recording, measured.joint, measured.screw, measured.sense
     elapsed = measured.elapsed
     mean = measured_mean_axis(measured)
@@ -120,7 +121,7 @@ def analyze(recording: Recording, settings: Settings | None = None, *, landmarks
         settings=wanted,
         proximal=measured.proximal,
         distal=measured.distal,
-        named_joint=measured.named_joint,
+        named_joint=named_joint,
         joint=joint,
         elapsed=elapsed,
         displacement=measured.displacement,

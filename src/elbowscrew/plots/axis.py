@@ -53,10 +53,11 @@ def plot_axes_in_space(ax: Axes3D, analysis: Shown) -> Axes3D:
     ax.add_collection3d(Line3DCollection(list(segments), colors=colors, linewidths=0.7, alpha=0.8))
     ends = length_in(mean.center + 1.3 * half * np.outer([-1.0, 1.0], mean.direction), unit)
     ax.plot(*ends.T, color="black", linewidth=1.6, label="mean axis")
-    plot_path(ax, bodies.path, unit)
+    words = analysis.named_joint
+    plot_path(ax, bodies.path, unit, f"{words.distal.name} path")
     shown = [segments.reshape(-1, 3), ends, length_in(bodies.corners, unit)]
     if proximal is not None:
-        ax.plot(*length_in(proximal[None], unit).T, "^", color="#0072B2", markersize=5, label="proximal")
+        ax.plot(*length_in(proximal[None], unit).T, "^", color="#0072B2", markersize=5, label=words.proximal.name)
         shown.append(length_in(proximal[None], unit))
     for k, cluster in enumerate(clusters):
         label = "markers" if k == 0 else None
@@ -68,10 +69,10 @@ def plot_axes_in_space(ax: Axes3D, analysis: Shown) -> Axes3D:
     return ax
 
 
-def plot_path(ax: Axes3D, path: Float, unit: LengthUnit) -> None:
-    """Draw the path (N, 3) of the forearm's origin, meters."""
+def plot_path(ax: Axes3D, path: Float, unit: LengthUnit, label: str) -> None:
+    """Draw the path (N, 3) of the distal body's origin, meters."""
     rows = drawn_rows(*path.T)
-    ax.plot(*length_in(path[rows], unit).T, color="#D55E00", linewidth=1.2, label="forearm path")
+    ax.plot(*length_in(path[rows], unit).T, color="#D55E00", linewidth=1.2, label=label)
 
 
 def plot_axis_directions(ax: Axes, analysis: Shown) -> Axes:

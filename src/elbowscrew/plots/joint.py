@@ -43,7 +43,7 @@ def plot_joint_axis_in_space(ax: Axes3D, analysis: Shown) -> Axes3D:
             *np.moveaxis(surface, 2, 0), color=look.get("color", look.get("facecolor")), alpha=0.25, linewidth=0.0
         )
     bodies = bodies_in_space(analysis)
-    plot_path(ax, bodies.path, unit)
+    plot_path(ax, bodies.path, unit, f"{analysis.named_joint.distal.name} path")
     equal_aspect(ax, np.concatenate([ends, length_in(bodies.corners, unit)]))
     for name, label in (("x", ax.set_xlabel), ("y", ax.set_ylabel), ("z", ax.set_zlabel)):
         label(f"{name} ({unit})", labelpad=-2)

@@ -7,11 +7,6 @@ from typing import Any, Final
 
 from elbowscrew.view.finished import FinishedTrial
 
-_FRAMES: Final = {
-    "distal": "the forearm's frame at the reference",
-    "proximal": "the upper arm's frame",
-    "lab": "the laboratory frame, with the upper arm where it was at the reference",
-}
 _METHODS: Final = {
     "dlb": "dual quaternion linear blending (DLB)",
     "sclerp": "screw linear interpolation (ScLERP)",
@@ -54,17 +49,23 @@ def citations_of(trial: FinishedTrial) -> tuple[str, ...]:
 
 def _sentences(trial: FinishedTrial) -> Iterator[str]:
     settings, summary = trial.settings, trial.summary
+    proximal, distal = trial.named_joint.proximal.name, trial.named_joint.distal.name
     yield from _recording(trial, summary["trial"])
     if trial.proximal is None:
-        yield "The upper arm was taken to stand still, so that poses of the forearm are relative motion."
+        yield f"The {proximal} was taken to stand still, so that poses of the {distal} are relative motion."
     else:
-        yield "Motion of the forearm relative to the upper arm was described by unit dual quaternions."
+        yield f"Motion of the {distal} relative to the {proximal} was described by unit dual quaternions."
+    frames = {
+        "distal": f"the {distal}'s frame at the reference",
+        "proximal": f"the {proximal}'s frame",
+        "lab": f"the laboratory frame, with the {proximal} where it was at the reference",
+    }
     window = settings.reference_window
     mean = f"the mean of {window} frames from frame" if window > 1 else "frame"
     yield (
         f"The displacement from the reference pose ({mean} {summary['trial']['reference_frame']}) was resolved into "
         f"its finite helical (screw) axis, the rotation θ about it and the translation along it, expressed in "
-        f"{_FRAMES[settings.express_in]}."
+        f"{frames[settings.express_in]}."
     )
     yield (
         (
@@ -109,7 +110,7 @@ def _recording(trial: FinishedTrial, figures: Mapping[str, Any]) -> Iterator[str
         )
     if settings.resample_hz is not None:
         yield f"They were resampled to {settings.resample_hz:g} Hz by screw linear interpolation (ScLERP)."
-    who = "The forearm was" if trial.proximal is None else "Both segments were"
+    who = f"The {trial.named_joint.distal.name} was" if trial.proximal is None else "Both segments were"
     missing = f"{who} tracked in {100.0 * (1.0 - figures['missing_share']):.1f} % of {figures['frames']} frames"
     if figures["filled_frames"]:
         yield (
@@ -176,7 +177,7 @@ def _model(trial: FinishedTrial) -> Iterator[str]:
     yield from _laws(trial, model)
     points = model["points"]
     over = (
-        "the forearm's markers"
+        f"the {trial.named_joint.distal.name}'s markers"
         if points["from"] == "markers"
         else f"points with a radius of gyration of {points['radius_of_gyration_mm']:.3g} mm"
     )

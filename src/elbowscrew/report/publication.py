@@ -19,7 +19,7 @@ _LONGEST_NAME: Final = 80
 
 
 class Published(NamedTuple):
-    """The files written, and the results that an overlay had to leave out as they have no flexion-extension cycle."""
+    """The files written, and the results that an overlay had to leave out as they have no movement out and back."""
 
     files: tuple[Path, ...]
     left_out: tuple[Path, ...]
@@ -59,7 +59,7 @@ def save_publication_figures(
     ResultError
         If a result cannot be read.
     SettingError
-        If an overlay is asked for and fewer than two results have a flexion-extension cycle.
+        If an overlay is asked for and fewer than two results have a movement out and back.
     OutputError
         If a file is there already, or the disk does not take them.
     """
@@ -83,7 +83,7 @@ def save_publication_figures(
     if OVERLAY in names:
         if len(curves) < LEAST_TRIALS:
             msg = (
-                f"--figures overlay: expected at least {LEAST_TRIALS} results with a flexion-extension cycle "
+                f"--figures overlay: expected at least {LEAST_TRIALS} results with a movement out and back "
                 f"(repetitions.csv), found {len(curves)} of {len(results)}; give more results, or leave overlay out"
             )
             raise SettingError(msg)

@@ -31,8 +31,8 @@ def scene_of(trial: FinishedTrial) -> dict[str, Any]:
     Returns
     -------
     dict
-        Numbers only, ready for JSON; None where nothing is known. Poses are displacements: quaternion, then
-        translation, applied to the forearm as it is at the reference.
+        Numbers and the words for the segments, ready for JSON; None where nothing is known. Poses are displacements:
+        quaternion, then translation, applied to the distal body as it is at the reference.
     """
     screw = trial.screw
     bundle = joint_bundle(trial).scaled(1000.0)
@@ -67,15 +67,19 @@ def scene_of(trial: FinishedTrial) -> dict[str, Any]:
 
 
 def _bodies(trial: FinishedTrial) -> tuple[dict[str, Any] | None, dict[str, Any] | None]:
-    """Arm and forearm at the reference."""
-    bodies = bodies_in_space(trial)
-    return _body(bodies.proximal, bodies.proximal_markers), _body(bodies.start, bodies.distal_markers)
+    """Give both bodies at the reference, with the words for their segments."""
+    bodies, words = bodies_in_space(trial), trial.named_joint
+    return (
+        _body(words.proximal.name, bodies.proximal, bodies.proximal_markers),
+        _body(words.distal.name, bodies.start, bodies.distal_markers),
+    )
 
 
-def _body(origin: Float | None, markers: Float | None) -> dict[str, Any] | None:
+def _body(word: str, origin: Float | None, markers: Float | None) -> dict[str, Any] | None:
     if origin is None:
         return None
     return {
+        "word": word,
         "origin": _rounded(1000.0 * origin, _DECIMALS),
         "markers": [] if markers is None else _rounded(1000.0 * markers, _DECIMALS),
     }

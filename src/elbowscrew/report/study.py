@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from elbowscrew import tables
 from elbowscrew.errors import ResultError
 from elbowscrew.report.charts import min_max_rows
-from elbowscrew.results.read_back import UNREADABLE, is_result, read_summary
+from elbowscrew.results.read_back import UNREADABLE, check_version, is_result, read_summary
 from elbowscrew.results.table_reading import read_columns
 from elbowscrew.settings import Settings
 
@@ -130,6 +130,7 @@ def read_study(folder: Path, factors: Sequence[str] | None = None) -> Study:
 
 def _trial(result: Path, place: str) -> StudyTrial:
     summary = read_summary(result / "summary.json")
+    check_version(result, summary)
     try:
         settings = Settings.model_validate(summary["settings"])
         columns = read_columns(result / "screw.csv", _THETA, settings.angle_unit, settings.length_unit)

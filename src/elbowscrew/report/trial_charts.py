@@ -76,7 +76,8 @@ def error_chart(trial: FinishedTrial) -> Markup:
             chart.segment((model.time_s[0], model.time_s[-1]), (level, level), "level", label="RMS")
         panels.append(chart.panel(0.0, 235.0 * k))
         keys = chart.keys()
-    text = "Angle between modeled and measured orientation, and RMS displacement of the forearm's points, over time."
+    whose = f"the {trial.named_joint.distal.name}'s points"
+    text = f"Angle between modeled and measured orientation, and RMS displacement of {whose}, over time."
     return keys + picture("error", "Error of the model over time", text, WIDTH, 465.0, panels)
 
 

@@ -9,6 +9,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowscrew.joints import Joint
 from elbowscrew.report.methods import citations_of, methods_of
 from elbowscrew.report.pages import UNSHOWABLE, render, unshowable, write_page
 from elbowscrew.report.scene import WIDEST, scene_of
@@ -32,7 +33,7 @@ _FILES: Final = (
     ("interpolation.csv", "modeled motion and its error, frame by frame"),
     ("keyframes.csv", "the poses of the model, with all that rebuilds it"),
     ("instantaneous.csv", "instantaneous axis, frame by frame"),
-    ("repetitions.csv", "cycles"),
+    ("repetitions.csv", "movement cycles, out and back"),
     ("cycles.csv", "every cycle over its own time"),
     ("repetition_curve.csv", "mean and standard deviation over the cycles"),
     ("steps.csv", "axes from step to step"),
@@ -40,11 +41,6 @@ _FILES: Final = (
     ("summary.json", "results, quality, settings, provenance"),
     ("joint.json", "joint axis by all estimators"),
 )
-_FRAME_NAMES: Final = {
-    "distal": "forearm’s frame at the reference",
-    "proximal": "upper arm’s frame",
-    "lab": "laboratory frame, upper arm as at the reference",
-}
 
 
 def write_trial_page(folder: Path, trial: FinishedTrial | None = None) -> Path:
@@ -71,7 +67,7 @@ def trial_page(trial: FinishedTrial) -> str:
         One HTML file that needs no other. The same result gives the same bytes.
     """
     summary, joint = trial.summary, trial.joint_summary
-    curve = trial.repetition_curve
+    curve, words = trial.repetition_curve, trial.named_joint
     warnings = summary["warnings"]
     content = {
         "summary": summary,
@@ -81,10 +77,12 @@ def trial_page(trial: FinishedTrial) -> str:
         "model": summary["interpolation"],
         "joint": joint,
         "title": summary["source"]["name"] or "trial",
-        "proximal_name": "still upper arm" if trial.proximal is None else trial.proximal.name,
+        "proximal_name": f"still {words.proximal.name}" if trial.proximal is None else trial.proximal.name,
         "distal_name": trial.distal.name,
+        "proximal_word": words.proximal.name,
+        "distal_word": words.distal.name,
         "bodies": [body for body in (summary["trial"]["proximal"], summary["trial"]["distal"]) if body is not None],
-        "frame_name": _FRAME_NAMES[trial.settings.express_in],
+        "frame_name": _frame_names(trial.named_joint)[trial.settings.express_in],
         "lost_frames": int((~trial.screw.valid & ~trial.screw.filled).sum()),
         "warnings": [warning for warning in warnings if warning["severity"] == "warning"],
         "notes": [warning for warning in warnings if warning["severity"] != "warning"],
@@ -107,6 +105,15 @@ def trial_page(trial: FinishedTrial) -> str:
         "files": [(name, text) for name, text in _FILES if (trial.folder / name).is_file()],
     }
     return render("trial.html", styles=("page.css",), script="trial.js", data=scene_of(trial), content=content)
+
+
+def _frame_names(words: Joint) -> dict[str, str]:
+    """Name the frames that screws are expressed in by the joint's own segments."""
+    return {
+        "distal": f"{words.distal.name}’s frame at the reference",
+        "proximal": f"{words.proximal.name}’s frame",
+        "lab": f"laboratory frame, {words.proximal.name} as at the reference",
+    }
 
 
 def _estimates(joint: Mapping[str, Any]) -> list[dict[str, Any]]:

@@ -11,8 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowscrew import tables
+from elbowscrew._version import __version__
 from elbowscrew.errors import ResultError
 from elbowscrew.geometry.dual_quaternion import dual_quat_from_pose
+from elbowscrew.joints import Joint, joint_called
 from elbowscrew.model import (
     Analysis,
     InterpolatedMotion,
@@ -71,6 +73,26 @@ def read_summary(path: Path) -> dict[str, Any]:
     return content
 
 
+def check_version(folder: Path, summary: Mapping[str, Any]) -> None:
+    """Refuse a result whose tables and keys have the names of another version.
+
+    Up to 0.1 they were an elbow's: the segments were ``arm`` and ``forearm``.
+
+    Raises
+    ------
+    ResultError
+        Naming both versions.
+    """
+    written = str(summary.get("elbowscrew"))
+    trial = summary.get("trial")
+    if isinstance(trial, Mapping) and "forearm" in trial:
+        msg = (
+            f"{folder}: written by elbowscrew {written}, whose names this version ({__version__}) does not read; "
+            "analyze the trial again"
+        )
+        raise ResultError(" ".join(msg.split()))
+
+
 def read_finished(folder: Path) -> FinishedTrial:
     """Read a result folder back, without analyzing anything again.
 
@@ -90,6 +112,7 @@ def read_finished(folder: Path) -> FinishedTrial:
     """
     summary = read_summary(folder / "summary.json")
     joint_summary = read_summary(folder / "joint.json")
+    check_version(folder, summary)
     try:
         return _finished(folder, summary, joint_summary, _read_tables(folder, summary))
     except UNREADABLE as error:
@@ -158,6 +181,7 @@ def _finished(
         recording=FinishedClock(rate_hz=float(trial["rate_hz"])),
         proximal=None if trial["proximal"] is None else _body(trial["proximal"], bodies["proximal_markers_mm"]),
         distal=_body(trial["distal"], bodies["distal_markers_mm"]),
+        named_joint=_named_joint(trial["joint"]),
         joint=FinishedJoint(
             reference=_pose(bodies["distal_in_proximal"]), dual_quat_lab_proximal=_pose(bodies["proximal_in_lab"])
         ),
@@ -170,6 +194,10 @@ def _finished(
         keyframes=_keyframes(summary["interpolation"], read.interpolated.phase, frame),
         interpolated=read.interpolated,
     )
+
+
+def _named_joint(joint: Mapping[str, Any]) -> Joint:
+    return joint_called(str(joint["name"]), str(joint["proximal"]), str(joint["distal"]))
 
 
 def _vectors(columns: Columns, *names: str) -> Float:

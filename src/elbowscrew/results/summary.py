@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from elbowscrew._version import __version__
 from elbowscrew.errors import SettingError
+from elbowscrew.joints import side_between
 from elbowscrew.model import Analysis, BodyQuality, JointAxis, Landmarks, QualityWarning, Recording, Selection, Spread
 from elbowscrew.model.anatomy import LANDMARKS
 from elbowscrew.motion.tracking.quality import body_quality, check_bodies, clock_quality
@@ -63,7 +64,7 @@ def summary_from_analysis(analysis: Analysis) -> dict[str, Any]:
 
 
 def summary_from_recording(recording: Recording, settings: Settings | None = None) -> dict[str, Any]:
-    """What a file holds, ready for JSON: source, clock, bodies with their tracking, and who is arm and forearm."""
+    """What a file holds, ready for JSON: source, clock, bodies with their tracking, and which is which segment."""
     checked, warnings = check_bodies(recording, recording.bodies, settings or Settings())
     quality = [body_quality(raw, found, recording) for raw, found in zip(recording.bodies, checked, strict=True)]
     return {
@@ -189,7 +190,7 @@ def recording_summary(recording: Recording) -> dict[str, Any]:
 def _trial(analysis: Analysis) -> dict[str, Any]:
     screw = analysis.screw
     return {
-        "joint": analysis.named_joint.name,
+        "joint": _joint_words(analysis),
         "bodies": [{"name": body.name, "id": body.identifier} for body in analysis.recording.bodies],
         "proximal": None if analysis.proximal is None else quality_summary(analysis.quality[0]),
         "distal": quality_summary(analysis.quality[-1]),
@@ -199,6 +200,17 @@ def _trial(analysis: Analysis) -> dict[str, Any]:
         "reference_frame": int(screw.frame[analysis.joint.reference_row]),
         "lowpass_hz": analysis.joint.lowpass_hz,
         "instantaneous_lowpass_hz": analysis.instantaneous.lowpass_hz,
+    }
+
+
+def _joint_words(analysis: Analysis) -> dict[str, str | None]:
+    """Say what the joint and its segments are called, for a page made from the result alone."""
+    joint, proximal = analysis.named_joint, analysis.proximal
+    return {
+        "name": joint.name,
+        "proximal": joint.proximal.name,
+        "distal": joint.distal.name,
+        "side": side_between("" if proximal is None else proximal.name, analysis.distal.name),
     }
 
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowscrew.joints import Joint
 from elbowscrew.model.brief import Brief
 from elbowscrew.model.modeled import InterpolatedMotion, Keyframes
 from elbowscrew.model.repetitions import MovementPhases, Repetitions
@@ -92,6 +93,8 @@ class FinishedTrial(Brief):
     recording : FinishedClock
     proximal : FinishedBody or None
     distal : FinishedBody
+    named_joint : Joint
+        What the joint and its segments are called.
     joint : FinishedJoint
     screw : ScrewMotion
     mean_axis : FinishedMean
@@ -113,6 +116,7 @@ class FinishedTrial(Brief):
     recording: FinishedClock
     proximal: FinishedBody | None
     distal: FinishedBody
+    named_joint: Joint
     joint: FinishedJoint
     screw: ScrewMotion
     mean_axis: FinishedMean

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Literal, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowscrew.joints import Joint
 from elbowscrew.model.modeled import InterpolatedMotion, Keyframes
 from elbowscrew.model.repetitions import MovementPhases, Repetitions
 from elbowscrew.model.results import ScrewMotion
@@ -90,6 +91,8 @@ class Shown(Protocol):
     def proximal(self) -> ShownBody | None: ...
     @property
     def distal(self) -> ShownBody: ...
+    @property
+    def named_joint(self) -> Joint: ...
     @property
     def joint(self) -> ShownJoint: ...
     @property

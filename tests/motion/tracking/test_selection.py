@@ -7,7 +7,7 @@ import pytest
 
 from elbowscrew import Recording, RigidBody
 from elbowscrew.errors import SettingError
-from elbowscrew.joints import segment_of
+from elbowscrew.joints import segment_of, side_between
 from elbowscrew.motion.tracking.selection import choose_bodies
 
 
@@ -101,3 +101,75 @@ def test_unknown_bodies_and_one_body_for_both_are_errors() -> None:
         choose_bodies(recording("Arm", "Forearm"), "Arm", "Arm")
     with pytest.raises(SettingError, match="no such body"):
         choose_bodies(recording("Rigid Body 1"), "Arm", None)
+
+
+@pytest.mark.parametrize(
+    ("proximal", "distal", "joint", "side"),
+    [
+        ("UA_R", "FA_R", "elbow", "right"),
+        ("r_uarm_4X4", "r_larm_4X4", "elbow", "right"),
+        ("LUArm", "LFArm", "elbow", "left"),
+        ("Oberarm rechts", "Unterarm rechts", "elbow", "right"),
+        ("Bras G", "Avant-bras G", "elbow", "left"),
+        ("Forearm L", "Hand L", "wrist", "left"),
+        ("Avant-bras", "Main", "wrist", None),
+        ("R_Thigh", "R_Shank", "knee", "right"),
+        ("femur_l", "tibia_l", "knee", "left"),
+        ("Oberschenkel", "Unterschenkel", "knee", None),
+        ("Cuisse", "Jambe", "knee", None),
+        ("Tibia", "Calcaneus", "ankle", None),
+        ("Unterschenkel links", "Fuß links", "ankle", "left"),
+        ("Pelvis", "Femur_R", "hip", "right"),
+        ("Becken", "Oberschenkel", "hip", None),
+        ("Scapula", "Humerus", "shoulder", None),
+        ("Tronc", "Bras", "shoulder", None),
+        ("Proximal Phalanx", "Distal Phalanx", "finger", None),
+        ("Phalanx proximalis", "Phalanx media", "finger", None),
+        ("Grundglied", "Endglied", "finger", None),
+    ],
+)
+def test_joints_by_the_names_of_their_bodies(proximal: str, distal: str, joint: str, side: str | None) -> None:
+    chosen = choose_bodies(recording("Tool", distal, proximal), None, None)
+    assert chosen.proximal is not None
+    assert (chosen.proximal.name, chosen.distal.name, chosen.joint.name) == (proximal, distal, joint)
+    assert side_between(proximal, distal) == side
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "Hand tool",
+        "main camera",
+        "pied camera",
+        "robot arm",
+        "armrest",
+        "larm",
+        "leftover",
+        "radius gauge",
+        "re-test arm",
+    ],
+)
+def test_false_friends_do_not_speak(name: str) -> None:
+    assert segment_of(name) is None
+
+
+def test_bodies_of_different_sides() -> None:
+    bodies = recording("Upper Arm L", "Forearm R")
+    with pytest.raises(SettingError) as caught:
+        choose_bodies(bodies, None, None)
+    for word in ("'Upper Arm L'", "'Forearm R'", "left", "right", "--proximal", "--distal"):
+        assert word in str(caught.value)
+    assert [one.code for one in choose_bodies(bodies, "#1", "#2").warnings] == ["sides-differ"]
+
+
+def test_several_joints_are_listed_and_joint_decides() -> None:
+    bodies = recording("Upper Arm", "Forearm", "Hand")
+    with pytest.raises(SettingError, match=r"elbow: .*wrist: .*--joint"):
+        choose_bodies(bodies, None, None)
+    assert choose_bodies(bodies, None, None, "elbow").distal.name == "Forearm"
+    assert choose_bodies(bodies, None, None, "wrist").distal.name == "Hand"
+
+
+def test_a_joint_that_the_names_contradict_is_warned_of() -> None:
+    chosen = choose_bodies(recording("Upper Arm", "Forearm"), "#1", "#2", "knee")
+    assert [one.code for one in chosen.warnings] == ["joint-differs"]

@@ -23,6 +23,7 @@ from elbowscrew.geometry.dual_quaternion import (
     transform_points,
 )
 from elbowscrew.geometry.quaternion import quat_from_rotation_matrix, rotation_matrix_from_quat
+from elbowscrew.joints import ELBOW, GENERIC, Joint
 from elbowscrew.model import JointMotion, LineEstimate, QualityWarning, Recording, RigidBody
 from elbowscrew.model.anatomy import AnatomicalMotion, Landmarks, Side
 from elbowscrew.motion.anatomy.landmarks import landmark_places
@@ -240,6 +241,23 @@ def anatomical_motion(
         landmarks=landmarks,
     )
     return motion, (*warnings, *_doubts(motion, landmarks))
+
+
+def joint_of_landmarks(named: Joint, landmarks: Landmarks) -> Joint:
+    """Give the joint that landmarks are of: an elbow, whose bones the ISB's frames are built from.
+
+    Raises
+    ------
+    SettingError
+        If the bodies, or ``--joint``, speak of another joint.
+    """
+    if named not in (GENERIC, ELBOW):
+        msg = (
+            f"{landmarks.source}: landmarks are for the elbow, and the joint is the {named.name} "
+            f"({named.proximal.name} and {named.distal.name}); leave --landmarks out"
+        )
+        raise SettingError(msg)
+    return ELBOW
 
 
 def _mirrored(side: Side) -> float:

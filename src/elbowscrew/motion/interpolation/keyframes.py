@@ -170,8 +170,8 @@ def _accumulated(steps: Float, rows: Index, frame: Index, choice: str) -> Float:
         what = "origin does not move" if choice == "chord" else "orientation does not change"
         others = ", ".join(name for name in ("law", *_STEPS) if name != choice)
         msg = (
-            f"--knots {choice}: the forearm's {what} between keyframes {frame[rows[k]]} and {frame[rows[k + 1]]}, so "
-            f"their knots fall together; choose other keyframes or another of --knots {others}"
+            f"--knots {choice}: the distal body's {what} between keyframes {frame[rows[k]]} and {frame[rows[k + 1]]}, "
+            f"so their knots fall together; choose other keyframes or another of --knots {others}"
         )
         raise SettingError(msg)
     return np.concatenate([[0.0], np.cumsum(steps)])

@@ -68,7 +68,7 @@ def joint_from_bodies(
     measured = distal.tracked if proximal is None else distal.tracked & proximal.tracked
     rows = np.flatnonzero(measured)
     if rows.size == 0:
-        both = "the forearm is" if proximal is None else "arm and forearm are both"
+        both = f"{distal.name!r} is" if proximal is None else f"{proximal.name!r} and {distal.name!r} are both"
         msg = f"in no frame {both} tracked: nothing to analyze; see `elbowscrew info` for what the file holds"
         raise AnalysisError(msg)
     row = int(rows[0]) if reference_row is None else reference_row

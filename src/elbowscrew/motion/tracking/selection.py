@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Final, NamedTuple
 
 from elbowscrew.errors import SettingError
-from elbowscrew.joints import JOINT_NAMES, Joint, joint_between, joints_of, segment_of, side_of
+from elbowscrew.joints import GENERIC, JOINT_NAMES, Joint, joint_between, joints_of, segment_of, side_of
 from elbowscrew.model import QualityWarning, Recording, RigidBody
 from elbowscrew.settings import STILL
 
@@ -60,9 +60,13 @@ def choose_bodies(
     if _sides_differ(first, second):
         sides = f"{first.name!r} is {side_of(first.name)} and {second.name!r} is {side_of(second.name)}"
         if proximal is None or distal is None:
-            msg = f"the bodies are of different sides: {sides}; name them by --proximal and --distal if meant"
+            msg = f"the bodies are of different sides: {sides}; give both --proximal and --distal if that is meant"
             raise SettingError(msg)
         warnings.append(QualityWarning(code="sides-differ", message=f"the bodies are of different sides: {sides}"))
+    spoken = joint_between(first.name, second.name)
+    if joint is not None and spoken not in (GENERIC, *joints_of(joint)):
+        message = f"--joint {joint}, but the bodies {first.name!r} and {second.name!r} speak of the {spoken.name}"
+        warnings.append(QualityWarning(code="joint-differs", message=message))
     return ChosenBodies(first, second, joint_between(first.name, second.name, joint), tuple(warnings))
 
 
@@ -101,9 +105,10 @@ def _speaking_pair(
 ) -> tuple[RigidBody, RigidBody]:
     """Find the bodies whose names speak of the two segments of one joint, one of which may be given."""
     spoken = {body.name: segment_of(body.name) for body in bodies}
+    # Bodies that are called proximal and distal themselves speak of any joint.
     pairs = [
         (joint, one, other)
-        for joint in joints_of(name)
+        for joint in (*joints_of(name), GENERIC)
         for one in ([first] if first is not None else bodies)
         for other in ([second] if second is not None else bodies)
         if one is not other

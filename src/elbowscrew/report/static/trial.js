@@ -20,7 +20,7 @@
   const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
   const unit = (a) => times(1 / Math.hypot(...a), a);
 
-  // A pose is the displacement since the reference: a point p of the forearm there is at q p q* + d now.
+  // A pose is the displacement since the reference: a point p of the distal body there is at q p q* + d now.
   const moved = (k, p) => {
     const q = scene.turn[k];
     const d = scene.shift[k];
@@ -44,7 +44,7 @@
   everything.push(add(scene.center, times(scene.half, scene.direction)), less(scene.center, times(scene.half, scene.direction)));
   const reach = Math.max(...everything.map((p) => Math.hypot(...less(p, scene.center))));
 
-  // Which way is up: toward the arm if it is known, else away from the middle of the forearm's path.
+  // Which way is up: toward the proximal body if it is known, else away from the middle of the distal one's path.
   const known = path.filter(Boolean);
   const middle = times(1 / known.length, known.reduce(add, [0, 0, 0]));
   const upright = () => {
@@ -240,14 +240,14 @@
       line(joined(scene.proximal.markers, scene.proximal.origin), "#0072b2", 1, 0.5);
       scene.proximal.markers.forEach((p) => disc(p, 4, "#0072b2"));
       disc(scene.proximal.origin, 5.5, "#0072b2");
-      label(add(scene.proximal.origin, times(18 / scale, view.rows[1])), "upper arm", "#00507d");
+      label(add(scene.proximal.origin, times(18 / scale, view.rows[1])), scene.proximal.word, "#00507d");
     }
     if (here) {
       const markers = scene.distal.markers.map((p) => moved(k, p));
       line(joined(markers, here), "#d55e00", 1, 0.6);
       markers.forEach((p) => disc(p, 4, "#d55e00"));
       disc(here, 5.5, "#d55e00");
-      label(add(here, times(18 / scale, view.rows[1])), "forearm", "#a34800");
+      label(add(here, times(18 / scale, view.rows[1])), scene.distal.word, "#a34800");
     }
     triad();
     ruler();

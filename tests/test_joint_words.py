@@ -1,0 +1,85 @@
+"""What a reader sees speaks of the joint that was analyzed, and of no other."""
+
+from __future__ import annotations
+
+import json
+import re
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from elbowscrew import Settings, __version__, analyze, save_analysis, simulate_trial
+from elbowscrew.cli import render
+from elbowscrew.errors import ResultError
+from elbowscrew.report.methods import methods_of
+from elbowscrew.results.read_back import read_finished
+from elbowscrew.saving import read_summary
+
+ANY = re.compile(
+    r"(?i)\b(upper arm|forearm|arm|elbow|humer\w*|flexion|extension|pronation|thigh|shank|knee|hand"
+    r"|(?:proximal |distal )?phalanx|finger"
+    r"|proximal segment|distal segment)\b"
+)
+CASES: dict[str, tuple[dict[str, Any], dict[str, str], set[str]]] = {
+    "knee": ({"joint": "knee"}, {}, {"thigh", "shank"}),
+    "finger": ({"joint": "finger"}, {}, {"proximal phalanx", "distal phalanx", "phalanx"}),
+    "left": ({"joint": "elbow", "side": "left"}, {}, {"upper arm", "forearm", "arm"}),
+    "generic": ({}, {"proximal": "#1", "distal": "#2"}, {"proximal segment", "distal segment"}),
+}
+
+
+@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize("motion", ["moving", "still"])
+def test_no_word_of_another_joint(case: str, motion: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    simulated, named, words = CASES[case]
+    recording = simulate_trial(
+        frames=120, inversion=60, gaps=1, repetitions=2, proximal=motion, seed=4, **simulated
+    ).recording
+    if case == "generic":
+        bodies = tuple(replace(body, name=f"Rigid Body {k}") for k, body in enumerate(recording.bodies, 1))
+        recording = replace(recording, bodies=bodies)
+    if motion == "still":
+        named = {"proximal": "none", "distal": "#2"}
+    settings = Settings(express_in="proximal", step_deg=20.0, **named)
+    analysis = analyze(recording, settings)
+    folder = save_analysis(analysis, tmp_path / "r", figure_formats=("svg",))
+    render.analysis_table(read_summary(folder), Path("r"))
+    render.warnings(read_summary(folder)["warnings"])
+    page = (folder / "report.html").read_text(encoding="utf-8")
+    told = {
+        "page": page,
+        "methods": methods_of(read_finished(folder)),
+        "terminal": "".join(capsys.readouterr()),
+        "warnings": " ".join(warning.message for warning in analysis.warnings),
+        **{figure.name: figure.read_text(encoding="utf-8") for figure in folder.rglob("*.svg")},
+    }
+    for name, text in told.items():
+        assert {found.lower() for found in ANY.findall(text)} <= words, name
+    assert {found.lower() for found in ANY.findall(told["page"])} >= words - {"arm", "phalanx"}
+    assert len(told) > 5
+
+
+def test_a_result_says_the_joint_and_its_side(tmp_path: Path) -> None:
+    recording = simulate_trial(joint="knee", side="left", frames=80, inversion=40).recording
+    folder = save_analysis(analyze(recording), tmp_path / "r", figure_formats=(), report=False)
+    words = read_summary(folder)["trial"]["joint"]
+    assert words == {"name": "knee", "proximal": "thigh", "distal": "shank", "side": "left"}
+
+
+def test_a_result_of_before_is_refused_in_one_line_with_both_versions(tmp_path: Path) -> None:
+    recording = simulate_trial(frames=80, inversion=40).recording
+    folder = save_analysis(analyze(recording), tmp_path / "r", figure_formats=(), report=False)
+    path = folder / "summary.json"
+    summary = json.loads(path.read_text(encoding="utf-8"))
+    trial = summary["trial"]
+    del trial["joint"]
+    trial["arm"], trial["forearm"] = trial.pop("proximal"), trial.pop("distal")
+    path.write_text(json.dumps({**summary, "elbowscrew": "0.1.0"}), encoding="utf-8")
+    with pytest.raises(ResultError) as caught:
+        read_finished(folder)
+    told = str(caught.value)
+    assert "0.1.0" in told
+    assert __version__ in told
+    assert "\n" not in told
