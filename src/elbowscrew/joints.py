@@ -7,8 +7,12 @@ from __future__ import annotations
 
 import itertools
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, Literal
+
+JointName = Literal["elbow", "wrist", "knee", "ankle", "hip", "shoulder", "finger"]
+"""Names of the joints in `JOINTS`, for type checkers; a test holds the two together."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -172,6 +176,24 @@ def joint_between(proximal: str, distal: str, name: str | None = None) -> Joint:
     ends = segment_of(proximal), segment_of(distal)
     spoken = [joint for joint in joints_of(name) if (joint.proximal, joint.distal) == ends]
     return spoken[0] if spoken else GENERIC if name is None else joints_of(name)[0]
+
+
+def ends_called(word: str, joints: Iterable[Joint] = JOINTS) -> set[Literal["proximal", "distal"]]:
+    """Say which end of these joints a segment's word means: none, one, or both where joints differ.
+
+    Examples
+    --------
+    >>> ends_called("femur", joints_of("knee")), sorted(ends_called("thigh")), ends_called("thing")
+    ({'proximal'}, ['distal', 'proximal'], set())
+    """
+    joined = "".join(_words(word))
+    found: set[Literal["proximal", "distal"]] = set()
+    for joint in joints:
+        if joined in joint.proximal.spoken:
+            found.add("proximal")
+        if joined in joint.distal.spoken:
+            found.add("distal")
+    return found
 
 
 def _words(name: str) -> list[str]:

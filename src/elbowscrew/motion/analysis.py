@@ -69,6 +69,7 @@ def analyze(recording: Recording, settings: Settings | None = None, *, landmarks
     """
     wanted = settings or Settings()
     measured = measure(recording, wanted)
+    wanted = wanted.model_copy(update={"express_in": measured.express_in})
     recording, joint, screw = measured.recording, measured.joint, measured.screw
     elapsed = measured.elapsed
     mean = measured_mean_axis(measured)
@@ -100,7 +101,7 @@ def analyze(recording: Recording, settings: Settings | None = None, *, landmarks
             measured.proximal,
             measured.distal,
             joint,
-            axis_lines=proximal_lines(measured.line, joint, wanted.express_in),
+            axis_lines=proximal_lines(measured.line, joint, measured.express_in),
             joint_line=None if joint_axis.best is None else joint_axis.best.line,
         )
         warnings += doubts
@@ -136,7 +137,7 @@ def analyze(recording: Recording, settings: Settings | None = None, *, landmarks
 
 def _compared(model: JointModel, measured: Measurement, settings: Settings) -> InterpolatedMotion:
     D, screw, modeled, keyframes = measured.displacement, measured.screw, model.poses, model.keyframes
-    D_model = expressed(modeled.dual_quat, measured.joint, settings.express_in)
+    D_model = expressed(modeled.dual_quat, measured.joint, measured.express_in)
     # The model shares its poses with the measurement at the phases' ends: there the angle and its sense are known.
     shared = keyframes.phases.bound_rows
     anchor = int(shared[np.argmax(np.abs(screw.angle[shared]))])

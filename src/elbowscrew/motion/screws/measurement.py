@@ -8,10 +8,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowscrew.choices import ExpressIn
 from elbowscrew.errors import AnalysisError, SettingError
 from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat
 from elbowscrew.joints import Joint
 from elbowscrew.model import BodyQuality, JointMotion, QualityWarning, Recording, RigidBody, ScrewMotion
+from elbowscrew.motion.screws.frames import frame_called
 from elbowscrew.motion.screws.helical import HelicalSeries, helical_series
 from elbowscrew.motion.screws.pose_noise import JointNoise
 from elbowscrew.motion.screws.relative import displacement, expressed, frame_change, joint_from_bodies
@@ -50,6 +52,9 @@ class Measurement(NamedTuple):
         Axes as Plücker vectors, as expressed.
     screw : ScrewMotion
     quality : tuple of BodyQuality
+    named_joint : Joint
+    express_in : {"distal", "proximal", "lab"}
+        Frame the screws are written in, a segment's word resolved.
     warnings : tuple of QualityWarning
     """
 
@@ -67,6 +72,7 @@ class Measurement(NamedTuple):
     screw: ScrewMotion
     quality: tuple[BodyQuality, ...]
     named_joint: Joint
+    express_in: ExpressIn
     warnings: tuple[QualityWarning, ...]
 
 
@@ -80,6 +86,8 @@ def measure(recording: Recording, settings: Settings) -> Measurement:
     """
     tracked = tracked_bodies(recording, settings)
     proximal, distal, broken_rows, warnings = tracked.proximal, tracked.distal, tracked.broken_rows, tracked.warnings
+    express_in, doubts = frame_called(settings.express_in, tracked.joint)
+    warnings += doubts
     elapsed = elapsed_time(recording)
     smoothing = Smoothing.of(proximal, distal, elapsed, recording.rate_hz, broken_rows, settings)
     noise = JointNoise.of(proximal, distal, recording.rate_hz, settings)
@@ -105,9 +113,10 @@ def measure(recording: Recording, settings: Settings) -> Measurement:
         lowpass_hz=smoothing.cutoff_hz,
     )
     D = displacement(joint)
-    D_expressed = expressed(D, joint, settings.express_in)
+    change = frame_change(joint, express_in)
+    D_expressed = expressed(D, joint, express_in)
     gain = smoothing.noise_gain(joint.measured)
-    series, errors = _measured_series(D, D_expressed, joint, noise, gain, settings)
+    series, errors = _measured_series(D, D_expressed, joint, change, noise, gain, settings)
     screw = ScrewMotion(
         frame=recording.frame,
         time_s=recording.time_s,
@@ -135,7 +144,7 @@ def measure(recording: Recording, settings: Settings) -> Measurement:
         elapsed=elapsed,
         joint=joint,
         displacement=D,
-        change=frame_change(joint, settings.express_in),
+        change=change,
         noise=noise,
         smoothing=smoothing,
         noise_gain=gain,
@@ -143,6 +152,7 @@ def measure(recording: Recording, settings: Settings) -> Measurement:
         screw=screw,
         quality=tracked.quality,
         named_joint=tracked.joint,
+        express_in=express_in,
         warnings=warnings,
     )
 
@@ -163,13 +173,18 @@ def _resampled(
 
 
 def _measured_series(
-    D: Float, D_expressed: Float, joint: JointMotion, noise: JointNoise, gain: Float, settings: Settings
+    D: Float,
+    D_expressed: Float,
+    joint: JointMotion,
+    change: Float,
+    noise: JointNoise,
+    gain: Float,
+    settings: Settings,
 ) -> tuple[HelicalSeries, ScrewErrors]:
     """Screws of all frames, with their errors, each axis known as well as the settings want it."""
     limit, least = np.inf, np.radians(settings.min_angle_deg)
     errors = no_errors(len(D))
     if noise.known is not None:
-        change = frame_change(joint, settings.express_in)
         errors = screw_errors(D, joint, *noise.known, change, settings.reference_window, gain)
         if settings.axis_sd_deg is not None:
             limit = np.radians(settings.axis_sd_deg)
