@@ -12,6 +12,7 @@ import sys
 import tempfile
 import warnings
 from pathlib import Path
+from typing import Any
 
 import atheris
 import numpy as np
@@ -91,7 +92,7 @@ def one(data: bytes) -> None:
             assert np.allclose(size[body.tracked], 1.0)
             assert np.isnan(body.dual_quat_lab_body[~body.tracked]).all()
         try:
-            chosen = {} if recording.bodies else {"arm_markers": ARM, "forearm_markers": FOREARM}
+            chosen: dict[str, Any] = {} if recording.bodies else {"arm_markers": ARM, "forearm_markers": FOREARM}
             analysis = analyze(recording, Settings(min_tracked_percent=0, min_angle_deg=1, **chosen))
         except ElbowscrewError as error:
             kind = f"analysis: {type(error).__name__}"

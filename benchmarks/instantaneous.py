@@ -8,6 +8,8 @@ each axis, their origin 150 mm from the joint's line. Frames slower than the gat
 
 from __future__ import annotations
 
+from typing import Literal
+
 import numpy as np
 
 from elbowscrew import Recording, RigidBody, Settings, analyze
@@ -20,7 +22,7 @@ START = dq.dual_quat_from_pose([1.0, 0.0, 0.0, 0.0], np.array([0.0, -0.282, 0.0]
 NOISE = np.array([np.radians(0.15)] * 3 + [2e-4] * 3)
 
 
-def errors(lowpass_hz: float | str, seed: int) -> np.ndarray:
+def errors(lowpass_hz: float | Literal["auto"], seed: int) -> np.ndarray:
     """Angles (deg) and distances (mm) of the axes from the true line, shape (F, 2)."""
     rng = np.random.default_rng(seed)
     time = np.arange(int(RATE_HZ * SECONDS)) / RATE_HZ

@@ -5,21 +5,20 @@ from __future__ import annotations
 import inspect
 import subprocess
 import sys
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any, get_args
 
 import pytest
 
-from elbowscrew.cli import options
+from elbowscrew.choices import functions_named
 from elbowscrew.cli.analyze import analyze
 from elbowscrew.cli.batch import batch
 from elbowscrew.errors import ElbowscrewError
+from elbowscrew.joints import JOINT_NAMES
 from elbowscrew.motion.interpolation.laws import LAWS
 from elbowscrew.motion.interpolation.modeling import METHODS
-from elbowscrew.settings import Settings, option_name
+from elbowscrew.settings import SETTINGS
 
-_FORMER = {"arm", "forearm"}  # words that are still taken for proximal and distal
 HEAVY = ("numpy", "pandas", "matplotlib", "scipy")
 
 
@@ -70,32 +69,26 @@ def test_analyzing_without_figures_needs_neither_pandas_nor_matplotlib(samples: 
 
 
 @pytest.mark.parametrize("command", [analyze, batch])
-def test_every_setting_is_an_option_and_offers_the_same_choices(command: Callable[..., None]) -> None:
-    parameters = inspect.signature(command, eval_str=True).parameters
-    given = {name.replace("_", "-"): parameter for name, parameter in parameters.items()}
-    for name, field in Settings.model_fields.items():
-        option = given[option_name(name)]
-        wanted = _choices(field.annotation)
-        if wanted and not {int, float} & set(get_args(field.annotation)):  # a number or a word is text in the shell
-            assert _choices(option.annotation) - _FORMER == wanted, name
+def test_every_setting_is_an_option_with_its_choices_and_names(command: Any) -> None:
+    made = inspect.signature(command.with_settings()).parameters
+    for setting in SETTINGS:
+        kind, option = get_args(made[setting.option.replace("-", "_")].annotation)
+        names = {name for text in (option.default, *option.param_decls) for name in text.split("/")}
+        assert {f"--{setting.option}", *(f"--{name}" for name in setting.former)} <= names
+        if setting.choices and not setting.several:
+            assert set(setting.choices) == set(get_args(get_args(kind)[0]))
 
 
-def _choices(annotation: Any) -> set[str]:
-    """Literals anywhere inside a type; those of an enumeration by their values."""
-    if annotation in (options.FigureFormat, options.ExportFormat):
-        return {kind.value for kind in annotation}
-    found = set()
-    for part in get_args(annotation):
-        if isinstance(part, str):
-            found.add(part)
-        else:
-            found |= _choices(part)
-    return found
+def test_a_setting_takes_the_names_of_its_registry() -> None:
+    choices = {setting.field: set(setting.choices) for setting in SETTINGS}
+    assert set(METHODS) == choices["method"]
+    assert {*LAWS, "empirical", "best"} == choices["law"]
+    assert set(JOINT_NAMES) == choices["joint"]
 
 
-def test_registries_and_settings_name_the_same_things() -> None:
-    assert set(METHODS) == _choices(Settings.model_fields["method"].annotation)
-    assert {*LAWS, "empirical", "best"} == _choices(Settings.model_fields["law"].annotation)
+def test_a_name_without_its_function_is_told() -> None:
+    with pytest.raises(LookupError, match="no function for"):
+        functions_named(("dlb",), {"__name__": "there"})
 
 
 def test_every_error_has_its_own_exit_code() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import re
+import runpy
 import subprocess
 import sys
 from pathlib import Path
@@ -97,3 +98,8 @@ def test_lower_bounds_are_the_versions_tested(root: Path) -> None:
 @pytest.mark.parametrize("name", ["theta.png", "axis.png"])
 def test_the_readmes_pictures_are_there(root: Path, name: str) -> None:
     assert (root / "docs" / "images" / name).read_bytes().startswith(b"\x89PNG")
+
+
+def test_the_table_of_settings_is_current(root: Path) -> None:
+    made = runpy.run_path(str(root / "docs" / "make_settings.py"))["page"]()
+    assert (root / "docs" / "settings.md").read_text(encoding="utf-8") == made

@@ -34,6 +34,7 @@ CASES: dict[str, tuple[dict[str, Any], dict[str, str], set[str]]] = {
 @pytest.mark.parametrize("motion", ["moving", "still"])
 def test_no_word_of_another_joint(case: str, motion: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     simulated, named, words = CASES[case]
+    chosen: dict[str, Any] = dict(named)
     recording = simulate_trial(
         frames=120, inversion=60, gaps=1, repetitions=2, proximal=motion, seed=4, **simulated
     ).recording
@@ -41,8 +42,8 @@ def test_no_word_of_another_joint(case: str, motion: Any, tmp_path: Path, capsys
         bodies = tuple(replace(body, name=f"Rigid Body {k}") for k, body in enumerate(recording.bodies, 1))
         recording = replace(recording, bodies=bodies)
     if motion == "still":
-        named = {"proximal": "none", "distal": "#2"}
-    settings = Settings(express_in="proximal", step_deg=20.0, **named)
+        chosen = {"proximal": "none", "distal": "#2"}
+    settings = Settings(express_in="proximal", step_deg=20.0, **chosen)
     analysis = analyze(recording, settings)
     folder = save_analysis(analysis, tmp_path / "r", figure_formats=("svg",))
     render.analysis_table(read_summary(folder), Path("r"))

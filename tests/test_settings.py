@@ -8,7 +8,10 @@ from typing import Any
 import pytest
 
 from elbowscrew import Settings
-from elbowscrew.errors import UsageError
+from elbowscrew.cli.options import comparison_plan
+from elbowscrew.errors import SettingError, UsageError
+from elbowscrew.joints import GENERIC, joints_of
+from elbowscrew.motion.screws.frames import frame_called
 from elbowscrew.settings import option_name, settings_from
 
 
@@ -70,3 +73,51 @@ def test_option_names_leave_the_unit_out() -> None:
     assert option_name("min_angle_deg") == "min-angle"
     assert option_name("max_gap_s") == "max-gap"
     assert option_name("express_in") == "express-in"
+
+
+def test_a_users_script_is_typed_without_a_plugin(root: Path, tmp_path: Path) -> None:
+    api = pytest.importorskip("mypy.api")
+    nothing = tmp_path / "mypy.ini"
+    nothing.write_text("[mypy]\nignore_missing_imports = True\n")
+    script = root / "tests" / "typing" / "notebook.py"
+    cache = f"--cache-dir={tmp_path / 'cache'}"
+    told, faults, code = api.run(
+        ["--strict", f"--config-file={nothing}", "--follow-imports=silent", cache, str(script)]
+    )
+    assert (code, faults) == (0, ""), told
+
+
+def test_the_former_names_are_the_bodies_own() -> None:
+    settings = Settings(arm="A", forearm="B", arm_markers=("a",), forearm_markers=("b",))
+    assert (settings.proximal, settings.distal, settings.arm, settings.forearm) == ("A", "B", "A", "B")
+    assert (settings.proximal_markers, settings.distal_markers) == (("a",), ("b",))
+    with pytest.raises(ValueError, match="twice"):
+        Settings(arm="A", proximal="B")
+
+
+@pytest.mark.parametrize(
+    ("word", "joint", "end"),
+    [("shank", "knee", "distal"), ("femur", "knee", "proximal"), ("shank", "ankle", "proximal"),
+     ("forearm", "wrist", "proximal"), ("forearm", "elbow", "distal"), ("arm", "shoulder", "distal"),
+     ("lab", "hip", "lab")],
+)  # fmt: skip
+def test_a_segments_word_is_an_end_of_the_joint(word: str, joint: str, end: str) -> None:
+    assert frame_called(word, joints_of(joint)[0]) == (end, ())
+
+
+def test_a_word_that_may_be_either_end_is_never_taken_in_silence() -> None:
+    with pytest.raises(SettingError, match="give --joint"):
+        frame_called("thigh", GENERIC)
+    frame, warnings = frame_called("forearm", GENERIC)
+    assert frame == "distal"
+    assert [warning.code for warning in warnings] == ["joint-not-known"]
+    with pytest.raises(SettingError, match="the joint is the elbow"):
+        frame_called("thigh", joints_of("elbow")[0])
+    with pytest.raises(UsageError, match="no segment of --joint knee"):
+        settings_from(None, {"joint": "knee", "express-in": "forearm"})
+
+
+@pytest.mark.parametrize("given", [["dlb,sclerp"], ["dlb", "sclerp"], ["dlb, sclerp", "dlb"]])
+def test_a_list_keeps_all_it_is_given(given: list[str]) -> None:
+    plan = comparison_plan({"methods": given, "laws": None}, {"counts": ["2", "3,4"]})
+    assert (plan.methods, plan.counts) == (("dlb", "sclerp"), (2, 3, 4))

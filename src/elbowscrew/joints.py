@@ -8,8 +8,12 @@ from __future__ import annotations
 import itertools
 import re
 import unicodedata
+from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, Literal
+
+JointName = Literal["elbow", "wrist", "knee", "ankle", "hip", "shoulder", "finger"]
+"""Names of the joints in `JOINTS`, for type checkers; a test holds the two together."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -263,6 +267,28 @@ _LONG: Final = frozenset(word for word in _SINGLE if len(word) > 3) - {
     "chest",
 }
 """Words that may be written together with a side: ``rthigh``, ``lefthand``."""
+
+
+def ends_called(word: str, joints: Iterable[Joint] = JOINTS) -> set[Literal["proximal", "distal"]]:
+    """Say which end of these joints a segment's word means: none, one, or both where joints differ.
+
+    Examples
+    --------
+    >>> ends_called("femur", joints_of("knee")), sorted(ends_called("thigh")), ends_called("thing")
+    ({'proximal'}, ['distal', 'proximal'], set())
+    """
+    joined = "".join(_words(word))
+    found: set[Literal["proximal", "distal"]] = set()
+    for joint in joints:
+        if joined in _unspaced(joint.proximal):
+            found.add("proximal")
+        if joined in _unspaced(joint.distal):
+            found.add("distal")
+    return found
+
+
+def _unspaced(segment: Segment) -> set[str]:
+    return {phrase.replace(" ", "") for phrase in segment.spoken}
 
 
 def _words(name: str) -> list[str]:

@@ -1,41 +1,46 @@
-"""One `Settings`, from defaults, a TOML file and options, each stronger than the one before."""
+"""One `Settings`: each setting is declared here, once, with its name, type, default, bounds and text.
+
+The options of the command line and their help, the keys of TOML files and manifests, the list in the class's docstring
+and `docs/settings.md` are made from it (`SETTINGS`). Values come from defaults, a TOML file and options, each stronger
+than the one before.
+"""
 
 from __future__ import annotations
 
 import csv
 import difflib
 import itertools
+import math
 import tomllib
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final, Literal
+from types import NoneType
+from typing import TYPE_CHECKING, Annotated, Any, Final, Literal, get_args, get_origin
 
-import numpy as np
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
+from pydantic import BaseModel, BeforeValidator, Field, ValidationError, field_validator, model_validator
+from pydantic.fields import FieldInfo
 
+from elbowscrew.choices import (
+    FRAMES,
+    AngleUnit,
+    BlendName,
+    ExportName,
+    FigureFormat,
+    FileUnit,
+    KnotName,
+    LawName,
+    LengthUnit,
+    MethodName,
+    RotationType,
+)
 from elbowscrew.errors import UsageError
-from elbowscrew.tables import AngleUnit, LengthUnit
+from elbowscrew.joints import JointName, ends_called, joints_of
 
-LISTS: Final = ("keyframes", "figure-format", "export", "proximal-markers", "distal-markers")
-"""Settings of which there may be several."""
 _UNIT_SUFFIXES: Final = ("_deg_s", "_rad_s", "_m_s", "_deg", "_mm", "_hz", "_s", "_percent")
-
-JointName = Literal["elbow", "wrist", "knee", "ankle", "hip", "shoulder", "finger"]
-LawName = Literal[
-    "cycloidal",
-    "linear",
-    "harmonic",
-    "polynomial-345",
-    "polynomial-4567",
-    "modified-trapezoid",
-    "modified-sine",
-    "empirical",
-    "best",
-]
 
 STILL: Final = "none"
 """The value of ``proximal`` that says: the file has no such body, it stands still."""
-
 
 _FORMER_NAMES: Final = {
     "arm": "proximal",
@@ -45,6 +50,9 @@ _FORMER_NAMES: Final = {
 }
 """Names that settings had for an elbow alone, still understood."""
 
+BODIES, MOTION, MODEL, OUTPUT = "Bodies and file", "Motion", "Model", "Output"
+"""What settings are about, and so the panels of the help."""
+
 
 def option_name(field: str) -> str:
     """Give a field's name on the command line and in TOML: ``min_angle_deg`` is ``min-angle``."""
@@ -53,183 +61,188 @@ def option_name(field: str) -> str:
     return _FORMER_NAMES.get(name, name)
 
 
-class Settings(BaseModel):
+def _setting(default: Any, text: str, about: str, *, metavar: str = "", shown: str = "", **bounds: Any) -> Any:
+    """Declare a setting.
+
+    Parameters
+    ----------
+    default : object
+    text : str
+        One sentence, for help and documents.
+    about : str
+        The panel it stands in.
+    metavar : str, optional
+        What stands for its value, where that is no choice.
+    shown : str, optional
+        What the help says of the default, where that is not the value itself.
+    **bounds
+        Of `pydantic.Field`.
+    """
+    return Field(
+        default, description=text, json_schema_extra={"about": about, "metavar": metavar, "shown": shown}, **bounds
+    )
+
+
+def _degrees(value: object) -> object:
+    """Take ``2deg`` and ``0.03rad`` for angles, too."""
+    if not isinstance(value, str):
+        return value
+    number, unit = value.strip().removesuffix("deg").removesuffix("rad"), value.strip()[-3:]
+    try:
+        return math.degrees(float(number)) if unit == "rad" else float(number)
+    except ValueError as error:
+        msg = f"expected degrees or an angle with its unit, as in 2deg, found {value!r}"
+        raise ValueError(msg) from error
+
+
+def _millimeters(value: object) -> object:
+    """Take ``2mm`` and ``0.002m`` for lengths, too."""
+    if not isinstance(value, str):
+        return value
+    text = value.strip()
+    unit = "mm" if text.endswith("mm") else "m" if text.endswith("m") else ""
+    try:
+        return float(text.removesuffix(unit)) * (1000.0 if unit == "m" else 1.0)
+    except ValueError as error:
+        msg = f"expected millimeters or a length with its unit, as in 2mm, found {value!r}"
+        raise ValueError(msg) from error
+
+
+_Angle = Annotated[float, BeforeValidator(_degrees)]
+_Length = Annotated[float, BeforeValidator(_millimeters)]
+
+
+class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False):
     """How a recording is analyzed.
 
     The names here carry their units; on the command line and in TOML the unit is left out (`option_name`).
     An impossible value raises `UsageError` through `settings_from`, and pydantic's own error here.
-
-    Attributes
-    ----------
-    joint : str or None
-        What the joint is called (`elbowscrew.joints`); None to go by the bodies' names.
-    proximal, distal : str or None
-        Names or ids of the two bodies; None to go by the names in the file; "none" for a still proximal one.
-    proximal_markers, distal_markers : tuple of str or None
-        Markers the bodies' poses are found from: names or patterns; None for the file's own bodies.
-    pose_method : {"svd", "dual-qr"}
-        How poses are found from markers.
-    reference : int or None
-        Frame all displacements are counted from; None for the first one tracked.
-    reference_window : int
-        Frames from the reference on whose mean is taken.
-    express_in : {"distal", "proximal", "lab"}
-        Frame the screw is written in.
-    max_gap_s : float
-        Longest gap that is filled, seconds.
-    frozen : {"lost", "keep"}
-        What poses that repeat to the last digit are taken for.
-    max_turn_deg_s, max_speed_m_s : float
-        Fastest motion of a body, beyond which it leaps.
-    min_tracked_percent : float
-        Least share of frames tracked.
-    lowpass_hz : float, "auto" or None
-        Cut-off of the filter of the bodies' poses; "auto" finds one for each body; None for no filter.
-    resample_hz : float or None
-        Rate to resample the recording to, before all else.
-    min_rate_rad_s : float
-        Least angular velocity that gives an instantaneous axis.
-    min_angle_deg : float
-        Least angle that gives an axis.
-    axis_sd_deg : float or None
-        Give an axis where its direction is known this well, in place of `min_angle_deg`.
-    step_deg : float or None
-        Give axes between successive poses so far apart, too.
-    marker_noise_mm : float or None
-        Noise of each coordinate of each marker.
-    noise : {"auto", "residuals", "still", "error-column", "none"}
-        Where the noise of the poses is known from.
-    signed : {"auto", "yes", "no"}
-        Give theta a sense: where one axis dominates the motion, always, or never.
-    robust : bool
-        Weigh outliers down in the joint's axis.
-    cycle_swing_deg : float or None
-        Least swing between turns that counts; None for what noise and range ask for.
-    cycles : tuple of (float, float) or None
-        Start and end time of each cycle in seconds of the recording's own clock, or the CSV file that has them; None
-        to find them.
-    no_cycles : bool
-        Look for no cycles.
-    inversion : int or None
-        Frame where the motion turns back; None for the frame of the largest angle.
-    keyframes : tuple of int or None
-        Frames the model passes through; None for start, inversion and end.
-    phases : {"movement", "whole"}
-        Phases between the rests of the movement, or over the whole recording as in the paper.
-    tolerance_mm : float or None
-        Choose the fewest keyframes between which the RMS displacement stays below this; None to choose by phases.
-    method : {"dlb", "sclerp", "sdlb", "dib", "catmull-rom"} or None
-        Interpolation of poses; None for DLB, or ScLERP with a tolerance (`model_method`).
-    blend : {"piecewise", "global"}
-        Phase by phase, or all poses at once.
-    law : str or None
-        Law of motion in each phase; None for the cycloidal one, or the linear one with a tolerance (`model_law`).
-    law_peak : float or None
-        Time of the law's highest velocity as a share of the phase; None for the middle.
-    knots : {"law", "chord", "uniform", "angle"}
-        Parameter of the keyframes.
-    radius_mm : float or None
-        Radius of gyration of the distal body's points; None for its markers, else 50 mm.
-    angle_unit : {"deg", "rad"}
-        Unit of angles in tables and figures.
-    length_unit : {"mm", "m"}
-        Unit of lengths in tables and figures.
-    figure_format : tuple of {"png", "svg", "pdf", "none"}
-        Formats of the figures.
-    export : tuple of {"parquet", "mat", "sto"}
-        Formats of other programs to write the tables in, too.
-    units : {"m", "cm", "mm"} or None
-        Unit of length of a file that states none.
-    rotation : {"quaternion", "XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX"} or None
-        Rotation type of a file that states none.
     """
 
-    model_config = ConfigDict(
-        frozen=True, extra="forbid", alias_generator=option_name, populate_by_name=True, allow_inf_nan=False
+    joint: JointName | None = _setting(None, "What the joint is called.", BODIES, shown="by the bodies' names")
+    proximal: str | None = _setting(
+        None, "Proximal body: name or id; 'none' if it stands still.", BODIES, metavar="NAME", shown="by the names"
     )
-
-    joint: JointName | None = Field(None, description="What the joint is called; by default as the bodies' names say")
-    proximal: str | None = Field(None, description="Name or id of the proximal body; 'none' if it stands still")
-    distal: str | None = Field(None, description="Name or id of the distal body")
-    proximal_markers: tuple[str, ...] | None = Field(
-        None, min_length=1, description="Markers of the proximal body: names or patterns"
+    distal: str | None = _setting(None, "Distal body: name or id.", BODIES, metavar="NAME", shown="by the names")
+    proximal_markers: tuple[str, ...] | None = _setting(
+        None, "Markers of the proximal body: names or patterns.", BODIES, metavar="NAMES", min_length=1
     )
-    distal_markers: tuple[str, ...] | None = Field(
-        None, min_length=1, description="Markers of the distal body: names or patterns"
+    distal_markers: tuple[str, ...] | None = _setting(
+        None, "Markers of the distal body: names or patterns.", BODIES, metavar="NAMES", min_length=1
     )
-    pose_method: Literal["svd", "dual-qr"] = Field("svd", description="Poses from markers")
-    reference: int | None = Field(None, description="Frame all displacements are counted from")
-    reference_window: int = Field(1, ge=1, description="Take the mean of so many frames from the reference on")
-    express_in: Literal["distal", "proximal", "lab"] = Field("distal", description="Frame the screw is written in")
-    max_gap_s: float = Field(0.1, ge=0, description="Longest gap that is filled, in seconds")
-    frozen: Literal["lost", "keep"] = Field("lost", description="Poses that repeat: lost tracking, or kept")
-    max_turn_deg_s: float = Field(3000.0, gt=0, description="Fastest turn of a body, in degrees a second")
-    max_speed_m_s: float = Field(15.0, gt=0, description="Fastest motion of a body, in meters a second")
-    min_tracked_percent: float = Field(50.0, ge=0, le=100, description="Least share of frames tracked")
-    lowpass_hz: float | Literal["auto"] | None = Field(
-        None, description="Cut-off of the filter of the poses, in hertz; 'auto' by residual analysis; 'none'"
+    pose_method: Literal["svd", "dual-qr"] = _setting("svd", "How poses are found from markers.", BODIES)
+    reference: int | None = _setting(
+        None, "Frame all displacements are counted from.", MOTION, metavar="FRAME", shown="first tracked frame"
     )
-    resample_hz: float | None = Field(None, gt=0, description="Rate to resample the recording to, in hertz")
-    min_rate_rad_s: float = Field(
-        0.25, gt=0, description="Least angular velocity that gives an instantaneous axis, in radians a second"
+    reference_window: int = _setting(
+        1, "Mean of so many frames from the reference on, as reference.", MOTION, metavar="N", ge=1
     )
-    min_angle_deg: float = Field(10.0, gt=0, lt=180, description="Least angle that gives an axis, in degrees")
-    axis_sd_deg: float | None = Field(
-        None, gt=0, lt=90, description="Give an axis where its direction is known this well, in degrees"
+    express_in: Literal["distal", "proximal", "lab", "arm", "forearm"] | str = _setting(
+        "distal",
+        "Frame the screw is written in: distal, proximal, lab, or a segment's word, as shank.",
+        MOTION,
+        metavar="FRAME",
     )
-    step_deg: float | None = Field(
-        None, gt=0, lt=180, description="Axes between successive poses so many degrees apart, too"
+    max_gap_s: float = _setting(0.1, "Longest gap that is filled, in seconds.", MOTION, metavar="SECONDS", ge=0)
+    frozen: Literal["lost", "keep"] = _setting("lost", "What poses that repeat to the last digit are.", BODIES)
+    max_turn_deg_s: float = _setting(
+        3000.0, "Fastest rotation of a body, in degrees a second; more is a leap.", BODIES, metavar="DEG/S", gt=0
     )
-    marker_noise_mm: float | None = Field(
-        None, gt=0, le=100, description="Noise of each coordinate of each marker, in millimeters"
+    max_speed_m_s: float = _setting(
+        15.0, "Fastest motion of a body, in meters a second; more is a leap.", BODIES, metavar="M/S", gt=0
     )
-    noise: Literal["auto", "residuals", "still", "error-column", "none"] = Field(
-        "auto", description="Where the noise of the poses is known from"
+    min_tracked_percent: float = _setting(
+        50.0, "Least share of frames tracked, in percent.", BODIES, metavar="PERCENT", ge=0, le=100
     )
-    signed: Literal["auto", "yes", "no"] = Field("auto", description="Give theta a sense, by the dominant axis")
-    robust: bool = Field(False, description="Weigh outliers down in the joint's axis")
-    cycle_swing_deg: float | None = Field(
-        None, gt=0, lt=360, description="Least swing between the turns of a cycle, in degrees"
+    lowpass_hz: float | Literal["auto"] | None = _setting(
+        None, "Cut-off of the filter of the poses, in hertz; auto for each body's own; none.", MOTION,
+        metavar="HZ", shown="none",
+    )  # fmt: skip
+    resample_hz: float | None = _setting(
+        None, "Rate to resample the recording to, in hertz.", MOTION, metavar="HZ", shown="the file's", gt=0
     )
-    cycles: tuple[tuple[float, float], ...] | None = Field(
-        None, min_length=1, description="File with start_time_s and end_time_s of each cycle"
-    )
-    no_cycles: bool = Field(False, description="Look for no cycles")
-    inversion: int | None = Field(None, description="Frame where the motion turns back")
-    keyframes: tuple[int, ...] | None = Field(None, min_length=2, description="Frames the model passes through")
-    phases: Literal["movement", "whole"] = Field("movement", description="Phases between rests, or the whole recording")
-    tolerance_mm: float | None = Field(
-        None, ge=1e-3, le=1e5, description="Fewest keyframes that keep the RMS displacement below this, in millimeters"
-    )
-    method: Literal["dlb", "sclerp", "sdlb", "dib", "catmull-rom"] | None = Field(
-        None, description="Interpolation of poses; default: dlb, sclerp with a tolerance"
-    )
-    blend: Literal["piecewise", "global"] = Field("piecewise", description="Phase by phase, or all poses at once")
-    law: LawName | None = Field(
-        None, description="Law of motion in each phase; default: cycloidal, linear with a tolerance"
-    )
-    law_peak: float | None = Field(
-        None, ge=0.05, le=0.95, description="Time of the law's highest velocity, as a share of the phase"
-    )
-    knots: Literal["law", "chord", "uniform", "angle"] = Field("law", description="Parameter of the keyframes")
-    radius_mm: float | None = Field(
-        None,
+    min_rate_rad_s: float = _setting(
+        0.25,
+        "Least angular velocity for an instantaneous axis, in radians a second.",
+        MOTION,
+        metavar="RAD/S",
         gt=0,
-        le=1e5,
-        description="Radius of gyration of the distal body's points; default: its markers, else 50 mm",
     )
-    angle_unit: AngleUnit = Field("deg", description="Unit of angles in tables and figures")
-    length_unit: LengthUnit = Field("mm", description="Unit of lengths in tables and figures")
-    figure_format: tuple[Literal["png", "svg", "pdf", "none"], ...] = Field(
-        ("png",), min_length=1, description="Formats of the figures"
+    min_angle_deg: float = _setting(10.0, "Least angle for an axis, in degrees.", MOTION, metavar="DEG", gt=0, lt=180)
+    axis_sd_deg: _Angle | None = _setting(
+        None, "Give an axis where its direction is known this well, in place of --min-angle: 2deg.", MOTION,
+        metavar="DEG", gt=0, lt=90,
+    )  # fmt: skip
+    step_deg: float | None = _setting(
+        None, "Axes between successive poses so many degrees apart, too: steps.csv.", MOTION,
+        metavar="DEG", gt=0, lt=180,
+    )  # fmt: skip
+    marker_noise_mm: float | None = _setting(
+        None, "Noise of each coordinate of a marker, in millimeters.", MOTION,
+        metavar="MM", shown="from the recording", gt=0, le=100,
+    )  # fmt: skip
+    noise: Literal["auto", "residuals", "still", "error-column", "none"] = _setting(
+        "auto", "Where the noise of the poses is known from.", MOTION
     )
-    export: tuple[Literal["parquet", "mat", "sto"], ...] = Field(
-        (), description="Formats of other programs to write the tables in, too"
+    signed: Literal["auto", "yes", "no"] = _setting(
+        "auto", "Give theta a sense: where one axis dominates the motion, always, or never.", MOTION
     )
-    units: Literal["m", "cm", "mm"] | None = Field(None, description="Unit of length of a file that states none")
-    rotation: Literal["quaternion", "XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX"] | None = Field(
-        None, description="Rotation type of a file that states none"
+    robust: bool = _setting(False, "Weigh outliers down in the joint's axis.", MOTION)
+    cycle_swing_deg: float | None = _setting(
+        None, "Least swing between the turns of a cycle, in degrees.", MOTION,
+        metavar="DEG", shown="by noise and range", gt=0, lt=360,
+    )  # fmt: skip
+    cycles: tuple[tuple[float, float], ...] | None = _setting(
+        None, "File with the columns start_time_s and end_time_s of each cycle.", MOTION,
+        metavar="FILE.csv", shown="found", min_length=1,
+    )  # fmt: skip
+    no_cycles: bool = _setting(False, "Look for no cycles.", MOTION)
+    inversion: int | None = _setting(
+        None, "Frame where the motion reverses.", MODEL, metavar="FRAME", shown="largest angle"
     )
+    keyframes: tuple[int, ...] | None = _setting(
+        None, "Frames the model passes through.", MODEL,
+        metavar="F1,F2,...", shown="start, inversion, end", min_length=2,
+    )  # fmt: skip
+    phases: Literal["movement", "whole"] = _setting(
+        "movement", "Phases between the movement's rests, or of the whole recording.", MODEL
+    )
+    tolerance_mm: _Length | None = _setting(
+        None, "Fewest keyframes that keep the RMS displacement below this length: 2mm.", MODEL,
+        metavar="LENGTH", ge=1e-3, le=1e5,
+    )  # fmt: skip
+    method: MethodName | None = _setting(None, "Interpolation of poses.", MODEL, shown="dlb, with a tolerance sclerp")
+    blend: BlendName = _setting("piecewise", "Phase by phase, or all poses at once.", MODEL)
+    law: LawName | None = _setting(
+        None, "Law of motion in each phase.", MODEL, shown="cycloidal, with a tolerance linear"
+    )
+    law_peak: float | None = _setting(
+        None, "Time of the law's highest velocity, as a share of the phase.", MODEL,
+        metavar="SHARE", shown="0.5", ge=0.05, le=0.95,
+    )  # fmt: skip
+    knots: KnotName = _setting("law", "Parameter of the keyframes.", MODEL)
+    radius_mm: float | None = _setting(
+        None, "Radius of gyration of the distal body's points, for the RMS displacement.", MODEL,
+        metavar="MM", shown="of its markers, else 50", gt=0, le=1e5,
+    )  # fmt: skip
+    angle_unit: AngleUnit = _setting("deg", "Unit of angles in tables and figures.", OUTPUT)
+    length_unit: LengthUnit = _setting("mm", "Unit of lengths in tables and figures.", OUTPUT)
+    figure_format: tuple[FigureFormat, ...] = _setting(("png",), "Formats of the figures.", OUTPUT, min_length=1)
+    export: tuple[ExportName, ...] = _setting((), "Tables in the formats of other programs, too.", OUTPUT, shown="none")
+    units: FileUnit | None = _setting(None, "Unit of length of a file that states none.", BODIES)
+    rotation: RotationType | None = _setting(None, "Rotation type of a file that states none.", BODIES)
+
+    # An elbow's own words for the two bodies, as they were before: taken and given, but not stored.
+    if TYPE_CHECKING:
+        arm: str | None = None
+        forearm: str | None = None
+        arm_markers: tuple[str, ...] | None = None
+        forearm_markers: tuple[str, ...] | None = None
+    else:
+        arm = property(lambda self: self.proximal)
+        forearm = property(lambda self: self.distal)
+        arm_markers = property(lambda self: self.proximal_markers)
+        forearm_markers = property(lambda self: self.distal_markers)
 
     @property
     def markers(self) -> tuple[str, ...]:
@@ -257,13 +270,33 @@ class Settings(BaseModel):
         """Take what an elbow's two bodies were called before for proximal and distal."""
         if not isinstance(values, Mapping):
             return values
-        return {_FORMER_NAMES.get(str(name).replace("_", "-"), name): value for name, value in values.items()}
+        former = {name.replace("-", "_"): now.replace("-", "_") for name, now in _FORMER_NAMES.items()}
+        named = {former.get(str(name), name): value for name, value in values.items()}
+        if len(named) < len(values):
+            msg = f"one setting stands twice under two names; keep one of {', '.join(map(str, values))}"
+            raise ValueError(msg)
+        return named
 
     @field_validator("express_in", mode="before")
     @classmethod
-    def _segment(cls, value: object) -> object:
-        """Take an elbow's own words for its two bodies."""
-        return {"arm": "proximal", "forearm": "distal"}.get(value, value) if isinstance(value, str) else value
+    def _frame(cls, value: object) -> object:
+        """Take the three frames, and segments' words; which end a word means is known with the joint."""
+        if not isinstance(value, str) or not (value in FRAMES or ends_called(value)):
+            msg = f"expected {', '.join(FRAMES)}, or a segment's word, as forearm or shank"
+            raise ValueError(msg)
+        return value
+
+    @model_validator(mode="after")
+    def _check_frame(self) -> Settings:
+        joints = joints_of(self.joint)
+        if self.joint is not None and self.express_in not in FRAMES and not ends_called(self.express_in, joints):
+            words = ", ".join(dict.fromkeys(end.short for one in joints for end in (one.proximal, one.distal)))
+            msg = (
+                f"--express-in {self.express_in}: no segment of --joint {self.joint}; expected one of "
+                f"{', '.join(FRAMES)}, {words}"
+            )
+            raise ValueError(msg)
+        return self
 
     @field_validator("lowpass_hz", mode="before")
     @classmethod
@@ -277,7 +310,7 @@ class Settings(BaseModel):
             except ValueError as error:
                 msg = f"expected a cut-off in hertz, auto or none, found {value!r}"
                 raise ValueError(msg) from error
-        if isinstance(value, int | float) and not 0.0 < value < np.inf:
+        if isinstance(value, int | float) and not 0.0 < value < math.inf:
             msg = f"expected a cut-off above 0 Hz, found {value:g}"
             raise ValueError(msg)
         return value
@@ -285,7 +318,7 @@ class Settings(BaseModel):
     @field_validator("cycles", mode="before")
     @classmethod
     def _cycle_times(cls, value: object) -> object:
-        """Take the path of a CSV file for the times that stand in it."""
+        """Take the name of a file with the times, too."""
         return _read_cycles(Path(value)) if isinstance(value, str | Path) else value
 
     @model_validator(mode="after")
@@ -294,33 +327,6 @@ class Settings(BaseModel):
             msg = "--no-cycles and --cycles contradict each other; give one of them"
             raise ValueError(msg)
         return self
-
-    @field_validator("axis_sd_deg", mode="before")
-    @classmethod
-    def _angle_with_unit(cls, value: object) -> object:
-        """Take ``2deg`` and ``0.03rad`` for angles, too."""
-        if not isinstance(value, str):
-            return value
-        number, unit = value.strip().removesuffix("deg").removesuffix("rad"), value.strip()[-3:]
-        try:
-            return float(np.degrees(float(number))) if unit == "rad" else float(number)
-        except ValueError as error:
-            msg = f"expected degrees or an angle with its unit, as in 2deg, found {value!r}"
-            raise ValueError(msg) from error
-
-    @field_validator("tolerance_mm", mode="before")
-    @classmethod
-    def _length_with_unit(cls, value: object) -> object:
-        """Take ``2mm`` and ``0.002m`` for lengths, too."""
-        if not isinstance(value, str):
-            return value
-        text = value.strip()
-        unit = "mm" if text.endswith("mm") else "m" if text.endswith("m") else ""
-        try:
-            return float(text.removesuffix(unit)) * (1000.0 if unit == "m" else 1.0)
-        except ValueError as error:
-            msg = f"expected millimeters or a length with its unit, as in 2mm, found {value!r}"
-            raise ValueError(msg) from error
 
     @model_validator(mode="after")
     def _check_law(self) -> Settings:
@@ -373,6 +379,95 @@ class Settings(BaseModel):
         return self
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Setting:
+    """What is declared of a setting, as options and documents want it.
+
+    Attributes
+    ----------
+    field, option : str
+        Its name in `Settings`, and on the command line and in files.
+    former : tuple of str
+        Names the option had before.
+    kind : type
+        A `Literal`, `bool`, `int` or `float`, or `str` where it takes more than that; of a list, that of its parts.
+    several : bool
+        It is a list.
+    choices : tuple of str
+        What it may be, where that is a choice.
+    bounds : tuple of str
+        As ``>= 0``.
+    default : str
+        As the help shows it; empty where there is none.
+    text, about, metavar : str
+    """
+
+    field: str
+    option: str
+    former: tuple[str, ...]
+    kind: Any
+    several: bool
+    choices: tuple[str, ...]
+    bounds: tuple[str, ...]
+    default: str
+    text: str
+    about: str
+    metavar: str
+
+
+def _declared(field: str, info: FieldInfo) -> Setting:
+    extra: Any = info.json_schema_extra
+    kinds = [kind for kind in get_args(info.annotation) or (info.annotation,) if kind is not NoneType]
+    kind = info.annotation if get_origin(info.annotation) in (Literal, tuple) else kinds[0] if len(kinds) == 1 else str
+    several = get_origin(kind) is tuple and get_origin(get_args(kind)[0]) is not tuple  # the latter come from a file
+    kind = get_args(kind)[0] if several else kind
+    choices = get_args(kind) if get_origin(kind) is Literal else ()
+    bounds = {"ge": ">=", "gt": ">", "le": "<=", "lt": "<"}
+    value = info.default
+    return Setting(
+        field=field,
+        option=option_name(field),
+        former=tuple(name for name, now in _FORMER_NAMES.items() if now == option_name(field)),
+        kind=kind if choices or kind in (bool, int, float) else str,
+        several=several,
+        choices=choices,
+        bounds=tuple(
+            f"{sign} {getattr(one, name):g}"
+            for one in info.metadata
+            for name, sign in bounds.items()
+            if hasattr(one, name)
+        ),
+        default=extra["shown"]
+        or ("" if value is None else ",".join(value) if several else f"{value:g}" if kind is float else str(value)),
+        text=str(info.description),
+        about=extra["about"],
+        metavar=extra["metavar"] or f"<{'|'.join(choices)}>",
+    )
+
+
+SETTINGS: Final = tuple(_declared(field, info) for field, info in Settings.model_fields.items())
+"""Every setting."""
+
+LISTS: Final = tuple(setting.option for setting in SETTINGS if setting.several)
+"""Options of settings of which there may be several."""
+
+_FIELDS: Final = {setting.option: setting.field for setting in SETTINGS}
+
+
+def _attribute(setting: Setting) -> str:
+    kind = "{" + ", ".join(map(repr, setting.choices)) + "}" if setting.choices else setting.kind.__name__
+    optional = " or None" if Settings.model_fields[setting.field].default is None else ""
+    named = f"{setting.field} : {'tuple of ' if setting.several else ''}{kind}{optional}"
+    return f"{named}\n    {setting.text}" + (f" Default: {setting.default}." if setting.default else "")
+
+
+Settings.__doc__ = (
+    f"{(Settings.__doc__ or '').rstrip()}\n\n    Attributes\n    ----------\n    "
+    + "\n".join(map(_attribute, SETTINGS)).replace("\n", "\n    ")
+    + "\n    "
+)
+
+
 def settings_from(config: Path | None = None, options: Mapping[str, Any] | None = None) -> Settings:
     """Merge defaults, a TOML file and options; the later ones win.
 
@@ -408,7 +503,7 @@ def _read_cycles(path: Path) -> list[tuple[float, float]]:
             times = []
             for row in table:
                 start, end = (float(row[name] or "nan") for name in columns)
-                if not (np.isfinite([start, end]).all() and start < end):
+                if not (math.isfinite(start) and math.isfinite(end) and start < end):
                     msg = f"{path}:{table.line_num}: expected a start before its end, found {row['start_time_s']} and "
                     raise ValueError(msg + f"{row['end_time_s']}")
                 times.append((start, end))
@@ -438,16 +533,31 @@ def _read_toml(config: Path) -> dict[str, Any]:
         raise UsageError(msg) from error
 
 
+def settings_from_options(values: Mapping[str, Any]) -> Settings:
+    """Make settings of values by the names of their options, as ``summary.json`` has them.
+
+    Raises
+    ------
+    pydantic.ValidationError
+        If a name or a value is not a possible one.
+    """
+    return Settings.model_validate({_FIELDS.get(name, name): value for name, value in values.items()})
+
+
+def options_from_settings(settings: Settings) -> dict[str, Any]:
+    """Give every setting by the name of its option, ready for JSON."""
+    return {option_name(field): value for field, value in settings.model_dump(mode="json").items()}
+
+
 def _validate(values: Mapping[str, Any], place: str) -> Settings:
-    known = [option_name(name) for name in Settings.model_fields]
     try:
-        return Settings.model_validate(dict(values))
+        return settings_from_options(values)
     except ValidationError as error:
-        raise UsageError("; ".join(_sentence(place, fault, known) for fault in error.errors())) from error
+        raise UsageError("; ".join(_sentence(place, fault, list(_FIELDS)) for fault in error.errors())) from error
 
 
 def _sentence(place: str, fault: Any, known: list[str]) -> str:
-    key = str(fault["loc"][0]) if fault["loc"] else ""
+    key = option_name(str(fault["loc"][0])) if fault["loc"] else ""
     if fault["type"] == "extra_forbidden":
         close = difflib.get_close_matches(key, known, n=1)
         hint = f"did you mean {close[0]!r}?" if close else f"possible keys: {', '.join(known)}"

@@ -18,11 +18,10 @@ from elbowscrew.geometry.dual_quaternion import (
     transform_lines,
     transform_points,
 )
-from elbowscrew.joints import JOINT_NAMES, joints_of
+from elbowscrew.joints import JOINT_NAMES, JointName, joints_of
 from elbowscrew.model import Recording, RigidBody, TrackingLoss
 from elbowscrew.motion.interpolation.laws import cycloidal
 from elbowscrew.motion.screws.relative import IDENTITY
-from elbowscrew.settings import JointName
 
 Float = NDArray[np.float64]
 

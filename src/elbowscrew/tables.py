@@ -8,16 +8,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
-from typing import TYPE_CHECKING, Any, Final, Literal
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowscrew.choices import AngleUnit as AngleUnit
+from elbowscrew.choices import LengthUnit as LengthUnit
+
 if TYPE_CHECKING:
     import pandas as pd
-
-AngleUnit = Literal["deg", "rad"]
-LengthUnit = Literal["mm", "m"]
 
 METERS: Final[dict[str, float]] = {"m": 1.0, "cm": 0.01, "mm": 0.001}
 """Meters in one unit of length."""

@@ -330,7 +330,7 @@ def test_markers_are_chosen_with_care(tmp_path: Path, settings: dict[str, Any], 
 
 
 def test_markers_on_a_line_are_refused_and_origins_are_not_seen(tmp_path: Path) -> None:
-    flat = {"arm_markers": ("UA1", "UA2", "UA3"), "forearm_markers": ("FA*",)}
+    flat: dict[str, Any] = {"arm_markers": ("UA1", "UA2", "UA3"), "forearm_markers": ("FA*",)}
     change = {(row, 2 + 3 * k + axis): repr(0.1 * (k + 1)) for row in range(80) for k in range(3) for axis in range(3)}
     recording = read_recording(table(tmp_path / "t.csv", bodies=False, markers=True, change=change), markers="*")
     with pytest.raises(SettingError, match="one line"):

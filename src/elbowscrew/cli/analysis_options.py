@@ -1,305 +1,92 @@
-"""The settings as options: listed here once, and added to a command that analyzes by `analysis_options`."""
+"""The settings as options of a command, made from `elbowscrew.settings.SETTINGS`."""
 
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import wraps
-from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from elbowscrew.cli import options
 
-_BODIES, _MOTION, _MODEL, OUTPUT = "Bodies and file", "Motion", "Model", "Output"
+if TYPE_CHECKING:
+    from elbowscrew.settings import Setting
+
+OUTPUT = "Output"
 
 
-def settings_given(
-    joint: Annotated[
-        Literal["elbow", "wrist", "knee", "ankle", "hip", "shoulder", "finger"] | None,
-        typer.Option(rich_help_panel=_BODIES, help="What the joint is called.", show_default="by the bodies' names"),
-    ] = None,
-    proximal: Annotated[
-        str | None,
-        typer.Option(
-            "--proximal",
-            "--arm",
-            metavar="NAME",
-            rich_help_panel=_BODIES,
-            help="Name or id; none if still.",
-        ),
-    ] = None,
-    distal: Annotated[
-        str | None,
-        typer.Option("--distal", "--forearm", metavar="NAME", rich_help_panel=_BODIES, help="Name or id."),
-    ] = None,
-    proximal_markers: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--proximal-markers",
-            "--arm-markers",
-            metavar="NAMES",
-            rich_help_panel=_BODIES,
-            help="Names or patterns.",
-        ),
-    ] = None,
-    distal_markers: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--distal-markers",
-            "--forearm-markers",
-            metavar="NAMES",
-            rich_help_panel=_BODIES,
-            help="Names or patterns.",
-        ),
-    ] = None,
-    pose_method: Annotated[
-        Literal["svd", "dual-qr"] | None,
-        typer.Option(rich_help_panel=_BODIES, help="Poses from markers.", show_default="svd"),
-    ] = None,
-    landmarks: Annotated[
-        Path | None,
-        typer.Option(metavar="FILE.toml", rich_help_panel=_BODIES, help="Landmarks, for the anatomical angles."),
-    ] = None,
-    units: Annotated[
-        options.Units | None, typer.Option(rich_help_panel=_BODIES, help="Unit of length, if the file states none.")
-    ] = None,
-    rotation: Annotated[
-        options.Rotation | None, typer.Option(rich_help_panel=_BODIES, help="Rotation type, if the file states none.")
-    ] = None,
-    frozen: Annotated[
-        Literal["lost", "keep"] | None,
-        typer.Option(rich_help_panel=_BODIES, help="Poses that repeat to the last digit.", show_default="lost"),
-    ] = None,
-    max_turn: Annotated[
-        float | None,
-        typer.Option(
-            metavar="DEG/S", rich_help_panel=_BODIES, help="Fastest turn; more is a leap.", show_default="3000"
-        ),
-    ] = None,
-    max_speed: Annotated[
-        float | None,
-        typer.Option(metavar="M/S", rich_help_panel=_BODIES, help="Fastest motion; more is a leap.", show_default="15"),
-    ] = None,
-    min_tracked: Annotated[
-        float | None,
-        typer.Option(metavar="PERCENT", rich_help_panel=_BODIES, help="Least share of frames.", show_default="50"),
-    ] = None,
-    reference: Annotated[
-        int | None,
-        typer.Option(
-            metavar="FRAME", rich_help_panel=_MOTION, help="Reference pose.", show_default="first tracked frame"
-        ),
-    ] = None,
-    reference_window: Annotated[
-        int | None,
-        typer.Option(metavar="N", rich_help_panel=_MOTION, help="Mean of N frames as reference.", show_default="1"),
-    ] = None,
-    express_in: Annotated[
-        Literal["distal", "proximal", "lab", "forearm", "arm"] | None,
-        typer.Option(rich_help_panel=_MOTION, help="Frame the screw is written in.", show_default="distal"),
-    ] = None,
-    max_gap: Annotated[
-        float | None,
-        typer.Option(metavar="SECONDS", rich_help_panel=_MOTION, help="Longest gap filled.", show_default="0.1"),
-    ] = None,
-    min_angle: Annotated[
-        float | None,
-        typer.Option(metavar="DEG", rich_help_panel=_MOTION, help="Least angle for an axis.", show_default="10"),
-    ] = None,
-    lowpass: Annotated[
-        str | None,
-        typer.Option(
-            metavar="HZ",
-            rich_help_panel=_MOTION,
-            help="Filter of the poses: HZ, auto or none.",
-            show_default="none",
-        ),
-    ] = None,
-    resample: Annotated[
-        float | None,
-        typer.Option(metavar="HZ", rich_help_panel=_MOTION, help="Rate to resample to.", show_default="the file's"),
-    ] = None,
-    min_rate: Annotated[
-        float | None,
-        typer.Option(
-            metavar="RAD/S",
-            rich_help_panel=_MOTION,
-            help="Least angular velocity for an instantaneous axis.",
-            show_default="0.25",
-        ),
-    ] = None,
-    axis_sd: Annotated[
-        str | None,
-        typer.Option(
-            metavar="DEG", rich_help_panel=_MOTION, help="Least precision of an axis, in place of --min-angle: 2deg."
-        ),
-    ] = None,
-    step: Annotated[
-        float | None,
-        typer.Option(metavar="DEG", rich_help_panel=_MOTION, help="Axes from pose to pose, so far apart: steps.csv."),
-    ] = None,
-    marker_noise: Annotated[
-        float | None,
-        typer.Option(
-            metavar="MM",
-            rich_help_panel=_MOTION,
-            help="Noise of each coordinate of a marker.",
-            show_default="from the recording",
-        ),
-    ] = None,
-    noise: Annotated[
-        Literal["auto", "residuals", "still", "error-column", "none"] | None,
-        typer.Option(rich_help_panel=_MOTION, help="Where the noise is known from.", show_default="auto"),
-    ] = None,
-    signed: Annotated[
-        Literal["auto", "yes", "no"] | None,
-        typer.Option(
-            rich_help_panel=_MOTION, help="Give theta a sense; auto: where one axis dominates.", show_default="auto"
-        ),
-    ] = None,
-    robust: Annotated[
-        bool | None,
-        typer.Option("--robust/--no-robust", rich_help_panel=_MOTION, help="Weigh outliers down in the joint's axis."),
-    ] = None,
-    cycle_swing: Annotated[
-        float | None,
-        typer.Option(
-            metavar="DEG",
-            rich_help_panel=_MOTION,
-            help="Least swing between a cycle's turns.",
-            show_default="by noise and range",
-        ),
-    ] = None,
-    cycles: Annotated[
-        str | None,
-        typer.Option(
-            metavar="FILE.CSV", rich_help_panel=_MOTION, help="Times of the cycles: start_time_s, end_time_s."
-        ),
-    ] = None,
-    no_cycles: Annotated[
-        bool | None, typer.Option("--no-cycles", rich_help_panel=_MOTION, help="Look for no cycles.")
-    ] = None,
-    keyframes: Annotated[
-        str | None,
-        typer.Option(
-            metavar="F1,F2,...",
-            rich_help_panel=_MODEL,
-            help="Frames the model passes through.",
-            show_default="start, inversion, end",
-        ),
-    ] = None,
-    inversion: Annotated[
-        int | None,
-        typer.Option(
-            metavar="FRAME", rich_help_panel=_MODEL, help="Where the motion turns.", show_default="largest angle"
-        ),
-    ] = None,
-    phases: Annotated[
-        Literal["movement", "whole"] | None,
-        typer.Option(
-            rich_help_panel=_MODEL, help="Between the movement's rests, or the whole take.", show_default="movement"
-        ),
-    ] = None,
-    tolerance: Annotated[
-        str | None,
-        typer.Option(
-            metavar="LENGTH",
-            rich_help_panel=_MODEL,
-            help="Fewest keyframes that keep the RMS displacement below: 2mm.",
-        ),
-    ] = None,
-    method: Annotated[
-        Literal["dlb", "sclerp", "sdlb", "dib", "catmull-rom"] | None,
-        typer.Option(
-            rich_help_panel=_MODEL, help="Interpolation of poses.", show_default="dlb, with a tolerance sclerp"
-        ),
-    ] = None,
-    blend: Annotated[
-        Literal["piecewise", "global"] | None,
-        typer.Option(rich_help_panel=_MODEL, help="Phase by phase, or all poses at once.", show_default="piecewise"),
-    ] = None,
-    law: Annotated[
-        Literal[
-            "cycloidal",
-            "linear",
-            "harmonic",
-            "polynomial-345",
-            "polynomial-4567",
-            "modified-trapezoid",
-            "modified-sine",
-            "empirical",
-            "best",
-        ]
-        | None,
-        typer.Option(rich_help_panel=_MODEL, help="Law of motion.", show_default="cycloidal, with a tolerance linear"),
-    ] = None,
-    law_peak: Annotated[
-        float | None,
-        typer.Option(
-            metavar="SHARE", rich_help_panel=_MODEL, help="Time of the highest velocity in a phase.", show_default="0.5"
-        ),
-    ] = None,
-    knots: Annotated[
-        Literal["law", "chord", "uniform", "angle"] | None,
-        typer.Option(rich_help_panel=_MODEL, help="Parameter of the keyframes.", show_default="law"),
-    ] = None,
-    radius: Annotated[
-        float | None,
-        typer.Option(
-            metavar="MM",
-            rich_help_panel=_MODEL,
-            help="Radius of gyration for the RMS displacement.",
-            show_default="the distal body's markers, else 50",
-        ),
-    ] = None,
-    angle_unit: Annotated[
-        Literal["deg", "rad"] | None,
-        typer.Option(rich_help_panel=OUTPUT, help="Unit of angles in tables and figures.", show_default="deg"),
-    ] = None,
-    length_unit: Annotated[
-        Literal["mm", "m"] | None,
-        typer.Option(rich_help_panel=OUTPUT, help="Unit of lengths in tables and figures.", show_default="mm"),
-    ] = None,
-    figure_format: Annotated[
-        list[options.FigureFormat] | None,
-        typer.Option(rich_help_panel=OUTPUT, help="May be given more than once.", show_default="png"),
-    ] = None,
-    export: Annotated[
-        list[options.ExportFormat] | None,
-        typer.Option(
-            rich_help_panel=OUTPUT,
-            help="Tables for other programs, too; may be given more than once.",
-            show_default="none",
-        ),
-    ] = None,
-) -> dict[str, Any]:
-    """Collect what was given on the command line; None where nothing was.
+def settings_options(
+    *only: str, defaults: Mapping[str, str] | None = None
+) -> Callable[[Callable[..., None]], Callable[..., None]]:
+    """Put settings in the place of a command's parameter ``given``, which gets what the options say.
 
-    A new option of the analysis is one parameter here, named as the field of `Settings` without its unit.
+    The options are made when `with_settings` of the command is called, so that listing the commands need not load the
+    settings (`elbowscrew.cli.app`).
+
+    Parameters
+    ----------
+    *only : str
+        Names of the options; all settings if there are none.
+    defaults : mapping of str to str, optional
+        What the help says of defaults that are the command's own, by the options' names.
     """
-    given = dict(locals())
-    for name in ("proximal_markers", "distal_markers"):
-        given[name] = options.names(given[name])
-    given["keyframes"] = options.frame_numbers(keyframes)
-    for name in ("figure_format", "export"):
-        given[name] = [kind.value for kind in given[name]] if given[name] else None
-    return given
+
+    def decorated(command: Callable[..., None]) -> Callable[..., None]:
+        def with_settings() -> Callable[..., None]:
+            from elbowscrew.settings import SETTINGS
+
+            settings = {one.option.replace("-", "_"): one for one in SETTINGS if not only or one.option in only}
+
+            @wraps(command)
+            def run(**values: Any) -> None:
+                given = {name: _value(setting, values.pop(name)) for name, setting in settings.items()}
+                command(given=given, **values)
+
+            parameters: list[inspect.Parameter] = []
+            for parameter in inspect.signature(command, eval_str=True).parameters.values():
+                made = [_parameter(name, one, defaults or {}) for name, one in settings.items()]
+                parameters += made if parameter.name == "given" else [parameter]
+            return _signed(run, parameters)
+
+        @wraps(command)
+        def listed(**values: Any) -> None:
+            command(given={}, **values)
+
+        others = [one for one in inspect.signature(command, eval_str=True).parameters.values() if one.name != "given"]
+        listed.with_settings = with_settings  # type: ignore[attr-defined]
+        return _signed(listed, others)
+
+    return decorated
 
 
-def analysis_options(command: Callable[..., None]) -> Callable[..., None]:
-    """Put the options of `settings_given` in the place of a command's parameter ``given``, which gets what they say."""
-    options_of_settings = inspect.signature(settings_given, eval_str=True).parameters
-    parameters: list[inspect.Parameter] = []
-    for parameter in inspect.signature(command, eval_str=True).parameters.values():
-        parameters += options_of_settings.values() if parameter.name == "given" else [parameter]
+def _signed(function: Callable[..., None], parameters: list[inspect.Parameter]) -> Callable[..., None]:
+    function.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
+    function.__annotations__ = {}
+    return function
 
-    @wraps(command)
-    def with_options(**values: Any) -> None:
-        given = settings_given(**{name: values.pop(name) for name in options_of_settings})
-        command(given=given, **values)
 
-    with_options.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
-    with_options.__annotations__ = {}
-    return with_options
+def _parameter(name: str, setting: Setting, defaults: Mapping[str, str]) -> inspect.Parameter:
+    kind = list[str] if setting.several else setting.kind
+    names = [f"--{one}" for one in (setting.option, *setting.former)]
+    if kind is bool and not setting.option.startswith("no-"):
+        names = [f"{names[0]}/--no-{setting.option}"]
+    default = defaults.get(setting.option, setting.default)
+    option = typer.Option(
+        *names,
+        metavar=None if kind is bool or (setting.choices and not setting.several) else setting.metavar,
+        rich_help_panel=setting.about,
+        help=setting.text + (" With commas, or given again." if setting.several else ""),
+        show_default=False if kind is bool or not default else default,
+    )
+    return inspect.Parameter(
+        name, inspect.Parameter.KEYWORD_ONLY, default=None, annotation=Annotated[kind | None, option]
+    )
+
+
+def _value(setting: Setting, given: Any) -> Any:
+    if given is None or not setting.several:
+        return given
+    parts = options.parts(setting.option, given)
+    return options.whole_numbers(setting.option, parts) if setting.kind is int else parts

@@ -7,10 +7,11 @@ from typing import Annotated, Any
 
 import typer
 
-from elbowscrew.cli.analysis_options import OUTPUT, analysis_options
+from elbowscrew.cli import options
+from elbowscrew.cli.analysis_options import OUTPUT, settings_options
 
 
-@analysis_options
+@settings_options()
 def analyze(
     trial: Annotated[
         Path, typer.Argument(metavar="TRIAL", help="An OptiTrack export, plain table, TRC or C3D.", show_default=False)
@@ -29,6 +30,7 @@ def analyze(
     force: Annotated[bool, typer.Option("--force", help="Replace an earlier result.", rich_help_panel=OUTPUT)] = False,
     *,
     given: dict[str, Any],
+    landmarks: options.LandmarksFile = None,
     page: Annotated[
         bool, typer.Option("--report/--no-report", rich_help_panel=OUTPUT, help="Write the page report.html.")
     ] = True,
@@ -54,7 +56,6 @@ def analyze(
     from elbowscrew.saving import analyze_file, read_summary, save_analysis
     from elbowscrew.settings import settings_from
 
-    landmarks = given.pop("landmarks")
     settings = settings_from(config, given)
     target = output if output is not None else Path(f"{trial.stem}_elbowscrew")
     check_result_folder(target, force=force)  # before the work, not after it

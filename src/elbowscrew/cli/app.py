@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
+import typer.core
 
 from elbowscrew._version import __version__
 from elbowscrew.cli.analyze import analyze
@@ -16,7 +17,22 @@ from elbowscrew.cli.paper import paper
 from elbowscrew.cli.report import report
 from elbowscrew.cli.simulate import simulate
 
+
+class _Commands(typer.core.TyperGroup):
+    """The commands; options that are made from the settings are made for the command that is asked for alone."""
+
+    def resolve_command(self, ctx: Any, args: list[str]) -> tuple[Any, Any, list[str]]:
+        name, command, rest = super().resolve_command(ctx, args)
+        with_settings = getattr(getattr(command, "callback", None), "with_settings", None)
+        if with_settings is not None:
+            alone = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
+            alone.command(name)(with_settings())
+            command = typer.main.get_command(alone)
+        return name, command, rest
+
+
 app = typer.Typer(
+    cls=_Commands,
     name="elbowscrew",
     help="Screw motion of a joint from OptiTrack recordings, by dual quaternions.",
     pretty_exceptions_enable=False,

@@ -7,7 +7,8 @@ from typing import Annotated, Any
 
 import typer
 
-from elbowscrew.cli.analysis_options import OUTPUT, analysis_options
+from elbowscrew.cli import options
+from elbowscrew.cli.analysis_options import OUTPUT, settings_options
 
 _TRIALS, _WORK = "Trials", "Work"
 
@@ -16,7 +17,7 @@ SOME_FAILED = 7
 _HANDED_TO_CLUSTER = 1000  # it may grow while it works
 
 
-@analysis_options
+@settings_options()
 def batch(
     paths: Annotated[
         list[str],
@@ -63,6 +64,7 @@ def batch(
     ] = False,
     *,
     given: dict[str, Any],
+    landmarks: options.LandmarksFile = None,
     config: Annotated[
         Path | None, typer.Option(metavar="FILE.toml", rich_help_panel=OUTPUT, help="Settings; options are stronger.")
     ] = None,
@@ -84,7 +86,6 @@ def batch(
     from elbowscrew.study.study import run_study
     from elbowscrew.study.trials import find_trials
 
-    landmarks = given.pop("landmarks")
     of_cluster = scheduler is not None and scheduler != LOCAL_CLUSTER
     count = workers or (_HANDED_TO_CLUSTER if of_cluster else available_cores())
     executor = open_executor(scheduler, count)

@@ -3,25 +3,31 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any
 
 import typer
 
 from elbowscrew.cli import options
+from elbowscrew.cli.analysis_options import OUTPUT, settings_options
 
-_MODELS, _RECORDING, _OUTPUT = "Models", "Recording", "Output"
+_MODELS = "Model"
 
 
+@settings_options(
+    "joint", "proximal", "distal", "proximal-markers", "distal-markers", "units", "rotation", "lowpass", "inversion",
+    "phases", "tolerance", "radius", "figure-format",
+    defaults={"lowpass": "by residual analysis, 6 at most", "tolerance": "2mm"},
+)  # fmt: skip
 def compare(
     trial: Annotated[
         Path, typer.Argument(metavar="TRIAL", help="A recording, or a folder of recordings.", show_default=False)
     ],
     methods: Annotated[
-        str | None,
+        list[str] | None,
         typer.Option(metavar="M1,M2,...", rich_help_panel=_MODELS, help="Interpolations of poses.", show_default="all"),
     ] = None,
     laws: Annotated[
-        str | None,
+        list[str] | None,
         typer.Option(
             metavar="L1,L2,...",
             rich_help_panel=_MODELS,
@@ -30,23 +36,26 @@ def compare(
         ),
     ] = None,
     blends: Annotated[
-        str | None,
+        list[str] | None,
         typer.Option(
-            metavar="B1,B2", rich_help_panel=_MODELS, help="piecewise, global.", show_default="piecewise,global"
+            metavar="B1,B2",
+            rich_help_panel=_MODELS,
+            help="Phase by phase, or all poses at once.",
+            show_default="all",
         ),
     ] = None,
     knots: Annotated[
-        str | None,
+        list[str] | None,
         typer.Option(
-            metavar="K1,K2,...", rich_help_panel=_MODELS, help="law, chord, uniform, angle.", show_default="law"
+            metavar="K1,K2,...", rich_help_panel=_MODELS, help="Parameters of the keyframes.", show_default="law"
         ),
     ] = None,
     counts: Annotated[
-        str | None,
+        list[str] | None,
         typer.Option(metavar="N1,N2,...", rich_help_panel=_MODELS, help="Keyframes a phase.", show_default="2,3,4,5"),
     ] = None,
     data: Annotated[
-        str | None,
+        list[str] | None,
         typer.Option(
             metavar="D1,D2,...",
             rich_help_panel=_MODELS,
@@ -55,84 +64,16 @@ def compare(
         ),
     ] = None,
     decimation: Annotated[
-        str | None,
+        list[str] | None,
         typer.Option(
             metavar="N1,N2,...", rich_help_panel=_MODELS, help="Take every so many-th frame.", show_default="2,4"
         ),
     ] = None,
-    tolerance: Annotated[
-        str | None,
-        typer.Option(
-            metavar="LENGTH", rich_help_panel=_MODELS, help="Of the fewest keyframes, as 2mm.", show_default="2mm"
-        ),
-    ] = None,
-    phases: Annotated[
-        Literal["movement", "whole"] | None,
-        typer.Option(
-            rich_help_panel=_MODELS, help="Between the movement's rests, or the whole take.", show_default="movement"
-        ),
-    ] = None,
-    inversion: Annotated[
-        int | None,
-        typer.Option(metavar="FRAME", rich_help_panel=_MODELS, help="Where the motion turns.", show_default="found"),
-    ] = None,
-    lowpass: Annotated[
-        str | None,
-        typer.Option(
-            metavar="HZ",
-            rich_help_panel=_MODELS,
-            help="Filter of the filtered keyframes.",
-            show_default="by residual analysis, 6 at most",
-        ),
-    ] = None,
-    radius: Annotated[
-        float | None,
-        typer.Option(
-            metavar="MM",
-            rich_help_panel=_MODELS,
-            help="Radius of gyration for the RMS displacement.",
-            show_default="the distal body's markers, else 50",
-        ),
-    ] = None,
-    proximal: Annotated[
-        str | None,
-        typer.Option("--proximal", "--arm", metavar="NAME", rich_help_panel=_RECORDING, help="Name, id, or none."),
-    ] = None,
-    distal: Annotated[
-        str | None,
-        typer.Option("--distal", "--forearm", metavar="NAME", rich_help_panel=_RECORDING, help="Name or id."),
-    ] = None,
-    proximal_markers: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--proximal-markers",
-            "--arm-markers",
-            metavar="NAMES",
-            rich_help_panel=_RECORDING,
-            help="Names or patterns.",
-        ),
-    ] = None,
-    distal_markers: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--distal-markers",
-            "--forearm-markers",
-            metavar="NAMES",
-            rich_help_panel=_RECORDING,
-            help="Names or patterns.",
-        ),
-    ] = None,
-    units: Annotated[
-        options.Units | None,
-        typer.Option(rich_help_panel=_RECORDING, help="Unit of length, if the file states none."),
-    ] = None,
-    rotation: Annotated[
-        options.Rotation | None,
-        typer.Option(rich_help_panel=_RECORDING, help="Rotation type, if the file states none."),
-    ] = None,
+    *,
+    given: dict[str, Any],
     config: Annotated[
         Path | None,
-        typer.Option(metavar="FILE.toml", rich_help_panel=_RECORDING, help="Settings of analyze, as a file."),
+        typer.Option(metavar="FILE.toml", rich_help_panel=OUTPUT, help="Settings of analyze, as a file."),
     ] = None,
     output: Annotated[
         Path | None,
@@ -140,22 +81,18 @@ def compare(
             "--output",
             "-o",
             metavar="DIR",
-            rich_help_panel=_OUTPUT,
+            rich_help_panel=OUTPUT,
             help="Result folder.",
             show_default="<trial>_compare in the current folder",
         ),
     ] = None,
     force: Annotated[
-        bool, typer.Option("--force", help="Replace an earlier comparison.", rich_help_panel=_OUTPUT)
+        bool, typer.Option("--force", help="Replace an earlier comparison.", rich_help_panel=OUTPUT)
     ] = False,
-    figure_format: Annotated[
-        list[options.FigureFormat] | None,
-        typer.Option(rich_help_panel=_OUTPUT, help="Format of the figure; may be given again.", show_default="png"),
-    ] = None,
     json_output: Annotated[
-        bool, typer.Option("--json", help="Print compare.json instead of the table.", rich_help_panel=_OUTPUT)
+        bool, typer.Option("--json", help="Print compare.json instead of the table.", rich_help_panel=OUTPUT)
     ] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print no table.", rich_help_panel=_OUTPUT)] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print no table.", rich_help_panel=OUTPUT)] = False,
 ) -> None:
     """Compare models of one motion, or of a folder of recordings.
 
@@ -170,23 +107,7 @@ def compare(
     from elbowscrew.saving import save_comparison
     from elbowscrew.settings import settings_from
 
-    settings = settings_from(
-        config,
-        {
-            "tolerance": tolerance,
-            "phases": phases,
-            "inversion": inversion,
-            "lowpass": lowpass,
-            "radius": radius,
-            "proximal": proximal,
-            "distal": distal,
-            "proximal_markers": options.names(proximal_markers),
-            "distal_markers": options.names(distal_markers),
-            "units": units,
-            "rotation": rotation,
-            "figure_format": [kind.value for kind in figure_format] if figure_format else None,
-        },
-    )
+    settings = settings_from(config, given)
     plan = options.comparison_plan(
         {"methods": methods, "laws": laws, "blends": blends, "knots": knots, "data": data},
         {"counts": counts, "decimation": decimation},

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated
 
 import typer
 
-from elbowscrew.cli import options
+from elbowscrew.choices import ClosedLaw, MethodName
 
 
 def interpolate(
@@ -29,11 +29,11 @@ def interpolate(
         ),
     ] = None,
     method: Annotated[
-        Literal["dlb", "sclerp", "sdlb", "dib", "catmull-rom"] | None,
+        MethodName | None,
         typer.Option(help="Interpolation of poses.", show_default="the file's, else dlb"),
     ] = None,
     law: Annotated[
-        options.ClosedLaw | None, typer.Option(help="Law of motion.", show_default="the file's, else cycloidal")
+        ClosedLaw | None, typer.Option(help="Law of motion.", show_default="the file's, else cycloidal")
     ] = None,
     law_peak: Annotated[
         float | None,

@@ -1,70 +1,63 @@
-"""Options that several commands share, and values the shell gives as text."""
+"""Options that several commands share, and lists that the shell gives as text."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from enum import StrEnum
-from typing import TYPE_CHECKING, Literal
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
 
 from elbowscrew.errors import UsageError
 
 if TYPE_CHECKING:
     from elbowscrew.motion.interpolation.keyframe_sources import ComparisonPlan
 
-Units = Literal["m", "cm", "mm"]
-Rotation = Literal["quaternion", "XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX"]
-ClosedLaw = Literal[
-    "cycloidal", "linear", "harmonic", "polynomial-345", "polynomial-4567", "modified-trapezoid", "modified-sine"
+LandmarksFile = Annotated[
+    Path | None,
+    typer.Option(metavar="FILE.toml", rich_help_panel="Bodies and file", help="Landmarks, for the anatomical angles."),
 ]
 
 
-class FigureFormat(StrEnum):
-    """Formats of figures; an enumeration because typer takes no list of literals."""
-
-    PNG = "png"
-    SVG = "svg"
-    PDF = "pdf"
-    NONE = "none"
-
-
-class ExportFormat(StrEnum):
-    """Formats of other programs."""
-
-    PARQUET = "parquet"
-    MAT = "mat"
-    STO = "sto"
-
-
-def frame_numbers(text: str | None) -> tuple[int, ...] | None:
-    """Split ``0,211,449`` into frame numbers.
+def parts(option: str, given: Sequence[str] | None) -> tuple[str, ...] | None:
+    """Split a list at its commas, each part once; an option may be given more than once, and all it is given counts.
 
     Raises
     ------
     UsageError
-        If there is anything else between the commas.
+        If nothing is left.
     """
-    if text is None:
-        return None
-    try:
-        return tuple(int(part) for part in text.split(","))
-    except ValueError as error:
-        msg = f"--keyframes {text!r}: expected frame numbers with commas between them, as in 0,211,449"
-        raise UsageError(msg) from error
-
-
-def names(given: list[str] | None) -> tuple[str, ...] | None:
-    """Split names at their commas; an option may be given more than once."""
     if not given:
         return None
-    found = tuple(name.strip() for text in given for name in text.split(",") if name.strip())
+    found = tuple(dict.fromkeys(part.strip() for text in given for part in text.split(",") if part.strip()))
     if not found:
-        msg = "the option of markers is empty: expected names or patterns with commas between them, as in 'UA1,UA2,UA3'"
+        msg = f"--{option}: expected one or more with commas between them, found {','.join(given)!r}"
         raise UsageError(msg)
     return found
 
 
-def comparison_plan(words: Mapping[str, str | None], numbers: Mapping[str, str | None]) -> ComparisonPlan:
-    """Make the plan of a comparison of lists with commas; what is not given stays as it is.
+def whole_numbers(option: str, given: Sequence[str] | None) -> tuple[int, ...] | None:
+    """Read whole numbers, as frames are.
+
+    Raises
+    ------
+    UsageError
+        If one is none.
+    """
+    if given is None:
+        return None
+    try:
+        return tuple(int(part) for part in given)
+    except ValueError as error:
+        what = "frame numbers" if option == "keyframes" else "whole numbers"
+        msg = f"--{option} {','.join(given)!r}: expected {what} with commas between them, as in 2,3,4"
+        raise UsageError(msg) from error
+
+
+def comparison_plan(
+    words: Mapping[str, Sequence[str] | None], numbers: Mapping[str, Sequence[str] | None]
+) -> ComparisonPlan:
+    """Make the plan of a comparison of lists; what is not given stays as it is.
 
     Raises
     ------
@@ -73,15 +66,8 @@ def comparison_plan(words: Mapping[str, str | None], numbers: Mapping[str, str |
     """
     from elbowscrew.motion.interpolation.keyframe_sources import ComparisonPlan
 
-    given: dict[str, tuple[str, ...] | tuple[int, ...]] = {}
-    for name, text in words.items():
-        if text is not None:
-            given[name] = tuple(dict.fromkeys(part.strip() for part in text.split(",") if part.strip()))
-    for name, text in numbers.items():
-        if text is not None:
-            try:
-                given[name] = tuple(dict.fromkeys(int(part) for part in text.split(",")))
-            except ValueError as error:
-                msg = f"--{name} {text!r}: expected whole numbers with commas between them, as in 2,3,4"
-                raise UsageError(msg) from error
-    return ComparisonPlan(**given)  # type: ignore[arg-type]
+    given: dict[str, tuple[str, ...] | tuple[int, ...] | None] = {
+        **{name: parts(name, one) for name, one in words.items()},
+        **{name: whole_numbers(name, parts(name, one)) for name, one in numbers.items()},
+    }
+    return ComparisonPlan(**{name: one for name, one in given.items() if one is not None})  # type: ignore[arg-type]

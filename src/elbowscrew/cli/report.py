@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from elbowscrew.choices import FIGURE_FORMATS
 from elbowscrew.cli import options
 
 _PAGES, _FIGURES = "Pages", "Figures for publication"
@@ -30,8 +31,13 @@ def report(
         ),
     ] = None,
     figure_format: Annotated[
-        list[options.FigureFormat] | None,
-        typer.Option(rich_help_panel=_FIGURES, help="May be given more than once.", show_default="pdf"),
+        list[str] | None,
+        typer.Option(
+            metavar="png,svg,pdf",
+            rich_help_panel=_FIGURES,
+            help="With commas, or given again.",
+            show_default="pdf",
+        ),
     ] = None,
     width: Annotated[
         str,
@@ -79,9 +85,10 @@ def report(
 
         errors = ()
         names, wide = figure_names(figures), width_mm(width)
-        formats = list(dict.fromkeys(kind.value for kind in figure_format or [options.FigureFormat.PDF]))
-        if "none" in formats:
-            msg = "--figure-format none: expected png, svg or pdf, as --figures asks for figures"
+        formats = list(options.parts("figure-format", figure_format) or ("pdf",))
+        strange = [one for one in formats if one not in FIGURE_FORMATS or one == "none"]
+        if strange:
+            msg = f"--figure-format {', '.join(strange)}: expected png, svg or pdf, as --figures asks for figures"
             raise UsageError(msg)
         folder = output if output is not None else Path("elbowscrew_figures")
         published = save_publication_figures(results_in(results), folder, names, formats, width_mm=wide, force=force)

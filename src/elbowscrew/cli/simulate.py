@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 
 import typer
 
-from elbowscrew.cli import options
+from elbowscrew.choices import FileUnit
 
 _MOTION, _RECORDING, _OUTPUT = "Motion", "Recording", "Output"
 
@@ -66,7 +66,7 @@ def simulate(
         Literal["motive", "row-tagged"], typer.Option("--format", rich_help_panel=_OUTPUT, help="File layout.")
     ] = "motive",
     length_unit: Annotated[
-        options.Units, typer.Option(rich_help_panel=_OUTPUT, help="Unit of length in the file (row-tagged: m).")
+        FileUnit, typer.Option(rich_help_panel=_OUTPUT, help="Unit of length in the file (row-tagged: m).")
     ] = "m",
     force: Annotated[
         bool, typer.Option("--force", rich_help_panel=_OUTPUT, help="Replace an earlier simulation.")

@@ -80,6 +80,7 @@ def analyze(recording: Recording, settings: Settings | None = None, *, landmarks
     measured = measure(recording, wanted)
     named_joint = measured.named_joint if landmarks is None else joint_of_landmarks(measured.named_joint, landmarks)
     recording, joint, screw, sense = measured.recording, measured.joint, measured.screw, measured.sense
+    wanted = wanted.model_copy(update={"express_in": measured.express_in})
     elapsed = measured.elapsed
     mean = measured_mean_axis(measured)
     joint_axis = measured_joint_axis(measured, mean, wanted)
@@ -111,7 +112,7 @@ def analyze(recording: Recording, settings: Settings | None = None, *, landmarks
             measured.proximal,
             measured.distal,
             joint,
-            axis_lines=proximal_lines(measured.line, joint, wanted.express_in),
+            axis_lines=proximal_lines(measured.line, joint, measured.express_in),
             joint_line=None if joint_axis.best is None else joint_axis.best.line,
         )
         warnings += doubts
@@ -149,7 +150,7 @@ def analyze(recording: Recording, settings: Settings | None = None, *, landmarks
 
 def _compared(model: JointModel, measured: Measurement, settings: Settings) -> InterpolatedMotion:
     D, screw, sense, modeled = measured.displacement, measured.screw, measured.sense, model.poses
-    D_model = expressed(modeled.dual_quat, measured.joint, settings.express_in)
+    D_model = expressed(modeled.dual_quat, measured.joint, measured.express_in)
     angle, sign = modeled_angle(D_model[:, :4], screw.euler_parameters, sense, measured.elapsed)
     series = helical_series(D_model, np.radians(settings.min_angle_deg), angle, sign)
     near = pose_from_dual_quat(measured.change)[1]

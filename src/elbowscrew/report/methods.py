@@ -160,20 +160,18 @@ def _joint_axis(trial: FinishedTrial) -> Iterator[str]:
 
 def _model(trial: FinishedTrial) -> Iterator[str]:
     settings, model = trial.settings, trial.summary["interpolation"]
+    method = _METHODS.get(settings.model_method, settings.model_method)
     keyframes = model["keyframes"]
     listed = f"frames {', '.join(map(str, keyframes))}" if len(keyframes) <= _KEYFRAMES_TOLD else "keyframes.csv"
     pieces = "phase by phase" if settings.blend == "piecewise" else "all poses at once"
-    yield (
-        f"The motion was modeled by {_METHODS[settings.model_method]} of {len(keyframes)} keyframe poses ({listed}), "
-        f"{pieces}."
-    )
+    yield (f"The motion was modeled by {method} of {len(keyframes)} keyframe poses ({listed}), {pieces}.")
     if settings.tolerance_mm is not None:
         yield (
             "The keyframes are the fewest measured poses between which the RMS displacement stays within "
             f"{settings.tolerance_mm:g} mm in every frame, found by dynamic programming."
         )
     elif len(keyframes) > model["phases"] + 1:
-        yield f"The parameter of each keyframe is {_KNOTS[settings.knots]}."
+        yield f"The parameter of each keyframe is {_KNOTS.get(settings.knots, f'by {settings.knots}')}."
     yield from _laws(trial, model)
     points = model["points"]
     over = (

@@ -190,7 +190,8 @@ def repetition_chart(curve: Mapping[str, NDArray[Any]], count: int) -> Markup:
 
 def model_name(trial: FinishedTrial) -> str:
     """Name the model in a few words."""
-    return f"{_METHODS[trial.settings.model_method]} through {trial.keyframes.row.size} poses"
+    name = trial.settings.model_method
+    return f"{_METHODS.get(name, name)} through {trial.keyframes.row.size} poses"
 
 
 def _over_time(

@@ -23,7 +23,7 @@ from elbowscrew.report.trial_charts import (
 )
 from elbowscrew.results.read_back import read_finished
 from elbowscrew.results.summary import settings_summary
-from elbowscrew.settings import Settings
+from elbowscrew.settings import SETTINGS, Settings
 from elbowscrew.view.finished import FinishedTrial
 
 _FRAMES_TOLD: Final = 24
@@ -180,7 +180,4 @@ def _settings(settings: Settings) -> list[tuple[str, Any, str, bool]]:
     values = settings_summary(settings)
     usual = settings_summary(Settings(tolerance_mm=settings.tolerance_mm))  # method and law go by the tolerance
     usual["tolerance"] = None
-    return [
-        (option, values[option], field.description or "", values[option] != usual[option])
-        for option, field in ((str(field.alias), field) for field in Settings.model_fields.values())
-    ]
+    return [(one.option, values[one.option], one.text, values[one.option] != usual[one.option]) for one in SETTINGS]

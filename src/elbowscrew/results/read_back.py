@@ -25,7 +25,7 @@ from elbowscrew.model import (
     ScrewMotion,
 )
 from elbowscrew.results.table_reading import AsRead, read_columns
-from elbowscrew.settings import Settings
+from elbowscrew.settings import settings_from_options
 from elbowscrew.view.finished import (
     FinishedBody,
     FinishedClock,
@@ -157,7 +157,7 @@ class _Tables(NamedTuple):
 
 
 def _read_tables(folder: Path, summary: Mapping[str, Any]) -> _Tables:
-    settings = Settings.model_validate(summary["settings"])
+    settings = settings_from_options(summary["settings"])
     units = settings.angle_unit, settings.length_unit
     curve = folder / "repetition_curve.csv"
     return _Tables(
@@ -177,7 +177,7 @@ def _finished(
         folder=folder,
         summary=summary,
         joint_summary=joint_summary,
-        settings=Settings.model_validate(summary["settings"]),
+        settings=settings_from_options(summary["settings"]),
         recording=FinishedClock(rate_hz=float(trial["rate_hz"])),
         proximal=None if trial["proximal"] is None else _body(trial["proximal"], bodies["proximal_markers_mm"]),
         distal=_body(trial["distal"], bodies["distal_markers_mm"]),

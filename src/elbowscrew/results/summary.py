@@ -21,7 +21,7 @@ from elbowscrew.motion.tracking.quality import body_quality, check_bodies, clock
 from elbowscrew.motion.tracking.selection import choose_bodies
 from elbowscrew.reading.options import ASK_FOR_MARKERS
 from elbowscrew.results.statistics import known, rms, statistic
-from elbowscrew.settings import Settings
+from elbowscrew.settings import Settings, options_from_settings
 
 Float = NDArray[np.float64]
 
@@ -82,8 +82,7 @@ def summary_from_recording(recording: Recording, settings: Settings | None = Non
 
 def settings_summary(settings: Settings) -> dict[str, Any]:
     """Every setting by the name of its option."""
-    told = settings.model_dump(mode="json", by_alias=True)
-    return {**told, "method": settings.model_method, "law": settings.model_law}
+    return {**options_from_settings(settings), "method": settings.model_method, "law": settings.model_law}
 
 
 def landmarks_summary(landmarks: Landmarks | None) -> dict[str, Any] | None:

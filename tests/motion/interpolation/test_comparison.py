@@ -81,9 +81,10 @@ def test_what_is_left_out_is_the_same_model_as_what_is_there(knots: Any) -> None
         poses = {}
         for method in plan.methods:
             for blend in plan.blends:
+                chosen: dict[str, Any] = {"method": method, "blend": blend, "knots": knots}
                 settings = Settings(
                     keyframes=tuple(TRIAL.frame[rows].tolist()), inversion=int(TRIAL.frame[phases[1]]),
-                    method=method, blend=blend, knots=knots, law="cycloidal",
+                    law="cycloidal", **chosen,
                 )  # fmt: skip
                 motion = analyze(TRIAL, settings).interpolated
                 poses[method, blend] = np.concatenate([motion.euler_parameters, motion.translation], axis=1)
@@ -146,7 +147,8 @@ def test_the_selection_is_that_of_the_movement() -> None:
         assert selection.row[-1] == found.phases.bound_rows[-1]
         keyframes = tuple(TRIAL.frame[selection.row].tolist())
         # The law of time itself, over one phase: keyframes by their own times.
-        again = analyze(TRIAL, Settings(keyframes=keyframes, method=method, law="linear")).interpolated
+        by_method: dict[str, Any] = {"method": method, "law": "linear"}
+        again = analyze(TRIAL, Settings(keyframes=keyframes, **by_method)).interpolated
         bends = set(analyze(TRIAL, Settings(keyframes=keyframes)).inversion_rows.tolist())
         assert bends <= set(selection.row.tolist())
         assert np.nanmax(again.rms_displacement) == pytest.approx(selection.largest[-1], abs=1e-9)

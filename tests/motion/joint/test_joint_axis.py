@@ -136,7 +136,7 @@ def test_a_few_frames_tell_of_no_noise() -> None:
     angle = np.radians([0.0, 60.0])
     body = RigidBody(name="b", dual_quat_lab_body=joint_poses(angle, 0 * angle), loss=np.zeros(2, dtype=np.uint8))
     recording = Recording.from_bodies([body], rate_hz=100)
-    wide = {"max_turn_deg_s": 1e9, "max_speed_m_s": 1e6}
+    wide: dict[str, Any] = {"max_turn_deg_s": 1e9, "max_speed_m_s": 1e6}
     best = analyze(recording, Settings(**wide)).joint_axis.best
     assert best is not None
     assert np.isnan([best.axis_sd, best.axis_cone, best.point_sd, best.point_radius]).all()

@@ -12,6 +12,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from elbowscrew.choices import ExpressIn
 from elbowscrew.errors import SettingError
 from elbowscrew.geometry import line_through
 from elbowscrew.geometry._small_angle import divide, length
@@ -27,7 +28,7 @@ from elbowscrew.joints import ELBOW, GENERIC, Joint
 from elbowscrew.model import JointMotion, LineEstimate, QualityWarning, Recording, RigidBody
 from elbowscrew.model.anatomy import AnatomicalMotion, Landmarks, Side
 from elbowscrew.motion.anatomy.landmarks import landmark_places
-from elbowscrew.motion.screws.relative import ExpressIn, frame_change
+from elbowscrew.motion.screws.relative import frame_change
 
 Float = NDArray[np.float64]
 

@@ -63,7 +63,7 @@ def measured_instantaneous_motion(measured: Measurement, settings: Settings) -> 
         smoothing = twist_smoothing(measured, settings)
         D = smoothed_displacement(measured, smoothing)
     return instantaneous_motion(
-        expressed(D, measured.joint, settings.express_in),
+        expressed(D, measured.joint, measured.express_in),
         measured.joint.measured,
         measured.screw.frame,
         measured.screw.time_s,

@@ -33,7 +33,7 @@ from elbowscrew.motion.difference import (
 )
 from elbowscrew.motion.interpolation.keyframe_selection import select_keyframes
 from elbowscrew.motion.interpolation.keyframe_sources import ComparisonPlan, Treatment, treatments
-from elbowscrew.motion.interpolation.keyframes import KnotChoice, keyframes_at, spread_rows
+from elbowscrew.motion.interpolation.keyframes import keyframes_at, spread_rows
 from elbowscrew.motion.interpolation.law_fit import FittedLaw, laws_of
 from elbowscrew.motion.interpolation.model_building import body_points, phases_of
 from elbowscrew.motion.interpolation.modeling import METHODS, ModeledPoses, model_motion
@@ -106,7 +106,7 @@ def compare(recording: Recording, settings: Settings | None = None, plan: Compar
     tolerance = _DEFAULT_TOLERANCE if wanted.tolerance_mm is None else 1e-3 * wanted.tolerance_mm
     return Comparison(
         recording=measured.recording,
-        settings=wanted,
+        settings=wanted.model_copy(update={"express_in": measured.express_in}),
         models=_ranked(rows),
         phases=phases,
         frame=measured.screw.frame,
@@ -191,7 +191,7 @@ class _Yardstick(NamedTuple):
             pose_from_dual_quat(measured.change)[1],
             points,
             float(np.radians(settings.min_angle_deg)),
-            lambda pose: expressed(pose, joint, settings.express_in),
+            lambda pose: expressed(pose, joint, measured.express_in),
             measured.screw.euler_parameters,
             measured.sense,
             measured.elapsed,
@@ -241,7 +241,7 @@ def _row(
             measured.screw.frame,
             measured.elapsed,
             treatment.pose,
-            choice=_knot_choice(model.knots),
+            choice=model.knots,
             laws=functions,
             piecewise=model.blend == "piecewise",
         )
@@ -260,11 +260,6 @@ def _row(
     row["max_displacement_frame"] = int(measured.screw.frame[int(np.nanargmax(errors["displacement"]))])
     row["ns_per_frame"] = 1e9 * seconds / int((~modeled.phase.mask).sum())
     return row
-
-
-def _knot_choice(name: str) -> KnotChoice:
-    choice: dict[str, KnotChoice] = {"law": "law", "chord": "chord", "uniform": "uniform", "angle": "angle"}
-    return choice[name]
 
 
 def _timed(make: Callable[[], ModeledPoses]) -> tuple[ModeledPoses, float]:

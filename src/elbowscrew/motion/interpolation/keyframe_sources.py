@@ -9,19 +9,17 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowscrew.choices import BLEND_NAMES, CLOSED_LAWS, KEYFRAME_SOURCES, KNOT_NAMES, METHOD_NAMES
 from elbowscrew.errors import SettingError, UsageError
 from elbowscrew.model import ModelPhases
 from elbowscrew.motion.axes.measured import smoothed_displacement, twist_smoothing
-from elbowscrew.motion.interpolation.laws import LAWS
-from elbowscrew.motion.interpolation.modeling import METHODS
 from elbowscrew.motion.screws.measurement import Measurement
 from elbowscrew.settings import Settings
 
 Float = NDArray[np.float64]
 Bool = NDArray[np.bool_]
 
-_KNOTS: Final = ("law", "chord", "uniform", "angle")
-_BLENDS: Final = ("piecewise", "global")
+_LAWS: Final = (*CLOSED_LAWS, "best", "empirical")  # in the order that tables have had
 _MOST_PER_PHASE: Final = 20
 
 
@@ -44,12 +42,12 @@ class ComparisonPlan:
         Take every so many-th frame.
     """
 
-    methods: tuple[str, ...] = tuple(METHODS)
-    laws: tuple[str, ...] = (*LAWS, "best", "empirical")
-    blends: tuple[str, ...] = _BLENDS
+    methods: tuple[str, ...] = METHOD_NAMES
+    laws: tuple[str, ...] = _LAWS
+    blends: tuple[str, ...] = BLEND_NAMES
     knots: tuple[str, ...] = ("law",)
     counts: tuple[int, ...] = (2, 3, 4, 5)
-    data: tuple[str, ...] = ("raw", "lowpass", "decimated")
+    data: tuple[str, ...] = KEYFRAME_SOURCES
     decimation: tuple[int, ...] = (2, 4)
 
     def __post_init__(self) -> None:
@@ -61,11 +59,11 @@ class ComparisonPlan:
             Naming the option.
         """
         choices: dict[str, tuple[str, ...]] = {
-            "methods": tuple(METHODS),
-            "laws": (*LAWS, "best", "empirical"),
-            "blends": _BLENDS,
-            "knots": _KNOTS,
-            "data": ("raw", "lowpass", "decimated"),
+            "methods": METHOD_NAMES,
+            "laws": _LAWS,
+            "blends": BLEND_NAMES,
+            "knots": KNOT_NAMES,
+            "data": KEYFRAME_SOURCES,
         }
         for name, allowed in choices.items():
             given = getattr(self, name)

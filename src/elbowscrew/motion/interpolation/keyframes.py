@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Sequence
-from typing import Final, Literal
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowscrew.choices import KNOT_NAMES, functions_named
 from elbowscrew.errors import SettingError
 from elbowscrew.geometry._small_angle import length
 from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat
@@ -18,7 +19,6 @@ from elbowscrew.motion.tracking.clock import row_of_frame
 
 Float = NDArray[np.float64]
 Index = NDArray[np.int64]
-KnotChoice = Literal["law", "chord", "uniform", "angle"]
 
 
 def rows_of_frames(
@@ -90,7 +90,7 @@ def keyframes_at(
     elapsed: Float,
     pose: Float,
     *,
-    choice: KnotChoice,
+    choice: str,
     laws: Sequence[Callable[[Float], Float]],
     piecewise: bool,
 ) -> Keyframes:
@@ -164,11 +164,10 @@ def _scaled(values: Float) -> Float:
 
 
 def _accumulated(steps: Float, rows: Index, frame: Index, choice: str) -> Float:
-    least = _LEAST_STEPS[choice]
-    if (steps < least).any():
-        k = int(np.flatnonzero(steps < least)[0])
-        what = "origin does not move" if choice == "chord" else "orientation does not change"
-        others = ", ".join(name for name in ("law", *_STEPS) if name != choice)
+    if (steps < _LEAST_STEP).any():
+        k = int(np.flatnonzero(steps < _LEAST_STEP)[0])
+        what = {"chord": "origin does not move", "angle": "orientation does not change"}.get(choice, "pose stays")
+        others = ", ".join(name for name in KNOT_NAMES if name != choice)
         msg = (
             f"--knots {choice}: the distal body's {what} between keyframes {frame[rows[k]]} and {frame[rows[k + 1]]}, "
             f"so their knots fall together; choose other keyframes or another of --knots {others}"
@@ -177,16 +176,24 @@ def _accumulated(steps: Float, rows: Index, frame: Index, choice: str) -> Float:
     return np.concatenate([[0.0], np.cumsum(steps)])
 
 
-def _chords(pose: Float) -> Float:
+def _chord(pose: Float) -> Float:
     origin = pose_from_dual_quat(pose)[1]
     return length(np.diff(origin, axis=0))
 
 
-# Below these a step is round-off or noise of the cameras: 10 micrometers, 10 microradians.
-_LEAST_STEPS: Final = {"chord": 1e-5, "uniform": 0.0, "angle": 1e-5}
+def _uniform(pose: Float) -> Float:
+    return np.ones(len(pose) - 1)
 
-_STEPS: Final[dict[str, Callable[[Float], Float]]] = {
-    "chord": _chords,
-    "uniform": lambda pose: np.ones(len(pose) - 1),
-    "angle": lambda pose: angle_between(pose[:-1], pose[1:]),
-}
+
+def _angle(pose: Float) -> Float:
+    return angle_between(pose[:-1], pose[1:])
+
+
+# Below this a step is round-off or noise of the cameras: 10 micrometers, 10 microradians.
+_LEAST_STEP: Final = 1e-5
+
+_STEPS: Final[dict[str, Callable[[Float], Float]]] = functions_named(
+    tuple(name for name in KNOT_NAMES if name != "law"), globals()
+)
+"""Each takes poses (K, 8) and gives the K - 1 steps between them, never negative. A new choice is one function above,
+and its name in `elbowscrew.choices.KnotName`."""

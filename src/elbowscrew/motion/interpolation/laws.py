@@ -9,6 +9,7 @@ import numpy as np
 from numpy.polynomial import Polynomial
 from numpy.typing import ArrayLike, NDArray
 
+from elbowscrew.choices import CLOSED_LAWS, functions_named
 from elbowscrew.errors import SettingError
 
 Float = NDArray[np.float64]
@@ -167,17 +168,22 @@ def asymmetric(law: Law, peak: float) -> Law:
 cycloidal: Final = _cycloidal()
 """``t = tau - sin(2 pi tau)/(2 pi)``: rest to rest without a jump in acceleration (P 36)."""
 
-LAWS: Final[dict[str, Law]] = {
-    "cycloidal": cycloidal,
-    "linear": _polynomial(0.0, 1.0),
-    "harmonic": _harmonic(),
-    "polynomial-345": _polynomial(0.0, 0.0, 0.0, 10.0, -15.0, 6.0),
-    "polynomial-4567": _polynomial(0.0, 0.0, 0.0, 0.0, 35.0, -84.0, 70.0, -20.0),
-    "modified-trapezoid": _modified_trapezoid(),
-    "modified-sine": _modified_sine(),
-}
-"""The polynomial 3-4-5 is the minimum-jerk law. A new law is one function above and one entry here (and its name in
-`Settings.law` and the option)."""
+
+def _linear() -> Law:
+    return _polynomial(0.0, 1.0)
+
+
+def _polynomial_345() -> Law:
+    """Minimum jerk."""
+    return _polynomial(0.0, 0.0, 0.0, 10.0, -15.0, 6.0)
+
+
+def _polynomial_4567() -> Law:
+    return _polynomial(0.0, 0.0, 0.0, 0.0, 35.0, -84.0, 70.0, -20.0)
+
+
+LAWS: Final[dict[str, Law]] = {name: law() for name, law in functions_named(CLOSED_LAWS, globals()).items()}
+"""A new law is one function above, and its name in `elbowscrew.choices.ClosedLaw`."""
 
 
 def named_law(name: str, peak: float | None = None) -> Law:

@@ -8,6 +8,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowscrew.choices import METHOD_NAMES, functions_named
 from elbowscrew.errors import SettingError
 from elbowscrew.geometry import catmull_rom, dib, dlb, lagrange_weights, sclerp, sdlb
 from elbowscrew.model import Keyframes
@@ -61,17 +62,15 @@ def _between_neighbors(two_poses: Callable[..., Float]) -> Method:
     return method
 
 
-METHODS: Final[dict[str, Method]] = {
-    "dlb": _dlb,
-    "sclerp": _between_neighbors(sclerp),
-    "sdlb": _between_neighbors(sdlb),
-    "dib": _dib,
-    "catmull-rom": _catmull_rom,
-}
+_sclerp: Final = _between_neighbors(sclerp)
+_sdlb: Final = _between_neighbors(sdlb)
+
+METHODS: Final[dict[str, Method]] = functions_named(METHOD_NAMES, globals())
 """Each takes keyframe poses (K, 8), their knots (K,) and parameters (n,) and gives poses (n, 8).
 
 The poses come from a sign-continuous series, which tells which way round the motion went, so no method looks for the
-shorter path of its own. A new method is one function above and one entry here (and its name in `Settings.method`).
+shorter path of its own. A new method is one function above, and its name in
+`elbowscrew.choices.MethodName`.
 """
 
 

@@ -12,6 +12,7 @@ from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat
 from elbowscrew.model import Analysis, Keyframes, KeyframeSet, ModelPhases, RebuiltMotion
 from elbowscrew.motion.interpolation.laws import named_law
 from elbowscrew.motion.interpolation.modeling import METHODS, model_motion
+from elbowscrew.motion.screws.frames import frame_called
 from elbowscrew.motion.screws.helical import helical_series
 from elbowscrew.motion.screws.relative import expressed
 from elbowscrew.motion.screws.sense import sense_of
@@ -49,7 +50,7 @@ def keyframes_of(analysis: Analysis) -> KeyframeSet:
     else:
         knot = phases.count * keyframes.knots[0]
     J = analysis.joint
-    D = expressed(analysis.displacement[rows], J, settings.express_in)
+    D = expressed(analysis.displacement[rows], J, frame_called(settings.express_in, analysis.named_joint)[0])
     time_s = analysis.screw.time_s[0] + analysis.elapsed
     return KeyframeSet(
         frame=keyframes.frame,

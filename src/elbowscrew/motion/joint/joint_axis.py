@@ -7,13 +7,13 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowscrew.choices import ExpressIn
 from elbowscrew.geometry import point_nearest_origin
 from elbowscrew.geometry.dual_quaternion import conjugate, pose_from_dual_quat, transform_lines
 from elbowscrew.geometry.sensitivity import confidence_radius
 from elbowscrew.model import FittedJoint, JointAxis, JointMotion, LineEstimate, PoseNoise
 from elbowscrew.motion.joint.joint_fit import LineFit, fit_joint, sara_lines
 from elbowscrew.motion.screws.pose_noise import JointNoise
-from elbowscrew.motion.screws.relative import ExpressIn
 from elbowscrew.motion.screws.uncertainty import joint_covariance
 
 Float = NDArray[np.float64]

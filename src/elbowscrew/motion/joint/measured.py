@@ -23,7 +23,7 @@ def measured_joint_axis(measured: Measurement, mean: MeanAxis, settings: Setting
         distal_line(np.concatenate([mean.direction, np.cross(mean.point, mean.direction)]), measured.change),
         measured.noise,
         measured.noise_gain,
-        express_in=settings.express_in,
+        express_in=measured.express_in,
         robust=settings.robust,
     )
 

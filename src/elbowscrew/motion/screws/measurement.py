@@ -8,10 +8,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowscrew.choices import ExpressIn
 from elbowscrew.errors import AnalysisError, SettingError
 from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat
 from elbowscrew.joints import Joint
 from elbowscrew.model import BodyQuality, JointMotion, QualityWarning, Recording, RigidBody, ScrewMotion, Sense
+from elbowscrew.motion.screws.frames import frame_called
 from elbowscrew.motion.screws.helical import HelicalSeries, helical_series
 from elbowscrew.motion.screws.pose_noise import JointNoise
 from elbowscrew.motion.screws.relative import displacement, expressed, frame_change, joint_from_bodies
@@ -81,6 +83,9 @@ class Measurement(NamedTuple):
     sense : Sense
         Of the rotation since the reference, its direction as expressed.
     quality : tuple of BodyQuality
+    named_joint : Joint
+    express_in : {"distal", "proximal", "lab"}
+        Frame the screws are written in, a segment's word resolved.
     warnings : tuple of QualityWarning
     """
 
@@ -100,6 +105,7 @@ class Measurement(NamedTuple):
     sense: Sense
     quality: tuple[BodyQuality, ...]
     named_joint: Joint
+    express_in: ExpressIn
     warnings: tuple[QualityWarning, ...]
 
     @property
@@ -118,6 +124,8 @@ def measure(recording: Recording, settings: Settings) -> Measurement:
     """
     tracked = tracked_bodies(recording, settings)
     proximal, distal, broken_rows, warnings = tracked.proximal, tracked.distal, tracked.broken_rows, tracked.warnings
+    express_in, doubts = frame_called(settings.express_in, tracked.joint)
+    warnings += doubts
     elapsed = elapsed_time(recording)
     smoothing = Smoothing.of(proximal, distal, elapsed, recording.rate_hz, broken_rows, settings)
     noise = JointNoise.of(proximal, distal, recording.rate_hz, settings)
@@ -144,7 +152,8 @@ def measure(recording: Recording, settings: Settings) -> Measurement:
         lowpass_hz=smoothing.cutoff_hz,
     )
     D = displacement(joint)
-    D_expressed = expressed(D, joint, settings.express_in)
+    change = frame_change(joint, express_in)
+    D_expressed = expressed(D, joint, express_in)
     gain = smoothing.noise_gain(joint.measured)
     sense = sense_of(
         D_expressed[:, :4],
@@ -153,7 +162,7 @@ def measure(recording: Recording, settings: Settings) -> Measurement:
         sigma=_rotation_sigma(joint, noise, gain),
         signed=settings.signed,
     )
-    series, errors = _measured_series(D, D_expressed, sense, joint, noise, gain, settings)
+    series, errors = _measured_series(D, D_expressed, sense, joint, change, noise, gain, settings)
     screw = ScrewMotion(
         frame=recording.frame,
         time_s=recording.time_s,
@@ -181,7 +190,7 @@ def measure(recording: Recording, settings: Settings) -> Measurement:
         elapsed=elapsed,
         joint=joint,
         displacement=D,
-        change=frame_change(joint, settings.express_in),
+        change=change,
         noise=noise,
         unfiltered=unfiltered,
         smoothing=smoothing,
@@ -191,6 +200,7 @@ def measure(recording: Recording, settings: Settings) -> Measurement:
         sense=sense,
         quality=tracked.quality,
         named_joint=tracked.joint,
+        express_in=express_in,
         warnings=warnings + sense_warnings(sense, recording.frame, settings.signed),
     )
 
@@ -223,6 +233,7 @@ def _measured_series(
     D_expressed: Float,
     sense: Sense,
     joint: JointMotion,
+    change: Float,
     noise: JointNoise,
     gain: Float,
     settings: Settings,
@@ -231,7 +242,6 @@ def _measured_series(
     limit, least = np.inf, np.radians(settings.min_angle_deg)
     errors = no_errors(len(D))
     if noise.known is not None:
-        change = frame_change(joint, settings.express_in)
         errors = screw_errors(D, joint, *noise.known, change, settings.reference_window, gain)
         if settings.axis_sd_deg is not None:
             limit = np.radians(settings.axis_sd_deg)

@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Literal
-
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowscrew.choices import ExpressIn
 from elbowscrew.errors import AnalysisError, SettingError
 from elbowscrew.geometry import dlb
 from elbowscrew.geometry.dual_quaternion import conjugate, continuous_signs, multiply
 from elbowscrew.model import JointMotion, RigidBody
 from elbowscrew.motion.smoothing.gaps import fill_gaps
-
-ExpressIn = Literal["distal", "proximal", "lab"]
 
 IDENTITY = np.array([1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])
 

@@ -1,0 +1,64 @@
+"""What laws, methods, knots and other choices are called: each list of names stands here, and nowhere else.
+
+A name is a function of the module that does the work, found by `functions_named`, so that the command line can offer
+the names without loading it, and a type checker knows them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Final, Literal, get_args
+
+ClosedLaw = Literal[
+    "cycloidal",
+    "linear",
+    "harmonic",
+    "polynomial-345",
+    "polynomial-4567",
+    "modified-trapezoid",
+    "modified-sine",
+]
+"""Laws of motion in closed form; functions of `elbowscrew.motion.interpolation.laws`."""
+LawName = Literal[ClosedLaw, "empirical", "best"]
+"""Laws of motion, those found from the recording among them."""
+MethodName = Literal["dlb", "sclerp", "sdlb", "dib", "catmull-rom"]
+"""Interpolations of poses; functions of `elbowscrew.motion.interpolation.modeling`."""
+KnotName = Literal["law", "chord", "uniform", "angle"]
+"""Parameters of the keyframes: the law's own, or functions of `elbowscrew.motion.interpolation.keyframes`."""
+BlendName = Literal["piecewise", "global"]
+"""Phase by phase, or all poses at once."""
+KeyframeSource = Literal["raw", "lowpass", "decimated"]
+"""What keyframes are taken from in a comparison."""
+ExpressIn = Literal["distal", "proximal", "lab"]
+"""Frames a screw is written in."""
+AngleUnit = Literal["deg", "rad"]
+LengthUnit = Literal["mm", "m"]
+FileUnit = Literal["m", "cm", "mm"]
+RotationType = Literal["quaternion", "XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX"]
+FigureFormat = Literal["png", "svg", "pdf", "none"]
+ExportName = Literal["parquet", "mat", "sto"]
+
+CLOSED_LAWS: Final[tuple[ClosedLaw, ...]] = get_args(ClosedLaw)
+LAW_NAMES: Final[tuple[LawName, ...]] = get_args(LawName)
+METHOD_NAMES: Final[tuple[MethodName, ...]] = get_args(MethodName)
+KNOT_NAMES: Final[tuple[KnotName, ...]] = get_args(KnotName)
+BLEND_NAMES: Final[tuple[BlendName, ...]] = get_args(BlendName)
+KEYFRAME_SOURCES: Final[tuple[KeyframeSource, ...]] = get_args(KeyframeSource)
+FRAMES: Final[tuple[ExpressIn, ...]] = get_args(ExpressIn)
+FIGURE_FORMATS: Final[tuple[FigureFormat, ...]] = get_args(FigureFormat)
+
+
+def functions_named(names: tuple[str, ...], module: Mapping[str, Any]) -> dict[str, Any]:
+    """Find each name's function in a module's globals: ``catmull-rom`` is ``_catmull_rom``.
+
+    Raises
+    ------
+    LookupError
+        If a name has no function there.
+    """
+    found = {name: module.get(f"_{name.replace('-', '_')}") for name in names}
+    missing = [name for name, function in found.items() if not callable(function)]
+    if missing:
+        msg = f"{module['__name__']}: no function for {', '.join(missing)}; expected one called _{missing[0]}"
+        raise LookupError(msg.replace("-", "_"))
+    return found
