@@ -13,23 +13,14 @@ from pathlib import Path
 from typing import Final, NamedTuple
 
 from elbowscrew.errors import OutputError
+from elbowscrew.tables import TABLES
 
 FIGURE_NAMES: Final = ("theta", "euler_parameters", "axis", "joint_axis", "error")
 FIGURE_FORMATS: Final = ("png", "svg", "pdf")
-TABLE_NAMES: Final = (
-    "screw",
-    "interpolation",
-    "keyframes",
-    "instantaneous",
-    "steps",
-    "repetitions",
-    "repetition_curve",
-    "anatomy",
-)
 RESULT_FILES: Final = (
     "summary.json",
     "joint.json",
-    *(f"{name}.{kind}" for name in TABLE_NAMES for kind in ("csv", "parquet")),
+    *(f"{name}.{kind}" for name in TABLES for kind in ("csv", "parquet")),
     "trial.mat",
     "joint_angle.sto",
     "report.html",
