@@ -23,7 +23,6 @@ from elbowscrew.results.read_back import as_finished
 from elbowscrew.results.staging import (
     COMPARISON,
     FIGURE_FORMATS,
-    FIGURE_NAMES,
     RESULT_FILES,
     result_folder,
     write_files,
@@ -31,6 +30,7 @@ from elbowscrew.results.staging import (
 from elbowscrew.results.summary import summary_from_analysis
 from elbowscrew.results.writing import write_csv, write_tables
 from elbowscrew.settings import Settings
+from elbowscrew.view.figure_names import SAVED_FIGURES
 from elbowscrew.view.finished import FinishedTrial
 
 if TYPE_CHECKING:
@@ -175,7 +175,7 @@ def _write_json(path: Path, content: Mapping[str, Any]) -> dict[str, Any]:
 def _write_figures(staged: Path, trial: FinishedTrial, formats: Sequence[str]) -> None:
     from elbowscrew.report.figure_files import figure_files
 
-    _write_all(staged / "figures", figure_files(trial, FIGURE_NAMES, formats))
+    _write_all(staged / "figures", figure_files(trial, SAVED_FIGURES, formats))
 
 
 def _write_all(folder: Path, files: Mapping[str, bytes]) -> None:

@@ -6,6 +6,7 @@ they are, and `columns` turns a result into named columns in the units asked for
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum
 from typing import TYPE_CHECKING, Any, Final
@@ -27,6 +28,8 @@ class Quantity(Enum):
     """What a column holds, and so how it is scaled, named and written."""
 
     INTEGER = "integer"
+    MASKED_INTEGER = "integer, masked where not known"
+    FLAG = "flag"
     NUMBER = "number"
     ANGLE = "angle"
     LENGTH = "length"
@@ -79,12 +82,12 @@ _ERRORS: Final = (
 SCREW_COLUMNS: Final = (
     _column("frame", "frame", Quantity.INTEGER),
     _column("time_s", "time_s", Quantity.NUMBER),
-    _column("valid", "valid", Quantity.INTEGER),
+    _column("valid", "valid", Quantity.FLAG),
     _column("theta", "angle", Quantity.ANGLE),
     _column("slide", "slide", Quantity.LENGTH),
     *_AXIS,
     *_DISPLACEMENT,
-    _column("filled", "filled", Quantity.INTEGER),
+    _column("filled", "filled", Quantity.FLAG),
     _column("proximal_loss", "proximal_loss", Quantity.LABEL),
     _column("distal_loss", "distal_loss", Quantity.LABEL),
     *_ERRORS,
@@ -114,7 +117,7 @@ REPETITION_COLUMNS: Final = (
     *(_column(name, name, Quantity.NUMBER) for name in ("start_time_s", "end_time_s", "duration_s")),
     _column("start_time_sd_s", "start_time_sd_s", Quantity.NUMBER),
     _column("end_time_sd_s", "end_time_sd_s", Quantity.NUMBER),
-    _column("incomplete", "incomplete", Quantity.INTEGER),
+    _column("incomplete", "incomplete", Quantity.FLAG),
     _column("theta_start", "start_angle", Quantity.ANGLE),
     _column("theta_max", "top_angle", Quantity.ANGLE),
     _column("theta_range", "angle_range", Quantity.ANGLE),
@@ -151,7 +154,7 @@ ANATOMY_COLUMNS: Final = (
 MOTION_COLUMNS: Final = (
     _column("frame", "frame", Quantity.INTEGER),
     _column("time_s", "time_s", Quantity.NUMBER),
-    _column("phase", "phase", Quantity.INTEGER),
+    _column("phase", "phase", Quantity.MASKED_INTEGER),
     _column("t", "fraction", Quantity.NUMBER),
     _column("theta", "angle", Quantity.ANGLE),
     _column("slide", "slide", Quantity.LENGTH),
@@ -193,7 +196,7 @@ COMPARISON_COLUMNS: Final = (
     _column("keyframes", "keyframes", Quantity.INTEGER),
     _column("rms_displacement", "rms_displacement", Quantity.LENGTH),
     _column("max_displacement", "max_displacement", Quantity.LENGTH),
-    _column("max_displacement_frame", "max_displacement_frame", Quantity.INTEGER),
+    _column("max_displacement_frame", "max_displacement_frame", Quantity.MASKED_INTEGER),
     *(_column(f"{kind}_angle_error", f"{kind}_angle_error", Quantity.ANGLE) for kind in ("rms", "max")),
     *(_column(f"{kind}_translation_error", f"{kind}_translation_error", Quantity.LENGTH) for kind in ("rms", "max")),
     *(_column(f"{kind}_axis_error", f"{kind}_axis_error", Quantity.ANGLE) for kind in ("rms", "max")),
@@ -211,6 +214,19 @@ TRIALS_COMPARISON_COLUMNS: Final = (
     *(_column(f"max_angle_error_{kind}", f"max_angle_error_{kind}", Quantity.ANGLE) for kind in ("mean", "sd")),
     *(_column(f"ns_per_frame_{kind}", f"ns_per_frame_{kind}", Quantity.NUMBER) for kind in ("mean", "sd")),
 )
+
+TABLES: Final = {
+    "screw": SCREW_COLUMNS,
+    "interpolation": INTERPOLATION_COLUMNS,
+    "keyframes": KEYFRAME_COLUMNS,
+    "instantaneous": INSTANTANEOUS_COLUMNS,
+    "steps": STEP_COLUMNS,
+    "repetitions": REPETITION_COLUMNS,
+    "cycles": CYCLE_COLUMNS,
+    "repetition_curve": CURVE_COLUMNS,
+    "anatomy": ANATOMY_COLUMNS,
+}
+"""The tables of a result, each a file of its name, and their columns."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -369,7 +385,7 @@ def in_units(values: NDArray[Any], quantity: Quantity, angle_unit: AngleUnit, le
             return angle_in(values, angle_unit)
         case Quantity.LENGTH | Quantity.VELOCITY:
             return length_in(values, length_unit)
-        case Quantity.INTEGER:
+        case Quantity.INTEGER | Quantity.MASKED_INTEGER | Quantity.FLAG:
             return values.astype(np.int64)
         case Quantity.NUMBER | Quantity.LABEL:
             return values
@@ -397,6 +413,35 @@ def as_read_back(
     """Values of a kind, SI units and radians, with the last digit that they lose in units and back."""
     there = in_units(values, quantity, angle_unit, length_unit)
     return in_si(there, quantity, angle_unit, length_unit, out=None if there is values else there)
+
+
+def attributes(read: Mapping[str, NDArray[Any]], table: tuple[Column, ...]) -> dict[str, NDArray[Any]]:
+    """Put columns together to the attributes that they were made from; the inverse of `Column.values`.
+
+    Parameters
+    ----------
+    read : mapping of str to ndarray, shape (N,)
+        By the names of the columns without units; SI units and radians, flags as 0 and 1.
+    table : tuple of Column
+
+    Returns
+    -------
+    dict of str to ndarray
+        Shape (N,), or (N, k) of k components; flags as bool.
+    """
+    parts: dict[str, list[Column]] = {}
+    for column in table:
+        parts.setdefault(column.attribute, []).append(column)
+    found = {}
+    for attribute, columns_of in parts.items():
+        values = [read[column.name] for column in columns_of]
+        if columns_of[0].component is not None:
+            found[attribute] = np.stack(values, axis=1)
+        elif columns_of[0].quantity is Quantity.FLAG:
+            found[attribute] = values[0] == 1
+        else:
+            found[attribute] = values[0]
+    return found
 
 
 def data_frame(

@@ -16,11 +16,12 @@ from PIL import Image
 from elbowscrew import analyze, plots, save_analysis, simulate_trial
 from elbowscrew.errors import OutputError, SettingError, UsageError
 from elbowscrew.plots.overlay import PERCENT, MeanCurve, mean_curve, plot_overlay
-from elbowscrew.plots.paper_figures import PAPER_FIGURES
+from elbowscrew.plots.registry import figure_function
 from elbowscrew.report.figure_files import figure_files
-from elbowscrew.report.names import FIGURE_CHOICES, figure_names, width_mm
+from elbowscrew.report.names import figure_names, width_mm
 from elbowscrew.report.publication import save_publication_figures
 from elbowscrew.results.read_back import read_finished
+from elbowscrew.view.figure_names import FIGURE_CHOICES
 
 POINTS_PER_MM = 72.0 / 25.4
 SINGLES = tuple(name for name in FIGURE_CHOICES if name != "overlay")
@@ -63,7 +64,7 @@ def test_figures_are_the_same_with_one_core_and_with_more(result: Path, monkeypa
 
 def test_the_papers_figures_show_measured_and_modeled_at_one_scale(result: Path) -> None:
     trial = read_finished(result)
-    drawn = {name: make(trial).axes[0] for name, make in PAPER_FIGURES.items()}
+    drawn = {name: figure_function(name)(trial).axes[0] for name in ("fig7", "fig8", "fig9", "fig10")}
     lines = {name: [np.asarray(line.get_ydata()) for line in ax.get_lines()] for name, ax in drawn.items()}
     assert lines["fig7"][0] == pytest.approx(np.degrees(trial.screw.angle), nan_ok=True)
     assert lines["fig8"][0] == pytest.approx(np.degrees(trial.interpolated.angle), nan_ok=True)

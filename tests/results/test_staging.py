@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
+from typing import get_args
 
 import pytest
 
-from elbowscrew import plots
+from elbowscrew import Settings, plots
 from elbowscrew.errors import OutputError
-from elbowscrew.results.staging import FIGURE_NAMES, result_folder, write_files
+from elbowscrew.plots.registry import figure_function
+from elbowscrew.results.exporting import EXPORTS
+from elbowscrew.results.staging import RESULT_FILES, result_folder, write_files
+from elbowscrew.view.figure_names import FIGURE_ENTRIES
 
 OLD = '{"elbowscrew": "0.0.1"}'
 
@@ -143,8 +147,16 @@ def test_the_current_folder_is_no_result_folder(tmp_path: Path, monkeypatch: pyt
         pass
 
 
-def test_result_files_are_those_of_the_figures() -> None:
-    assert set(FIGURE_NAMES) == set(plots.FIGURES)
+def test_a_result_may_hold_every_saved_figure_and_export() -> None:
+    drawn = {name.removeprefix("figures/") for name in RESULT_FILES if name.startswith("figures/")}
+    assert drawn == {f"{name}.{kind}" for name in plots.FIGURES for kind in ("png", "svg", "pdf")}
+    assert {"screw.csv", "screw.parquet", "trial.mat", "joint_angle.sto"} <= set(RESULT_FILES)
+    assert set(EXPORTS) == set(get_args(get_args(Settings.model_fields["export"].annotation)[0]))
+
+
+@pytest.mark.parametrize("name", FIGURE_ENTRIES)
+def test_every_figure_entry_names_a_function(name: str) -> None:
+    assert callable(figure_function(name))
 
 
 def test_files_are_replaced_on_request_only_and_only_ours(tmp_path: Path) -> None:

@@ -10,6 +10,7 @@ import typer
 
 from elbowscrew.choices import FIGURE_FORMATS
 from elbowscrew.cli import options
+from elbowscrew.view.figure_names import FIGURE_CHOICES, FIGURE_ENTRIES, OVERLAY
 
 _PAGES, _FIGURES = "Pages", "Figures for publication"
 
@@ -26,8 +27,8 @@ def report(
         typer.Option(
             metavar="NAMES",
             rich_help_panel=_FIGURES,
-            help="Write these figures in place of pages, with commas: theta, euler_parameters, axis, joint_axis, "
-            "error, fig7, fig8, fig9, fig10 (the paper's), overlay (all trials, mean and deviation).",
+            help=f"Write these figures in place of pages, with commas: {', '.join(FIGURE_ENTRIES)} (the paper's), "
+            f"{OVERLAY} (all trials, mean and deviation).",
         ),
     ] = None,
     figure_format: Annotated[
@@ -71,7 +72,7 @@ def report(
     from elbowscrew.cli.text import one_line, printable
     from elbowscrew.errors import UsageError
     from elbowscrew.report import remake_pages, results_in
-    from elbowscrew.report.names import FIGURE_CHOICES, figure_names, width_mm
+    from elbowscrew.report.names import figure_names, width_mm
 
     if not figures:
         given = {"--figure-format": figure_format, "--output": output, "--force": force or None}

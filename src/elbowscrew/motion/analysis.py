@@ -17,23 +17,13 @@ from elbowscrew.motion.axes.measured import (
     measured_steps,
     without_sense,
 )
-from elbowscrew.motion.difference import (
-    angle_between,
-    angle_of_lines,
-    direction_between,
-    distance_across,
-    origin_distance,
-    rms_displacement,
-)
 from elbowscrew.motion.interpolation.model_building import JointModel, build_model
+from elbowscrew.motion.interpolation.model_errors import model_errors
 from elbowscrew.motion.joint.measured import joint_axis_warnings, measured_joint_axis
 from elbowscrew.motion.movements.measured import cut_warnings, measured_cuts
 from elbowscrew.motion.movements.phases import movement_phases
 from elbowscrew.motion.movements.repetitions import cycle_curves_of, repeatability_of, repetitions_of
-from elbowscrew.motion.screws.helical import helical_series
 from elbowscrew.motion.screws.measurement import Measurement, measure
-from elbowscrew.motion.screws.relative import expressed
-from elbowscrew.motion.screws.sense import modeled_angle
 from elbowscrew.settings import Settings
 
 Float = NDArray[np.float64]
@@ -149,28 +139,19 @@ def analyze(recording: Recording, settings: Settings | None = None, *, landmarks
 
 
 def _compared(model: JointModel, measured: Measurement, settings: Settings) -> InterpolatedMotion:
-    D, screw, sense, modeled = measured.displacement, measured.screw, measured.sense, model.poses
-    D_model = expressed(modeled.dual_quat, measured.joint, measured.express_in)
-    angle, sign = modeled_angle(D_model[:, :4], screw.euler_parameters, sense, measured.elapsed)
-    series = helical_series(D_model, np.radians(settings.min_angle_deg), angle, sign)
-    near = pose_from_dual_quat(measured.change)[1]
-    errors = {
-        "angle_error": angle_between(D, modeled.dual_quat),
-        "translation_error": origin_distance(D, modeled.dual_quat),
-        "rms_displacement": rms_displacement(D, modeled.dual_quat, model.points),
-        "axis_error": (direction_between if sense.signed else angle_of_lines)(measured.line, series.line),
-        "axis_distance": distance_across(measured.line, series.line, near),
-    }
-    for error in errors.values():
-        error[~measured.joint.measured] = np.nan
+    found = model_errors(model.poses.dual_quat, measured, model.points, settings)
     return InterpolatedMotion(
-        frame=screw.frame,
-        time_s=screw.time_s,
-        phase=modeled.phase,
-        fraction=modeled.fraction,
-        angle=series.angle,
-        slide=series.slide,
-        euler_parameters=D_model[:, :4].copy(),  # a view would keep all of the poses
-        translation=pose_from_dual_quat(D_model)[1],
-        **errors,
+        frame=measured.screw.frame,
+        time_s=measured.screw.time_s,
+        phase=model.poses.phase,
+        fraction=model.poses.fraction,
+        angle=found.series.angle,
+        slide=found.series.slide,
+        euler_parameters=found.expressed[:, :4].copy(),  # a view would keep all of the poses
+        translation=pose_from_dual_quat(found.expressed)[1],
+        angle_error=found.angle_error,
+        translation_error=found.translation_error,
+        rms_displacement=found.rms_displacement,
+        axis_error=found.axis_error,
+        axis_distance=found.axis_distance,
     )

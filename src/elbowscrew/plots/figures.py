@@ -107,13 +107,3 @@ def error_figure(analysis: Shown, *, width_mm: float = WIDTH_MM) -> Figure:
     series.plot_rms_displacement(lower, analysis)
     figure.legend(*upper.get_legend_handles_labels(), loc="outside upper center", ncols=2 if narrow else 4)
     return figure
-
-
-FIGURES: Final[dict[str, MakeFigure]] = {
-    "theta": theta_figure,
-    "euler_parameters": euler_parameters_figure,
-    "axis": axis_figure,
-    "joint_axis": joint_axis_figure,
-    "error": error_figure,
-}
-"""A new figure is one function above and one entry here; it is saved as ``figures/<name>``."""

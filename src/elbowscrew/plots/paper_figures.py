@@ -69,10 +69,8 @@ def _alike(ax: Axes, *both: Float) -> None:
     ax.set_ylim(low - air, high + air)
 
 
-PAPER_FIGURES: Final[dict[str, MakeFigure]] = {
-    "fig7": partial(_angle_figure, modeled=False),
-    "fig8": partial(_angle_figure, modeled=True),
-    "fig9": partial(_euler_figure, modeled=False),
-    "fig10": partial(_euler_figure, modeled=True),
-}
+figure_7: Final[MakeFigure] = partial(_angle_figure, modeled=False)
+figure_8: Final[MakeFigure] = partial(_angle_figure, modeled=True)
+figure_9: Final[MakeFigure] = partial(_euler_figure, modeled=False)
+figure_10: Final[MakeFigure] = partial(_euler_figure, modeled=True)
 """Counterparts of the figures of Pennestrì and Valentini 2010, of any trial."""

@@ -23,6 +23,7 @@ from elbowscrew.tables import METERS
 
 Float = NDArray[np.float64]
 
+ENDINGS: Final = (".c3d",)
 _LONGEST_OPENING_S: Final = 600
 
 

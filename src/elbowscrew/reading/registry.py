@@ -17,7 +17,6 @@ from elbowscrew.reading.options import ReadOptions
 from elbowscrew.reading.source import TextSource, first_bytes, open_source
 from elbowscrew.tables import METERS
 
-_ENDINGS: Final = (".csv", ".trc", ".c3d")
 _UNITS: Final = frozenset({"units"})
 _MARKERS: Final = frozenset({"markers"})
 _ALL: Final = _UNITS | _MARKERS | {"rotation"}
@@ -30,6 +29,8 @@ class Format:
     Attributes
     ----------
     name : str
+    endings : tuple of str
+        How the names of its files end, in lower case, so that they are found in folders.
     recognizes : callable
         Told the cells of the first line with any content, in lower case.
     read : callable
@@ -38,18 +39,40 @@ class Format:
     """
 
     name: str
+    endings: tuple[str, ...]
     recognizes: Callable[[list[str]], bool]
     read: Callable[[TextSource, ReadOptions], Recording]
     accepts: frozenset[str]
 
 
 FORMATS: Final = (
-    Format(name="Motive columns", recognizes=motive_columns.recognizes, read=motive_columns.read, accepts=_ALL),
-    Format(name="plain table", recognizes=plain_table.recognizes, read=plain_table.read, accepts=_MARKERS),
-    Format(name="TRC", recognizes=trc.recognizes, read=trc.read, accepts=_UNITS | _MARKERS),
-    Format(name="row-tagged", recognizes=row_tagged.recognizes, read=row_tagged.read, accepts=frozenset()),
+    Format(
+        name="Motive columns",
+        endings=(".csv",),
+        recognizes=motive_columns.recognizes,
+        read=motive_columns.read,
+        accepts=_ALL,
+    ),
+    Format(
+        name="plain table",
+        endings=(".csv",),
+        recognizes=plain_table.recognizes,
+        read=plain_table.read,
+        accepts=_MARKERS,
+    ),
+    Format(name="TRC", endings=(".trc",), recognizes=trc.recognizes, read=trc.read, accepts=_UNITS | _MARKERS),
+    Format(
+        name="row-tagged",
+        endings=(".csv",),
+        recognizes=row_tagged.recognizes,
+        read=row_tagged.read,
+        accepts=frozenset(),
+    ),
 )
 """A new text format is one module with `recognizes` and `read` and one entry here; the first that fits reads it."""
+
+ENDINGS: Final = tuple(dict.fromkeys((*(ending for entry in FORMATS for ending in entry.endings), *c3d.ENDINGS)))
+"""How the names of recordings end, in folders and for patterns; a file that is named itself may end as it likes."""
 
 
 def read_recording(
@@ -148,11 +171,11 @@ def recordings_in(folder: str | os.PathLike[str]) -> tuple[Path, ...]:
     """
     place = Path(folder)
     try:
-        found = sorted(path for path in place.iterdir() if path.suffix.casefold() in _ENDINGS and path.is_file())
+        found = sorted(path for path in place.iterdir() if path.suffix.casefold() in ENDINGS and path.is_file())
     except OSError as error:
         msg = f"{place}: cannot be read: {error.strerror or error}"
         raise RecordingError(msg) from error
     if not found:
-        msg = f"{place}: expected recordings ({', '.join(_ENDINGS)}) in the folder, found none"
+        msg = f"{place}: expected recordings ({', '.join(ENDINGS)}) in the folder, found none"
         raise RecordingError(msg)
     return tuple(found)

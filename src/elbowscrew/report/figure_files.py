@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from elbowscrew._process import has_spare_cores
-from elbowscrew.plots.figures import FIGURES, WIDTH_MM, MakeFigure
-from elbowscrew.plots.paper_figures import PAPER_FIGURES
+from elbowscrew.plots.figures import WIDTH_MM
+from elbowscrew.plots.registry import figure_function
 from elbowscrew.plots.style import publication_style, settle
 from elbowscrew.view.shown import Shown
 
@@ -26,7 +26,6 @@ _METADATA: Final[dict[str, dict[str, Any]]] = {
     "pdf": {"CreationDate": None, "Creator": None, "Producer": None},
 }
 _COMPRESSION: Final = 3  # a third less time than by default, for a tenth more bytes
-_FIGURES: Final[dict[str, MakeFigure]] = {**FIGURES, **PAPER_FIGURES}
 
 
 def figure_files(
@@ -39,7 +38,7 @@ def figure_files(
     shown : Shown
         An analysis, or a result read back.
     names : sequence of str
-        Of `elbowscrew.plots.FIGURES` or `elbowscrew.plots.paper_figures.PAPER_FIGURES`.
+        Of `elbowscrew.view.figure_names.FIGURE_ENTRIES`.
     formats : sequence of {"png", "svg", "pdf"}
     width_mm : float
         Width on paper; the fonts keep their size.
@@ -49,7 +48,7 @@ def figure_files(
     dict of str to bytes
         Files by name, as in ``theta.png``.
     """
-    return files_of({name: partial(_FIGURES[name], shown, width_mm=width_mm) for name in names}, formats)
+    return files_of({name: partial(figure_function(name), shown, width_mm=width_mm) for name in names}, formats)
 
 
 def files_of(drawings: Mapping[str, Callable[[], Figure]], formats: Sequence[str]) -> dict[str, bytes]:

@@ -6,9 +6,7 @@ from collections.abc import Sequence
 from typing import Final
 
 from elbowscrew.errors import UsageError
-from elbowscrew.results.staging import FIGURE_NAMES
-
-FIGURE_CHOICES: Final = (*FIGURE_NAMES, "fig7", "fig8", "fig9", "fig10", "overlay")
+from elbowscrew.view.figure_names import FIGURE_CHOICES
 
 SINGLE_MM: Final = 85.0
 DOUBLE_MM: Final = 170.0

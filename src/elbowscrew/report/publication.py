@@ -13,8 +13,8 @@ from elbowscrew.errors import SettingError
 from elbowscrew.report.figure_files import figure_files, files_of
 from elbowscrew.results.read_back import read_finished
 from elbowscrew.results.staging import write_files
+from elbowscrew.view.figure_names import OVERLAY
 
-OVERLAY: Final = "overlay"
 _LONGEST_NAME: Final = 80
 
 

@@ -10,7 +10,7 @@ import json
 from collections.abc import Callable, Mapping, Sequence
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,7 +23,6 @@ from elbowscrew.tables import angle_in
 _Table = Mapping[str, NDArray[Any]]
 
 _MAT_HEADER_BYTES: Final = 116
-_LIBRARIES: Final = {"parquet": "pyarrow", "mat": "scipy", "sto": None}
 
 
 def check_exports(formats: Sequence[str]) -> None:
@@ -32,7 +31,7 @@ def check_exports(formats: Sequence[str]) -> None:
         if name not in EXPORTS:
             msg = f"export: expected one of {', '.join(EXPORTS)}, found {name!r}"
             raise UsageError(msg)
-        library = _LIBRARIES[name]
+        library = EXPORTS[name].library
         if library is not None and find_spec(library) is None:
             msg = f"--export {name} needs {library}; install it with: pip install 'elbowscrew[export]'"
             raise UsageError(msg)
@@ -41,7 +40,7 @@ def check_exports(formats: Sequence[str]) -> None:
 def write_exports(folder: Path, analysis: Analysis, summary: Mapping[str, Any], formats: Sequence[str]) -> None:
     """Write the tables in the formats asked for; the summary goes along where a format has a place for it."""
     for name in dict.fromkeys(formats):
-        EXPORTS[name](folder, analysis, summary)
+        EXPORTS[name].write(folder, analysis, summary)
 
 
 def _write_parquet(folder: Path, analysis: Analysis, summary: Mapping[str, Any]) -> None:
@@ -113,9 +112,27 @@ def _write_sto(folder: Path, analysis: Analysis, _summary: Mapping[str, Any]) ->
         stream.writelines("\t".join("NaN" if x != x else repr(x) for x in row) + "\n" for row in rows)
 
 
-EXPORTS: Final[dict[str, Callable[[Path, Analysis, Mapping[str, Any]], None]]] = {
-    "parquet": _write_parquet,
-    "mat": _write_mat,
-    "sto": _write_sto,
+class Export(NamedTuple):
+    """One format of another program.
+
+    Attributes
+    ----------
+    write : callable
+        Told the folder, the analysis and its summary.
+    library : str or None
+        What it needs beyond the program's own dependencies.
+    file : str
+        The file it writes; one that begins with a point is the ending of one file for each table.
+    """
+
+    write: Callable[[Path, Analysis, Mapping[str, Any]], None]
+    library: str | None
+    file: str
+
+
+EXPORTS: Final = {
+    "parquet": Export(_write_parquet, "pyarrow", ".parquet"),
+    "mat": Export(_write_mat, "scipy", "trial.mat"),
+    "sto": Export(_write_sto, None, "joint_angle.sto"),
 }
-"""A new format is one function and one entry here, in `Settings.export`, and in `staging.RESULT_FILES`."""
+"""A new format is one function and one entry here, and its name in `Settings.export`."""

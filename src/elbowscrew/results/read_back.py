@@ -24,7 +24,7 @@ from elbowscrew.model import (
     Repetitions,
     ScrewMotion,
 )
-from elbowscrew.results.table_reading import AsRead, read_columns
+from elbowscrew.results.table_reading import AsRead, read_columns, read_result
 from elbowscrew.settings import settings_from_options
 from elbowscrew.view.finished import (
     FinishedBody,
@@ -161,9 +161,11 @@ def _read_tables(folder: Path, summary: Mapping[str, Any]) -> _Tables:
     units = settings.angle_unit, settings.length_unit
     curve = folder / "repetition_curve.csv"
     return _Tables(
-        screw=_screw(read_columns(folder / "screw.csv", tables.SCREW_COLUMNS, *units)),
-        interpolated=_interpolated(read_columns(folder / "interpolation.csv", tables.INTERPOLATION_COLUMNS, *units)),
-        repetitions=_repetitions(read_columns(folder / "repetitions.csv", tables.REPETITION_COLUMNS, *units)),
+        screw=read_result(folder / "screw.csv", ScrewMotion, tables.SCREW_COLUMNS, *units),
+        interpolated=read_result(
+            folder / "interpolation.csv", InterpolatedMotion, tables.INTERPOLATION_COLUMNS, *units
+        ),
+        repetitions=read_result(folder / "repetitions.csv", Repetitions, tables.REPETITION_COLUMNS, *units),
         curve=read_columns(curve, tables.CURVE_COLUMNS, *units) if curve.exists() else None,
     )
 
@@ -198,74 +200,6 @@ def _finished(
 
 def _named_joint(joint: Mapping[str, Any]) -> Joint:
     return joint_called(str(joint["name"]), str(joint["proximal"]), str(joint["distal"]))
-
-
-def _vectors(columns: Columns, *names: str) -> Float:
-    return np.stack([columns[name] for name in names], axis=1)
-
-
-def _axis(columns: Columns) -> dict[str, Any]:
-    return {
-        "axis_direction": _vectors(columns, "axis_x", "axis_y", "axis_z"),
-        "axis_point": _vectors(columns, "point_x", "point_y", "point_z"),
-    }
-
-
-def _displacement(columns: Columns) -> dict[str, Any]:
-    return {
-        "frame": columns["frame"],
-        "time_s": columns["time_s"],
-        "angle": columns["theta"],
-        "slide": columns["slide"],
-        "euler_parameters": _vectors(columns, "e0", "e1", "e2", "e3"),
-        "translation": _vectors(columns, "d_x", "d_y", "d_z"),
-    }
-
-
-def _screw(columns: Columns) -> ScrewMotion:
-    return ScrewMotion(
-        **_displacement(columns),
-        **_axis(columns),
-        valid=columns["valid"] == 1,
-        filled=columns["filled"] == 1,
-        proximal_loss=columns["proximal_loss"],
-        distal_loss=columns["distal_loss"],
-        angle_sd=columns["theta_sd"],
-        slide_sd=columns["slide_sd"],
-        axis_sd=columns["axis_sd"],
-        point_sd=columns["point_sd"],
-        axis_cone=columns["axis_cone95"],
-        point_radius=columns["point_radius95"],
-    )
-
-
-def _interpolated(columns: Columns) -> InterpolatedMotion:
-    return InterpolatedMotion(
-        **_displacement(columns),
-        phase=np.ma.asarray(columns["phase"]),
-        fraction=columns["t"],
-        angle_error=columns["angle_error"],
-        translation_error=columns["translation_error"],
-        rms_displacement=columns["rms_displacement"],
-        axis_error=columns["axis_error"],
-        axis_distance=columns["axis_distance"],
-    )
-
-
-def _repetitions(columns: Columns) -> Repetitions:
-    kept = (
-        *("number", "start_frame", "inversion_frame", "end_frame", "start_time_s", "end_time_s", "duration_s"),
-        *("start_time_sd_s", "end_time_sd_s"),
-    )
-    return Repetitions(
-        **{name: columns[name] for name in (*kept, "slide_range", "outward_speed", "back_speed")},
-        **_axis(columns),
-        incomplete=columns["incomplete"] == 1,
-        start_angle=columns["theta_start"],
-        top_angle=columns["theta_max"],
-        angle_range=columns["theta_range"],
-        axis_deviation=columns["axis_deviation"],
-    )
 
 
 def _pose(pose: dict[str, Any]) -> Float:

@@ -13,28 +13,19 @@ from pathlib import Path
 from typing import Final, NamedTuple
 
 from elbowscrew.errors import OutputError
+from elbowscrew.results.exporting import EXPORTS
+from elbowscrew.tables import TABLES
+from elbowscrew.view.figure_names import SAVED_FIGURES
 
-FIGURE_NAMES: Final = ("theta", "euler_parameters", "axis", "joint_axis", "error")
 FIGURE_FORMATS: Final = ("png", "svg", "pdf")
-TABLE_NAMES: Final = (
-    "screw",
-    "interpolation",
-    "keyframes",
-    "instantaneous",
-    "steps",
-    "repetitions",
-    "cycles",
-    "repetition_curve",
-    "anatomy",
-)
+_TABLE_ENDINGS: Final = (".csv", *(export.file for export in EXPORTS.values() if export.file.startswith(".")))
 RESULT_FILES: Final = (
     "summary.json",
     "joint.json",
-    *(f"{name}.{kind}" for name in TABLE_NAMES for kind in ("csv", "parquet")),
-    "trial.mat",
-    "joint_angle.sto",
+    *(f"{name}{ending}" for name in TABLES for ending in _TABLE_ENDINGS),
+    *(export.file for export in EXPORTS.values() if not export.file.startswith(".")),
     "report.html",
-    *(f"figures/{name}.{kind}" for name in FIGURE_NAMES for kind in FIGURE_FORMATS),
+    *(f"figures/{name}.{kind}" for name in SAVED_FIGURES for kind in FIGURE_FORMATS),
 )
 """All that a result folder may hold."""
 

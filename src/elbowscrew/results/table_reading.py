@@ -4,15 +4,19 @@ from __future__ import annotations
 
 from itertools import islice
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from elbowscrew.errors import ResultError
-from elbowscrew.tables import AngleUnit, Column, LengthUnit, Quantity, as_read_back, in_si, unit_suffixes
+from elbowscrew.tables import AngleUnit, Column, LengthUnit, Quantity, as_read_back, attributes, in_si, unit_suffixes
 
 _BLOCK_LINES: Final = 4096
+_INTEGERS: Final = (Quantity.INTEGER, Quantity.MASKED_INTEGER, Quantity.FLAG)
+_AS_THEY_ARE: Final = (*_INTEGERS, Quantity.NUMBER, Quantity.LABEL)
+
+Result = TypeVar("Result")
 
 
 class AsRead:
@@ -39,7 +43,7 @@ class AsRead:
     def __getattr__(self, name: str) -> Any:
         values = getattr(self._result, name)
         quantity = self._quantities.get(name)
-        if quantity in (None, Quantity.INTEGER, Quantity.NUMBER, Quantity.LABEL):
+        if quantity is None or quantity in _AS_THEY_ARE:
             return values
         return as_read_back(values, quantity, *self._units)
 
@@ -96,11 +100,33 @@ def read_columns(
     }
 
 
+def read_result(
+    path: Path, kind: type[Result], table: tuple[Column, ...], angle_unit: AngleUnit, length_unit: LengthUnit
+) -> Result:
+    """Read a table back as the result that it was written from.
+
+    Parameters
+    ----------
+    path : Path
+    kind : type
+        A dataclass; the table must have columns of each of its fields.
+    table : tuple of Column
+    angle_unit, length_unit : str
+        Units that the table was written in.
+
+    Raises
+    ------
+    ResultError
+        As `read_columns`.
+    """
+    return kind(**attributes(read_columns(path, table, angle_unit, length_unit), table))
+
+
 def _values(cells: tuple[str, ...], quantity: Quantity) -> NDArray[Any]:
     if quantity is Quantity.LABEL:
         return np.array(cells)
-    if quantity is Quantity.INTEGER:
-        if "" not in cells:
+    if quantity in _INTEGERS:
+        if quantity is not Quantity.MASKED_INTEGER and "" not in cells:
             return np.array([int(cell) for cell in cells], dtype=np.int64)
         missing = [not cell for cell in cells]
         return np.ma.MaskedArray([int(cell or 0) for cell in cells], mask=missing, dtype=np.int64)
@@ -110,7 +136,8 @@ def _values(cells: tuple[str, ...], quantity: Quantity) -> NDArray[Any]:
 
 def _joined(blocks: list[NDArray[Any]], quantity: Quantity) -> NDArray[Any]:
     if not blocks:
-        return np.array([], dtype={Quantity.INTEGER: "i8", Quantity.LABEL: "U1"}.get(quantity, "f8"))
+        empty = np.array([], dtype="i8" if quantity in _INTEGERS else "U1" if quantity is Quantity.LABEL else "f8")
+        return np.ma.asarray(empty) if quantity is Quantity.MASKED_INTEGER else empty
     if any(isinstance(block, np.ma.MaskedArray) for block in blocks):
         joined: NDArray[Any] = np.ma.concatenate(blocks)  # type: ignore[no-untyped-call]
         return joined

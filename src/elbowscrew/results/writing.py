@@ -35,18 +35,18 @@ def write_tables(folder: Path, analysis: Analysis) -> None:
 def _results(analysis: Analysis) -> list[tuple[str, object, tuple[tables.Column, ...]]]:
     """Name, result and columns of each table that there is."""
     several = analysis.repetitions.number.size > 1
-    found: tuple[tuple[str, object, tuple[tables.Column, ...]], ...] = (
-        ("screw", analysis.screw, tables.SCREW_COLUMNS),
-        ("interpolation", analysis.interpolated, tables.INTERPOLATION_COLUMNS),
-        ("keyframes", keyframes_of(analysis), tables.KEYFRAME_COLUMNS),
-        ("instantaneous", analysis.instantaneous, tables.INSTANTANEOUS_COLUMNS),
-        ("repetitions", analysis.repetitions, tables.REPETITION_COLUMNS),
-        ("cycles", analysis.cycle_curves if analysis.repetitions.number.size else None, tables.CYCLE_COLUMNS),
-        ("repetition_curve", analysis.repeatability if several else None, tables.CURVE_COLUMNS),
-        ("steps", analysis.steps, tables.STEP_COLUMNS),
-        ("anatomy", analysis.anatomy, tables.ANATOMY_COLUMNS),
-    )
-    return [one for one in found if one[1] is not None]
+    found: dict[str, object] = {
+        "screw": analysis.screw,
+        "interpolation": analysis.interpolated,
+        "keyframes": keyframes_of(analysis),
+        "instantaneous": analysis.instantaneous,
+        "repetitions": analysis.repetitions,
+        "cycles": analysis.cycle_curves if analysis.repetitions.number.size else None,
+        "repetition_curve": analysis.repeatability if several else None,
+        "steps": analysis.steps,
+        "anatomy": analysis.anatomy,
+    }
+    return [(name, result, tables.TABLES[name]) for name, result in found.items() if result is not None]
 
 
 def write_csv(path: Path, columns: dict[str, NDArray[Any]], *, quoted: bool = False) -> None:

@@ -12,15 +12,12 @@ from pathlib import Path
 from typing import Final
 
 from elbowscrew.errors import UsageError
-from elbowscrew.reading.registry import FORMATS
+from elbowscrew.reading.registry import ENDINGS, FORMATS
 from elbowscrew.reading.source import first_bytes
 from elbowscrew.results.staging import is_summary
 from elbowscrew.study.folder import MARK
 from elbowscrew.study.manifest import is_manifest, read_manifest
 from elbowscrew.study.trial import Trial
-
-SUFFIXES: Final = (".csv", ".trc", ".c3d")
-"""How the names of recordings end, in folders and for patterns; a file that is named itself may end as it likes."""
 
 _HEAD_BYTES: Final = 16384
 # Words of an export's header: a file that has one is a recording, be it a damaged one.
@@ -132,7 +129,7 @@ class _Search:
             msg = f"{text}: no file fits this pattern; check it, or give the folder"
             raise UsageError(msg)
         for path in matches:
-            if path.is_file() and path.suffix.casefold() in SUFFIXES and not self._ours(path.parent):
+            if path.is_file() and path.suffix.casefold() in ENDINGS and not self._ours(path.parent):
                 self._candidate(path, _posix(path))
 
     def folder(self, root: Path, prefix: str) -> None:
@@ -149,7 +146,7 @@ class _Search:
         if self.below:
             msg = f"no trial in the folder itself; --recursive looks into the folders below, such as {self.below[0]!r}"
         else:
-            ends = ", ".join(SUFFIXES)
+            ends = ", ".join(ENDINGS)
             passed = f"; passed over: {self.skipped[0].path} ({self.skipped[0].reason})" if self.skipped else ""
             msg = f"no trial found: expected files that end in {ends}{passed}"
         raise UsageError(msg)
@@ -164,7 +161,7 @@ class _Search:
             if path.name.startswith("."):
                 continue
             if not path.is_dir():
-                if path.suffix.casefold() in SUFFIXES:
+                if path.suffix.casefold() in ENDINGS:
                     yield path
             elif not self._ours(path):
                 real = path.resolve()

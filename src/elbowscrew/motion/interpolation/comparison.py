@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowscrew.errors import AnalysisError, SettingError
-from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat
 from elbowscrew.model import (
     BodyPoints,
     ComparedModels,
@@ -21,28 +20,17 @@ from elbowscrew.model import (
     PhaseLaw,
     Recording,
     Selection,
-    Sense,
-)
-from elbowscrew.motion.difference import (
-    angle_between,
-    angle_of_lines,
-    direction_between,
-    distance_across,
-    origin_distance,
-    rms_displacement,
 )
 from elbowscrew.motion.interpolation.keyframe_selection import select_keyframes
 from elbowscrew.motion.interpolation.keyframe_sources import ComparisonPlan, Treatment, treatments
 from elbowscrew.motion.interpolation.keyframes import keyframes_at, spread_rows
 from elbowscrew.motion.interpolation.law_fit import FittedLaw, laws_of
 from elbowscrew.motion.interpolation.model_building import body_points, phases_of
+from elbowscrew.motion.interpolation.model_errors import model_errors
 from elbowscrew.motion.interpolation.modeling import METHODS, ModeledPoses, model_motion
 from elbowscrew.motion.interpolation.segment_errors import BASES
 from elbowscrew.motion.movements.measured import measured_cuts
-from elbowscrew.motion.screws.helical import helical_series
 from elbowscrew.motion.screws.measurement import Measurement, measure
-from elbowscrew.motion.screws.relative import expressed
-from elbowscrew.motion.screws.sense import modeled_angle
 from elbowscrew.settings import Settings
 
 Float = NDArray[np.float64]
@@ -92,7 +80,6 @@ def compare(recording: Recording, settings: Settings | None = None, plan: Compar
     measured = measure(recording, raw)
     phases = phases_of(measured, measured_cuts(measured, raw).movements, raw)
     points = body_points(measured.distal, raw)
-    yardstick = _Yardstick.of(measured, points, raw)
     rows: list[dict[str, Any]] = []
     laws: dict[str, tuple[PhaseLaw, ...]] = {}
     for treatment in treatments(measured, phases, plan, wanted):
@@ -102,7 +89,7 @@ def compare(recording: Recording, settings: Settings | None = None, plan: Compar
                 name: () if isinstance(found, str) else tuple(one.law for one in found)
                 for name, found in fitted.items()
             }
-        rows += [_row(model, treatment, fitted[model.law], measured, yardstick) for model in models_of(plan)]
+        rows += [_row(model, treatment, fitted[model.law], measured, points, raw) for model in models_of(plan)]
     tolerance = _DEFAULT_TOLERANCE if wanted.tolerance_mm is None else 1e-3 * wanted.tolerance_mm
     return Comparison(
         recording=measured.recording,
@@ -167,58 +154,13 @@ def _laws_of(name: str, treatment: Treatment, measured: Measurement, points: Bod
         return str(error)
 
 
-class _Yardstick(NamedTuple):
-    """The measured motion that every model is held against."""
-
-    pose: Float
-    measured: Bool
-    line: Float
-    near: Float
-    points: BodyPoints
-    min_angle: float
-    express: Callable[[Float], Float]
-    quat: Float
-    sense: Sense
-    elapsed: Float
-
-    @classmethod
-    def of(cls, measured: Measurement, points: BodyPoints, settings: Settings) -> _Yardstick:
-        joint = measured.joint
-        return cls(
-            measured.displacement,
-            joint.measured,
-            measured.line,
-            pose_from_dual_quat(measured.change)[1],
-            points,
-            float(np.radians(settings.min_angle_deg)),
-            lambda pose: expressed(pose, joint, measured.express_in),
-            measured.screw.euler_parameters,
-            measured.sense,
-            measured.elapsed,
-        )
-
-    def errors(self, modeled: Float) -> dict[str, Float]:
-        D = self.express(modeled)
-        angle, sign = modeled_angle(D[:, :4], self.quat, self.sense, self.elapsed)
-        line = helical_series(D, self.min_angle, angle, sign).line
-        found = {
-            "displacement": rms_displacement(self.pose, modeled, self.points),
-            "angle_error": angle_between(self.pose, modeled),
-            "translation_error": origin_distance(self.pose, modeled),
-            "axis_error": (direction_between if self.sense.signed else angle_of_lines)(self.line, line),
-            "axis_distance": distance_across(self.line, line, self.near),
-        }
-        for values in found.values():
-            values[~self.measured] = np.nan
-        return found
-
-
 def _row(
     model: PlannedModel,
     treatment: Treatment,
     laws: tuple[FittedLaw, ...] | str,
     measured: Measurement,
-    yardstick: _Yardstick,
+    points: BodyPoints,
+    settings: Settings,
 ) -> dict[str, Any]:
     row: dict[str, Any] = {
         "data": treatment.name,
@@ -252,7 +194,14 @@ def _row(
         return {**row, "note": str(error)}
     if not np.isfinite(modeled.dual_quat[~modeled.phase.mask]).all():
         return {**row, "note": "the blended poses cancel in some frames"}
-    errors = yardstick.errors(modeled.dual_quat)
+    found = model_errors(modeled.dual_quat, measured, points, settings)
+    errors = {
+        "displacement": found.rms_displacement,
+        "angle_error": found.angle_error,
+        "translation_error": found.translation_error,
+        "axis_error": found.axis_error,
+        "axis_distance": found.axis_distance,
+    }
     for name, values in errors.items():
         known = np.isfinite(values).any()
         row[f"rms_{name}"] = float(np.sqrt(np.nanmean(values**2))) if known else np.nan

@@ -36,7 +36,8 @@ def check_bodies(
     checked = tuple(check_tracking(body, recording, elapsed, settings) for body in bodies)
     warnings = list(clock_warnings(recording))
     for body, found in zip(bodies, checked, strict=True):
-        warnings += [*found.warnings, *_body_warnings(body, recording)]
+        warnings += found.warnings
+        warnings += [warning for check in BODY_CHECKS for warning in check(body, recording)]
     for one, other in combinations(bodies, 2):
         warnings += check_swaps(one, other, recording, elapsed)
     return checked, tuple(warnings)
@@ -109,32 +110,45 @@ def clock_warnings(recording: Recording) -> tuple[QualityWarning, ...]:
     return tuple(found)
 
 
-def _body_warnings(body: RigidBody, recording: Recording) -> list[QualityWarning]:
-    found = []
+def _sign_flip_warnings(body: RigidBody, recording: Recording) -> list[QualityWarning]:
     flips = _sign_flips(body)
-    if flips.size:
-        message = (
-            f"the quaternion of body {body.name!r} changes its sign {flips.size} times: the same poses, made continuous"
-        )
-        found.append(frames_warning("sign-flips", message, flips, recording, "note"))
-    if body.marker_residual is not None:
-        rows = np.flatnonzero(np.nan_to_num(body.marker_residual) > _LARGE_RESIDUAL_M)
-        if rows.size:
-            message = (
-                f"the markers of body {body.name!r} do not fit it in {rows.size} frames (RMS over "
-                f"{1000 * _LARGE_RESIDUAL_M:g} mm, at most {1000 * np.nanmax(body.marker_residual):.3g} mm): "
-                "not rigid, mislabeled or swapped"
-            )
-            found.append(frames_warning("marker-residual", message, rows, recording))
-    if body.marker_offsets is not None:
-        pivot = float(np.linalg.norm(body.marker_offsets.mean(axis=0)))
-        if pivot > _FAR_PIVOT_M:
-            message = (
-                f"the origin of body {body.name!r} lies {1000 * pivot:.0f} mm from the centroid of its markers: "
-                "it is not the barycenter the paper speaks of (the axis does not depend on it)"
-            )
-            found.append(QualityWarning(code="pivot-offset", message=message, severity="note"))
-    return found
+    if not flips.size:
+        return []
+    message = (
+        f"the quaternion of body {body.name!r} changes its sign {flips.size} times: the same poses, made continuous"
+    )
+    return [frames_warning("sign-flips", message, flips, recording, "note")]
+
+
+def _residual_warnings(body: RigidBody, recording: Recording) -> list[QualityWarning]:
+    if body.marker_residual is None:
+        return []
+    rows = np.flatnonzero(np.nan_to_num(body.marker_residual) > _LARGE_RESIDUAL_M)
+    if not rows.size:
+        return []
+    message = (
+        f"the markers of body {body.name!r} do not fit it in {rows.size} frames (RMS over "
+        f"{1000 * _LARGE_RESIDUAL_M:g} mm, at most {1000 * np.nanmax(body.marker_residual):.3g} mm): "
+        "not rigid, mislabeled or swapped"
+    )
+    return [frames_warning("marker-residual", message, rows, recording)]
+
+
+def _pivot_warnings(body: RigidBody, _recording: Recording) -> list[QualityWarning]:
+    if body.marker_offsets is None:
+        return []
+    pivot = float(np.linalg.norm(body.marker_offsets.mean(axis=0)))
+    if not pivot > _FAR_PIVOT_M:
+        return []
+    message = (
+        f"the origin of body {body.name!r} lies {1000 * pivot:.0f} mm from the centroid of its markers: "
+        "it is not the barycenter the paper speaks of (the axis does not depend on it)"
+    )
+    return [QualityWarning(code="pivot-offset", message=message, severity="note")]
+
+
+BODY_CHECKS: Final = (_sign_flip_warnings, _residual_warnings, _pivot_warnings)
+"""A new check of a body is one function and one entry here."""
 
 
 def _sign_flips(body: RigidBody) -> NDArray[np.intp]:
