@@ -112,7 +112,7 @@ _Angle = Annotated[float, BeforeValidator(_degrees)]
 _Length = Annotated[float, BeforeValidator(_millimeters)]
 
 
-class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False):
+class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defer_build=True):
     """How a recording is analyzed.
 
     The names here carry their units; on the command line and in TOML the unit is left out (`option_name`).

@@ -143,5 +143,5 @@ def over_time(ax: Axes, time_s: Float) -> Axes:
 
 
 def _model_label(analysis: Shown) -> str:
-    method = style.METHOD_NAMES[analysis.settings.model_method]
+    method = style.METHOD_NAMES.get(analysis.settings.model_method, analysis.settings.model_method)
     return f"{method} through {analysis.keyframes.row.size} poses"
