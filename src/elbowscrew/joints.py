@@ -138,12 +138,12 @@ _FRENCH: Final = frozenset(
     {"bras", "main", "pied", "jambe", "cuisse", "tronc", "bassin", "omoplate", "phalange", "metacarpien", "perone"}
 )
 
-# Words that mean something else in other company ("main camera", "hand tool", "robot arm", "pied" of a tripod): they
+# Words that mean something else in other company ("main camera", "hand tool", "pied" of a tripod): they
 # speak of a segment only where nothing but sides, numbers, single letters and neutral words stands beside them, or
-# where they end a name that says a side ("Anna left arm").
+# where they end a name that says a side ("Anna left hand").
 _SHY: Final = frozenset(
     {
-        "arm", "ua", "fa", "bras", "radius", "hand", "main", "foot", "heel", "pied", "calf", "wade", "trunk", "chest",
+        "ua", "fa", "bras", "radius", "hand", "main", "foot", "heel", "pied", "calf", "wade", "trunk", "chest",
         "pp", "dp", "proximal", "distal", "up leg",
     }
 )  # fmt: skip
@@ -306,7 +306,7 @@ def _apart(word: str) -> tuple[str, ...]:
         return (word,)
     for side in ("left", "right", "l", "r"):
         rest = word.removeprefix(side)
-        if rest != word and (rest in _LONG or (len(side) > 1 and rest in _SHY)):
+        if rest != word and (rest in _LONG or (len(side) > 1 and rest in _SINGLE)):
             return side, rest
     return (word,)
 

@@ -7,7 +7,7 @@ import pytest
 
 from elbowscrew import Recording, RigidBody
 from elbowscrew.errors import SettingError
-from elbowscrew.joints import segment_of, side_between
+from elbowscrew.joints import segment_of, side_between, side_of
 from elbowscrew.motion.tracking.selection import choose_bodies
 
 
@@ -141,16 +141,24 @@ def test_joints_by_the_names_of_their_bodies(proximal: str, distal: str, joint: 
         "Hand tool",
         "main camera",
         "pied camera",
-        "robot arm",
         "armrest",
         "larm",
         "leftover",
         "radius gauge",
-        "re-test arm",
     ],
 )
 def test_false_friends_do_not_speak(name: str) -> None:
     assert segment_of(name) is None
+
+
+@pytest.mark.parametrize("name", ["re-test arm", "leftover", "alarm", "Forearm D", "Arm L or R"])
+def test_names_that_say_no_side(name: str) -> None:
+    assert side_of(name) is None
+
+
+def test_a_robot_arm_beside_an_upper_arm_is_no_silent_choice() -> None:
+    with pytest.raises(SettingError, match="'robot arm'"):
+        choose_bodies(recording("robot arm", "Upper Arm", "Forearm"), None, None)
 
 
 def test_bodies_of_different_sides() -> None:
