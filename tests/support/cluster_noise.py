@@ -43,7 +43,9 @@ class Hinge:
 
     @property
     def angle(self) -> Float:
-        return np.radians(self.top_deg) * 0.5 * (1.0 - np.cos(np.arange(self.frames) * 2.0 * np.pi / FRAMES_A_CYCLE))
+        return np.asarray(
+            np.radians(self.top_deg) * 0.5 * (1.0 - np.cos(np.arange(self.frames) * 2.0 * np.pi / FRAMES_A_CYCLE))
+        )
 
     @property
     def frames(self) -> int:
@@ -189,7 +191,7 @@ def turning(size: float) -> Noise:
     def one(hinge: Hinge, rng: np.random.Generator, shape: Float) -> Float:
         turn = _slow(rng, hinge.frames, (3,))
         turn /= np.sqrt(np.mean(np.sum(turn**2, axis=1)))
-        return np.cross(turn[:, None, :], shape[None])
+        return np.asarray(np.cross(turn[:, None, :], shape[None]))
 
     return _per_cluster(size, one)
 
@@ -200,7 +202,7 @@ def turning_with_flexion(turn: float, shift: float) -> Noise:
     def one(hinge: Hinge, rng: np.random.Generator, shape: Float) -> Float:
         turned, shifted = rng.normal(size=(2, 3))
         moved = turn * np.cross(turned / np.linalg.norm(turned), shape) + shift * shifted / np.linalg.norm(shifted)
-        return course(hinge)[:, None, None] * moved
+        return np.asarray(course(hinge)[:, None, None] * moved)
 
     return _per_cluster(1.0, one)
 
@@ -226,3 +228,28 @@ def _slow(rng: np.random.Generator, count: int, shape: tuple[int, ...]) -> Float
     series = rng.normal(size=(count + 2 * margin, *shape))
     slow = sosfiltfilt(butter(2, 0.8, fs=RATE_HZ, output="sos"), series, axis=0)[margin : margin + count]
     return np.asarray(slow / np.sqrt(np.mean(slow**2)))
+
+
+def wandering(top_deg: float, turn: float, shift: float, *, cycles: int = 1) -> Hinge:
+    """A joint that turns about `LINE` in the middle of its range; the axis turns and shifts in all by so much."""
+    plain = Hinge(top_deg=top_deg, cycles=cycles)
+    top = np.radians(top_deg)
+    steps = 2000
+    middle = (np.arange(steps) + 0.5) / steps
+    across = np.cross(LINE[:3], [0.0, 0.0, 1.0])
+    across /= np.linalg.norm(across)
+    point = np.cross(LINE[:3], LINE[3:]) + 0.1 * LINE[:3]
+    quat = dq.exp(0.5 * np.stack([np.concatenate([turn * (m - 0.5) * across, np.zeros(3)]) for m in middle]))[:, :4]
+    h = np.stack([dq.transform_points(np.concatenate([q, np.zeros(4)]), LINE[:3]) for q in quat])
+    # The axis turns about the point where the errors are told, so that turn and shift are what they are called.
+    place = point + shift * (middle - 0.5)[:, None] * across
+    twist = np.concatenate([h, np.cross(place, h)], axis=1)
+    poses = [dq.exp(np.zeros(6))]
+    for each in dq.exp(0.5 * top / steps * twist):
+        poses.append(dq.normalize(dq.multiply(each, poses[-1])))
+    table = dq.continuous_signs(np.stack(poses))
+    at = plain.angle / top * steps
+    low = np.minimum(at.astype(int), steps - 1)
+    share = (at - low)[:, None]
+    between = dq.multiply(table[low], dq.exp(share * dq.log(dq.multiply(dq.conjugate(table[low]), table[low + 1]))))
+    return Hinge(top_deg=top_deg, cycles=cycles, exact=dq.multiply(between, START))

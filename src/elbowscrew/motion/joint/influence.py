@@ -57,6 +57,12 @@ class Influence(NamedTuple):
         """Whether the frames determine all the shared numbers."""
         return bool(np.isfinite(self.inverse).all())
 
+    def size(self, covariance: Float) -> Float:
+        """Covariances (..., P, P) in units of the stated noise's, ``tr(I C)``: the same in all frames and units."""
+        scale = np.sqrt(np.diag(self.inverse))
+        unit = np.outer(scale, scale)
+        return np.asarray(np.trace(np.linalg.solve(self.inverse / unit, covariance / unit), axis1=-2, axis2=-1))
+
     @property
     def variance(self) -> float:
         """Squared whitened residuals over their degrees of freedom: 1 where the stated noise explains them."""

@@ -176,13 +176,12 @@ def skin_covariance(influence: Influence, skin: tuple[SkinMotion, ...], referenc
 
     References
     ----------
-    ``D diag(r^2/3, s^2/3) D^T`` with ``D = sum_t f_t Psi_t``.
+    ``D diag(r^2/3, s^2/3) D^T`` with ``D = sum_t f_t Psi_t``; the worst is the largest in units of the noise's own.
     """
     off = influence.angle - reference_angle
     largest = float(np.abs(off).max())
     signed = off / (largest if largest > 0.0 else 1.0)
     u = np.abs(signed)
-    scale = 1.0 / np.diag(influence.inverse)
     worst = np.zeros_like(influence.inverse)
     for course in (u, np.sin(0.5 * np.pi * u), u**2, np.sin(np.pi * u), signed):
         total = np.zeros_like(worst)
@@ -190,7 +189,7 @@ def skin_covariance(influence: Influence, skin: tuple[SkinMotion, ...], referenc
             psi = influence.of_distal if part.segment == "distal" else influence.of_proximal
             moved = np.tensordot(course, psi, axes=1)
             total += moved @ np.diag([part.turn**2 / 3.0] * 3 + [part.shift**2 / 3.0] * 3) @ moved.T
-        if np.diag(total) @ scale > np.diag(worst) @ scale:
+        if influence.size(total) > influence.size(worst):
             worst = total
     return worst
 

@@ -86,7 +86,7 @@ def nonrigid_covariance(
     moved = np.tensordot(z, psi, axes=(0, 0))  # (nu, P, 6)
     measured = np.einsum("jpa,jqa->pq", moved, moved) / nu
     model = _Stationary(z, influence.angle, own_shape=own_shape)
-    expected, model_freedom = model.covariance(psi, influence.inverse)
+    expected, model_freedom = model.covariance(psi, influence)
     worth, weight = _worth_of_model(z, influence.angle, model, own_shape=own_shape)
     covariance = (worth[:, None, None] * expected + nu * measured) / (worth + nu)[:, None, None]
     return Mixture(covariance, np.minimum(worth, model_freedom) + nu, weight)
@@ -155,7 +155,7 @@ class _Stationary:
         bands = np.repeat(self._power, np.diff(np.append(self._starts, count)))
         self.power = self.flat * mean + (1.0 - self.flat) * bands
 
-    def covariance(self, psi: Float, inverse: Float) -> tuple[Float, float]:
+    def covariance(self, psi: Float, influence: Influence) -> tuple[Float, float]:
         """Covariance (P, P) under noise of this spectrum, and its degrees of freedom."""
         series = cosine_transform(psi)
         weighted = self.power[:, None, None] * series
@@ -163,8 +163,7 @@ class _Stationary:
         if self.flat > 0.5:
             return covariance, np.inf
         part = np.stack([np.tensordot(s, s, axes=((0, 2), (0, 2))) for s in np.split(series, self._starts[1:])])
-        scale = 1.0 / np.diag(inverse)  # all numbers count alike, whatever their units
-        share = np.einsum("bpp,p->b", part, scale) * self._power
+        share = influence.size(part) * self._power
         return covariance, float(share.sum() ** 2 / np.sum(share**2 / self._number))
 
 
