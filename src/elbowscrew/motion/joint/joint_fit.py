@@ -263,6 +263,27 @@ def _result(at: _Step, joint: Float, W: Float, weight: Float, screw: bool) -> Li
     )
 
 
+def linear_model(fit: LineFit, covariance: Float) -> tuple[Float, Float, Float]:
+    """What a fit is to first order in its frames, for those who follow errors through it.
+
+    Parameters
+    ----------
+    fit : LineFit
+    covariance : ndarray, shape (F, 6, 6)
+        As `fit_joint` had it.
+
+    Returns
+    -------
+    tuple of ndarray
+        Derivatives (F, 6, P) of the model's poses by the shared parameters and (6,) by a frame's own angle, and the
+        information (F, 6, 6) of each pose; all in the frame of the line.
+    """
+    at = _Step(fit.proximal, fit.distal, fit.angle, fit.pitch)
+    derivatives = _derivatives(at, screw=len(fit.information) > 9)
+    own = np.array([0.0, 0.0, 1.0, 0.0, 0.0, fit.pitch])
+    return derivatives, own, _weights_in_line(at, np.asarray(np.linalg.inv(covariance), dtype=np.float64))
+
+
 def _integrated_autocorrelation(series: Float) -> float:
     """Number of successive rows that count as one, of series (F, k): ``1 + 2 sum rho`` up to Sokal's window."""
     count = len(series)

@@ -1,0 +1,72 @@
+"""How often the intervals of a hinge hold the truth, under every kind of marker noise.
+
+    python benchmarks/intervals.py [--quick] [TRIALS]
+
+Prints a table in Markdown: share of trials whose 95 % interval holds the true line, direction and place in the proximal
+and in the distal body; mean radius over the 95th percentile of the error; and how often a pitch is told.
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "support"))
+
+from cluster_noise import Hinge, Noise, coverage, skin, smooth_skin, turning, turning_with_flexion, wander, white
+
+from elbowscrew.motion.joint.interval import SkinMotion
+
+HINGES = (
+    Hinge(top_deg=140.0),
+    Hinge(top_deg=60.0),
+    Hinge(top_deg=20.0),
+    Hinge(top_deg=140.0, cycles=8),
+    Hinge(top_deg=60.0, cycles=8),
+    Hinge(top_deg=140.0, markers=3),
+    Hinge(top_deg=60.0, markers=3),
+    Hinge(top_deg=140.0, still=True),
+    Hinge(top_deg=60.0, still=True),
+)
+TURN, SHIFT = np.radians(2.0), 2e-3
+
+
+def main() -> None:
+    """Print one row for each hinge and each kind of noise."""
+    words = [word for word in sys.argv[1:] if word != "--quick"]
+    quick = "--quick" in sys.argv
+    trials = int(words[0]) if words else 20 if quick else 300
+    print("| top deg | cycles | markers | proximal | noise | direction | place | sharpness | pitch |")
+    print("| --- | --- | --- | --- | --- | --- | --- | --- | --- |")
+    for number, hinge in enumerate(HINGES[:3] if quick else HINGES):
+        for name, (noise, stated) in kinds(hinge).items():
+            found = coverage(hinge, noise, trials, seed=number, skin=stated, pitch=True)
+            held, sharp = found.held, found.sharpness
+            print(
+                f"| {hinge.top_deg:g} | {hinge.cycles} | {hinge.markers} | {'still' if hinge.still else 'moves'} "
+                f"| {name} | {held[0]:.3f}, {held[2]:.3f} | {held[1]:.3f}, {held[3]:.3f} "
+                f"| {sharp[0::2].max():.2f}, {sharp[1::2].max():.2f} | {found.spurious_pitch:.3f} |",
+                flush=True,
+            )
+
+
+def kinds(hinge: Hinge) -> dict[str, tuple[Noise, tuple[SkinMotion, ...]]]:
+    """Kinds of noise, and the skin motion that is stated with them; smaller where the range is."""
+    share = 0.2 if hinge.top_deg < 40.0 else 1.0
+    stated = [SkinMotion(segment="distal", shift=SHIFT, turn=TURN)]
+    if not hinge.still:
+        stated.append(SkinMotion(segment="proximal", shift=0.5 * SHIFT, turn=0.5 * TURN))
+    return {
+        "white 0.2 mm": (white(), ()),
+        f"wander {2 * share:g} mm": (wander(2e-3 * share), ()),
+        f"skin, own ways, {5 * share:g} mm": (skin(5e-3 * share), ()),
+        f"skin, smooth, {5 * share:g} mm": (smooth_skin(5e-3 * share), ()),
+        f"clusters turn {2 * share:g} deg": (turning(TURN * share), ()),
+        "flexion turns 2 deg, 2 mm, stated": (turning_with_flexion(TURN, SHIFT), tuple(stated)),
+    }
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,253 @@
+"""How far a fitted joint may be from the truth: markers, residuals and blocks together, and what the user states.
+
+No method sees everything. The markers' own motion (A) sees skin that goes with the flexion, the residuals' spectrum (B)
+a cluster that moves as a whole at random, blocks (J) what is neither: the radius is the largest of them. A cluster that
+moves as a whole with the flexion no single trial shows; the user states it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowscrew.geometry.sensitivity import confidence_radius
+from elbowscrew.motion.joint.blocks import block_jackknife
+from elbowscrew.motion.joint.influence import Influence
+from elbowscrew.motion.joint.nonrigid import Segment, nonrigid_covariance, residual_covariance
+from elbowscrew.motion.joint.spectrum import ResidualSpectrum, residual_spectrum
+from elbowscrew.motion.joint.tails import Mixture
+
+Float = NDArray[np.float64]
+Method = Literal["A", "B", "J"]
+
+LEVEL: Final = 0.95
+SURE: Final = 0.9973
+"""Probability of three standard deviations: beyond its radius an effect is told."""
+
+_BEYOND_NOISE: Final = 2.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ClusterMotion:
+    """What is known of a cluster's markers in the frames fitted.
+
+    Attributes
+    ----------
+    segment : {"proximal", "distal"}
+    shape : ndarray, shape (M, 3)
+        The markers in the body's frame.
+    nonrigid : ndarray, shape (F, 3 M - 6), optional
+        `nonrigid_coordinates`.
+    rms : ndarray, shape (F,), optional
+        RMS distance of the markers, where no more is kept.
+    own_shape : bool
+        Whether the shape is the trial's own mean.
+    """
+
+    segment: Segment
+    shape: Float
+    nonrigid: Float | None = None
+    rms: Float | None = None
+    own_shape: bool = False
+
+    def covariance(self, influence: Influence) -> Mixture | None:
+        """Covariance of the shared numbers by these markers; None where they do not tell."""
+        if self.nonrigid is not None:
+            found = nonrigid_covariance(
+                influence, self.shape, self.nonrigid, segment=self.segment, own_shape=self.own_shape
+            )
+            if found is not None:
+                return found
+        if self.rms is None:
+            return None
+        return residual_covariance(influence, self.shape, self.rms, segment=self.segment)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class SkinMotion:
+    """How a cluster is stated to move as a whole on its bone, at the largest angle, RMS in space.
+
+    Attributes
+    ----------
+    segment : {"proximal", "distal"}
+    shift : float
+        Meters.
+    turn : float
+        Radians.
+    """
+
+    segment: Segment
+    shift: float
+    turn: float = 0.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class JointInterval:
+    """Radii that hold the errors of a fitted joint's shared numbers.
+
+    Attributes
+    ----------
+    markers : Mixture or None
+        Of all bodies that have markers (A); None if one that moves has none.
+    residuals : ResidualSpectrum or None
+        B; None where the frames do not determine the joint.
+    blocks : Mixture or None
+        J, where the residuals ask for it.
+    skin : ndarray, shape (P, P), or None
+        Covariance by the stated skin motion.
+    """
+
+    markers: Mixture | None
+    residuals: ResidualSpectrum | None
+    blocks: Mixture | None
+    skin: Float | None
+
+    def radii(self, rows: Float, level: float = LEVEL) -> dict[Method, float]:
+        """Radius of ``rows @ x``, rows of shape (k, P), by each method that is used; skin comes on top."""
+        if self.residuals is None:
+            return {}
+        found: dict[Method, float] = {"B": self.residuals.radius(rows, level)}
+        if self.markers is not None:
+            found["A"] = self.markers.of(rows).radius(level)
+        if self.blocks is not None:
+            found["J"] = self.blocks.of(rows).radius(level)
+        return found
+
+    def skin_radius(self, rows: Float, level: float = LEVEL) -> float:
+        """Part of the stated skin motion in the radius."""
+        return 0.0 if self.skin is None else Mixture.of_one(rows @ self.skin @ rows.T).radius(level)
+
+    def radius(self, rows: Float, level: float = LEVEL) -> float:
+        """Radius that holds the error of ``rows @ x``; NaN where the frames do not determine the joint."""
+        found = self.radii(rows, level)
+        return float(np.hypot(max(found.values()), self.skin_radius(rows, level))) if found else float("nan")
+
+    def decided_by(self, rows: Float) -> Method | None:
+        """Which method gave the radius."""
+        found = self.radii(rows)
+        return max(found.items(), key=lambda item: item[1])[0] if found else None
+
+
+def joint_interval(
+    influence: Influence,
+    clusters: tuple[ClusterMotion, ...],
+    *,
+    skin: tuple[SkinMotion, ...] = (),
+    reference_angle: float | None = None,
+    noise_known: bool = True,
+) -> JointInterval:
+    """Find how far a fitted joint may be from the truth.
+
+    Parameters
+    ----------
+    influence : Influence
+    clusters : tuple of ClusterMotion
+        Of the bodies that move; those without markers are left out.
+    skin : tuple of SkinMotion
+        Each body's, as the user states it.
+    reference_angle : float, optional
+        Where the clusters are taken to sit right, radians; the first frame's if not told.
+    noise_known : bool
+        Whether the poses' noise is stated; else the residuals alone tell of it.
+    """
+    if not influence.determined:
+        return JointInterval(markers=None, residuals=None, blocks=None, skin=None)
+    markers: Mixture | None = None
+    for cluster in clusters:
+        found = cluster.covariance(influence)
+        if found is not None:
+            markers = found if markers is None else markers.plus(found)
+    residuals = residual_spectrum(influence, noise_known=noise_known)
+    asked = not residuals.flat and (markers is None or residuals.variance > _BEYOND_NOISE)
+    start = float(influence.angle[0]) if reference_angle is None else reference_angle
+    return JointInterval(
+        markers=markers,
+        residuals=residuals,
+        blocks=block_jackknife(influence) if asked else None,
+        skin=skin_covariance(influence, skin, start) if skin else None,
+    )
+
+
+def skin_covariance(influence: Influence, skin: tuple[SkinMotion, ...], reference_angle: float) -> Float:
+    """Covariance (P, P) by clusters that move as a whole with the angle, at the worst of some courses.
+
+    References
+    ----------
+    ``D diag(r^2/3, s^2/3) D^T`` with ``D = sum_t f_t Psi_t``; the worst is the largest in units of the noise's own.
+    """
+    off = influence.angle - reference_angle
+    largest = float(np.abs(off).max())
+    signed = off / (largest if largest > 0.0 else 1.0)
+    u = np.abs(signed)
+    worst = np.zeros_like(influence.inverse)
+    for course in (u, np.sin(0.5 * np.pi * u), u**2, np.sin(np.pi * u), signed):
+        total = np.zeros_like(worst)
+        for part in skin:
+            psi = influence.of_distal if part.segment == "distal" else influence.of_proximal
+            moved = np.tensordot(course, psi, axes=1)
+            total += moved @ np.diag([part.turn**2 / 3.0] * 3 + [part.shift**2 / 3.0] * 3) @ moved.T
+        if influence.size(total) > influence.size(worst):
+            worst = total
+    return worst
+
+
+def skin_sensitivity(angle: Float, weight: Float | None = None) -> float:
+    """Degrees that a hinge's axis turns for each degree that a cluster turns on its bone with the flexion.
+
+    Parameters
+    ----------
+    angle : ndarray, shape (F,)
+        Of the frames, radians.
+    weight : ndarray, shape (F,), optional
+
+    Returns
+    -------
+    float
+        About 1 over the range in radians, however many cycles there are; NaN without motion.
+
+    References
+    ----------
+    ``|cov(f, exp(i theta))| / (1 - |mean exp(i theta)|^2)`` of ``f = sin(theta/2)`` from 0 to 1.
+    """
+    share = np.full(len(angle), 1.0 / len(angle)) if weight is None else weight / weight.sum()
+    off = angle - angle.min()
+    course = np.sin(0.5 * np.minimum(off, np.pi))
+    if not course.max() > 0.0:
+        return float("nan")
+    course = course / course.max()
+    turned = np.exp(1j * angle)
+    spread = 1.0 - abs(share @ turned) ** 2
+    return float(abs(share @ ((course - share @ course) * turned)) / spread)
+
+
+def pose_radii(covariance: Float, direction: Float, point: Float) -> tuple[float, float]:
+    """Radii by which the pose of a body carries a line that is fixed in it, added in quadrature for another frame.
+
+    Parameters
+    ----------
+    covariance : ndarray, shape (6, 6)
+        Of the body's pose, in its own frame.
+    direction, point : ndarray, shape (3,)
+        The line in the body.
+
+    Returns
+    -------
+    tuple of float
+        Of the direction (rad) and of the place across it (m), 95 %.
+    """
+    across = np.linalg.svd(direction[None])[2][1:]
+    turn, shift = _cross(direction), np.concatenate([_cross(point), np.eye(3)], axis=1)
+    tilted = across @ turn
+    moved = across @ shift
+    return (
+        float(confidence_radius(tilted @ covariance[:3, :3] @ tilted.T)),
+        float(confidence_radius(moved @ covariance @ moved.T)),
+    )
+
+
+def _cross(vector: Float) -> Float:
+    """Matrix of ``rho -> rho x vector``."""
+    return np.cross(np.eye(3), vector).T

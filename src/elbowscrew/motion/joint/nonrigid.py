@@ -1,0 +1,225 @@
+"""Covariance of a fit from the markers' motion within their cluster (method A).
+
+Six of a cluster's 3 M coordinates are its pose; the other ``nu = 3 M - 6`` no pose can follow. What they do is seen,
+and each coordinate of the pose is taken to err by as much and with the same pattern in time and angle. The covariance
+that follows is unbiased for any correlation, skin that goes with the flexion included, without a bandwidth or a kernel.
+"""
+
+from __future__ import annotations
+
+from typing import Final, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import multigammaln
+
+from elbowscrew.motion.joint.influence import Influence
+from elbowscrew.motion.joint.spectrum import band_starts, band_sums, cosine_transform
+from elbowscrew.motion.joint.tails import Mixture
+from elbowscrew.motion.screws.pose_noise import covariance_from_markers
+
+Float = NDArray[np.float64]
+Segment = Literal["proximal", "distal"]
+
+# Degrees of freedom that the stationary model may be worth beside the nu that are measured.
+_WORTH: Final = np.array([2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0, 1e3, 1e4, 1e5])
+_WORTH_IF_COLORED: Final = 2.0
+_LEAST_KNOWN: Final = 0.5
+_ANGLE_BINS: Final = 15
+_ALIKE: Final = 3.0
+_RANK: Final = 1e-6
+
+
+def nonrigid_coordinates(seen: Float, shape: Float) -> Float:
+    """What no motion of the whole cluster explains, in coordinates that are all of the markers' own noise.
+
+    Parameters
+    ----------
+    seen : ndarray, shape (F, M, 3)
+        The markers in the body's frame, as its measured pose gives them.
+    shape : ndarray, shape (M, 3)
+        The markers of the rigid body in the same frame, not on one line.
+
+    Returns
+    -------
+    ndarray, shape (F, 3 M - 6)
+        NaN in frames where a marker is not seen.
+    """
+    across = np.linalg.qr(_rigid_motions(shape), mode="complete")[0][:, 6:]
+    return np.asarray((seen - shape).reshape(len(seen), -1) @ across, dtype=np.float64)
+
+
+def nonrigid_covariance(
+    influence: Influence, shape: Float, nonrigid: Float, *, segment: Segment, own_shape: bool = False
+) -> Mixture | None:
+    """Covariance of the shared numbers by one body's markers.
+
+    Parameters
+    ----------
+    influence : Influence
+    shape : ndarray, shape (M, 3)
+        The markers in the body's frame.
+    nonrigid : ndarray, shape (F, nu)
+        `nonrigid_coordinates` of the frames fitted.
+    segment : {"proximal", "distal"}
+        Which of the two bodies it is.
+    own_shape : bool
+        Whether the cluster's shape is the trial's own mean, so that a constant misfit is not seen.
+
+    Returns
+    -------
+    Mixture or None
+        None if in most frames the markers are not all seen.
+
+    References
+    ----------
+    ``(nu0 S_model + nu S_emp) / (nu0 + nu)``: ``S_emp = (1/nu) sum_j sum_a d_ja d_ja^T`` with ``d_ja = sum_t Psi_t
+    L[:, a] z_j(t)``; S_model is that of stationary noise of z's spectrum, and nu0 is averaged by its evidence.
+    """
+    z = _without_holes(nonrigid)
+    if z is None or not influence.determined:
+        return None
+    if own_shape:
+        z = z - z.mean(axis=0)
+    nu = z.shape[1]
+    psi = _of_rigid_coordinates(influence, shape, segment)
+    moved = np.tensordot(z, psi, axes=(0, 0))  # (nu, P, 6)
+    measured = np.einsum("jpa,jqa->pq", moved, moved) / nu
+    model = _Stationary(z, influence.angle, own_shape=own_shape)
+    expected, model_freedom = model.covariance(psi, influence)
+    worth, weight = _worth_of_model(z, influence.angle, model, own_shape=own_shape)
+    covariance = (worth[:, None, None] * expected + nu * measured) / (worth + nu)[:, None, None]
+    return Mixture(covariance, np.minimum(worth, model_freedom) + nu, weight)
+
+
+def residual_covariance(
+    influence: Influence, shape: Float, rms: Float, *, segment: Segment, freedom: int | None = None
+) -> Mixture | None:
+    """As `nonrigid_covariance`, where nothing is kept of a frame but the RMS distance of its markers.
+
+    Parameters
+    ----------
+    influence : Influence
+    shape : ndarray, shape (M, 3)
+    rms : ndarray, shape (F,)
+        Of the markers about the rigid body.
+    segment : {"proximal", "distal"}
+    freedom : int, optional
+        ``3 M - 6`` if not told.
+
+    References
+    ----------
+    The mean square in bins of the angle: its lowest is white noise, and the root of what a bin has more is one series
+    that goes with the angle. Bins that differ by no more than chance are all white.
+    """
+    nu = 3 * len(shape) - 6 if freedom is None else freedom
+    known = np.isfinite(rms)
+    if nu < 1 or not influence.determined or np.mean(known) < _LEAST_KNOWN:
+        return None
+    square = len(shape) * rms[known] ** 2 / nu
+    low, span = float(influence.angle.min()), float(np.ptp(influence.angle))
+    place = (influence.angle - low) / (span if span > 0.0 else 1.0)
+    bins = np.minimum((_ANGLE_BINS * place).astype(np.int64), _ANGLE_BINS - 1)
+    number = np.bincount(bins[known], minlength=_ANGLE_BINS)
+    mean = np.bincount(bins[known], square, _ANGLE_BINS) / np.maximum(number, 1)
+    whole = float(square.mean())
+    chance = whole * np.sqrt(2.0 / (nu * np.maximum(number, 1)))
+    used = number > 0
+    alike = bool((np.abs(mean - whole) <= _ALIKE * chance)[used].all())
+    lowest = whole if alike else float(mean[used].min())
+    psi = _of_rigid_coordinates(influence, shape, segment)
+    covariance = lowest * np.tensordot(psi, psi, axes=((0, 2), (0, 2)))
+    if alike:
+        return Mixture.of_one(covariance, float(nu * known.sum()))
+    pattern = np.sqrt(np.maximum(mean - lowest, 0.0))[bins]
+    moved = np.tensordot(pattern, psi, axes=(0, 0))
+    return Mixture.of_one(covariance + moved @ moved.T, float(nu))
+
+
+class _Stationary:
+    """Spectrum of the non-rigid coordinates, in bands or flat, each weighed by its BIC."""
+
+    def __init__(self, z: Float, angle: Float, *, own_shape: bool) -> None:
+        count, nu = z.shape
+        square = np.sum(cosine_transform(z) ** 2, axis=1)
+        self._starts = band_starts(angle)
+        self._number = nu * np.diff(np.append(self._starts, count)).astype(np.float64)
+        if own_shape:  # the mean is not there
+            self._number[0] = max(self._number[0] - nu, 1.0)
+        self._power = np.maximum(band_sums(square, self._starts) / self._number, np.finfo(np.float64).tiny)
+        total = self._number.sum()
+        mean = float(self._number @ self._power / total)
+        gain = 0.5 * (total * np.log(mean) - self._number @ np.log(self._power))
+        cost = 0.5 * (len(self._number) - 1) * np.log(total)
+        self.flat = float(1.0 / (1.0 + np.exp(np.clip(gain - cost, -700.0, 700.0))))
+        bands = np.repeat(self._power, np.diff(np.append(self._starts, count)))
+        self.power = self.flat * mean + (1.0 - self.flat) * bands
+
+    def covariance(self, psi: Float, influence: Influence) -> tuple[Float, float]:
+        """Covariance (P, P) under noise of this spectrum, and its degrees of freedom."""
+        series = cosine_transform(psi)
+        weighted = self.power[:, None, None] * series
+        covariance = np.tensordot(weighted, series, axes=((0, 2), (0, 2)))
+        if self.flat > 0.5:
+            return covariance, np.inf
+        part = np.stack([np.tensordot(s, s, axes=((0, 2), (0, 2))) for s in np.split(series, self._starts[1:])])
+        share = influence.size(part) * self._power
+        return covariance, float(share.sum() ** 2 / np.sum(share**2 / self._number))
+
+
+def _worth_of_model(z: Float, angle: Float, model: _Stationary, *, own_shape: bool) -> tuple[Float, Float]:
+    """Degrees of freedom that the stationary model may be worth, and the probability of each.
+
+    Noise that goes with the angle has more on the angle's own functions than a stationary noise could: their covariance
+    is drawn from an inverse Wishart distribution about the model's, the tighter the more the model is worth.
+    """
+    nu = z.shape[1]
+    about = angle - angle.mean()
+    waves = np.stack([np.ones(len(angle)), np.cos(about), np.sin(about), about], axis=1)
+    if own_shape:
+        waves = waves[:, 1:] - waves[:, 1:].mean(axis=0)
+    basis, size, _ = np.linalg.svd(waves, full_matrices=False)
+    basis = basis[:, size > _RANK * size[0]][:, :3]
+    rank = basis.shape[1]
+    series = cosine_transform(basis)
+    expected = series.T @ (model.power[:, None] * series)
+    relative = np.linalg.solve(np.linalg.cholesky(expected), basis.T @ z)
+    square = relative @ relative.T
+    worth = _WORTH if model.flat >= 0.5 else _WORTH[_WORTH <= _WORTH_IF_COLORED]
+    prior = worth + rank + 1.0
+    evidence = np.array(
+        [
+            multigammaln(0.5 * (m + nu), rank)
+            - multigammaln(0.5 * m, rank)
+            + 0.5 * m * rank * np.log(v)
+            - 0.5 * (m + nu) * np.linalg.slogdet(v * np.eye(rank) + square)[1]
+            for m, v in zip(prior, worth, strict=True)
+        ]
+    )
+    weight = np.exp(evidence - evidence.max())
+    return worth, weight / weight.sum()
+
+
+def _of_rigid_coordinates(influence: Influence, shape: Float, segment: Segment) -> Float:
+    """Influence (F, P, 6) of a cluster's six rigid coordinates, each as large as a coordinate of a marker."""
+    root = np.linalg.cholesky(covariance_from_markers(shape, 1.0))
+    return (influence.of_distal if segment == "distal" else influence.of_proximal) @ root
+
+
+def _rigid_motions(shape: Float) -> Float:
+    """Motions (3 M, 6) of a cluster's markers by a small twist: ``[-[x_k]x, 1]``."""
+    turned = np.swapaxes(np.cross(np.eye(3)[None], shape[:, None, :]), 1, 2)  # column a: e_a cross x_k
+    shifted = np.broadcast_to(np.eye(3), turned.shape)
+    return np.concatenate([turned, shifted], axis=2).reshape(-1, 6)
+
+
+def _without_holes(nonrigid: Float) -> Float | None:
+    """Frames whose markers are not all seen, from their neighbors in time."""
+    known = np.isfinite(nonrigid).all(axis=1)
+    if nonrigid.shape[1] < 1 or np.mean(known) < _LEAST_KNOWN:
+        return None
+    if known.all():
+        return nonrigid
+    rows = np.arange(len(nonrigid))
+    seen = np.flatnonzero(known)
+    return np.stack([np.interp(rows, seen, column) for column in nonrigid[seen].T], axis=1)

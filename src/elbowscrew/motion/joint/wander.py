@@ -1,0 +1,146 @@
+"""Whether a hinge's axis wanders over the flexion, by how much, and where it is on the mean."""
+
+from __future__ import annotations
+
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowscrew.geometry import dual_quaternion as dq
+from elbowscrew.geometry.twist import adjoint
+from elbowscrew.motion.joint.influence import Influence, with_columns
+from elbowscrew.motion.joint.interval import SURE, ClusterMotion, JointInterval, SkinMotion, joint_interval
+from elbowscrew.motion.joint.joint_fit import LineFit
+
+Float = NDArray[np.float64]
+
+_GRID: Final = 400
+_TILT_SHIFT: Final = (0, 1, 3, 4)
+
+
+class Wander(NamedTuple):
+    """A line that moves in proportion to the angle, from one end of the range to the other.
+
+    Attributes
+    ----------
+    turn, shift : float
+        How far the axis turns (rad) and moves across itself at the line's origin (m) over the whole range.
+    turn_radius, shift_radius : float
+        That hold the errors of both with 95 %.
+    unseen_turn, unseen_shift : float
+        A wander up to these would not be told from noise.
+    significant : bool
+        Whether one of the two is beyond its 99.73 % radius.
+    step : ndarray, shape (P + 4,)
+        From the hinge: its own numbers, then tilts x, y and shifts x, y of half the wander in the frame of the line.
+    interval : JointInterval
+        Of the same numbers: with the first four the mean axis', and not of the hinge, where the axis wanders.
+    middle, half_range : float
+        Of the angle, radians: the line is the mean one in the middle.
+    """
+
+    turn: float
+    shift: float
+    turn_radius: float
+    shift_radius: float
+    unseen_turn: float
+    unseen_shift: float
+    significant: bool
+    step: Float
+    interval: JointInterval
+    middle: float
+    half_range: float
+
+    def proximal_line_pose(self, proximal: Float, angle: Float) -> Float:
+        """Pose (..., 8) whose z axis is the line in the proximal body at angles (...), radians.
+
+        Parameters
+        ----------
+        proximal : ndarray, shape (8,)
+            The hinge's own, A of `LineFit`.
+        angle : ndarray, shape (...)
+        """
+        place = (np.asarray(angle) - self.middle) / self.half_range
+        moved = np.zeros((*place.shape, 6))
+        moved[..., _TILT_SHIFT] = self.step[:4] + place[..., None] * self.step[-4:]
+        return dq.normalize(dq.multiply(proximal, dq.exp(0.5 * moved)))
+
+    def error_rows(self, angle: Float) -> Float:
+        """Rows (..., 4, P + 4) that make the error of tilt and shift at angles (...) of that of the numbers."""
+        place = (np.asarray(angle) - self.middle) / self.half_range
+        rows = np.zeros((*place.shape, 4, len(self.step)))
+        rows[..., range(4), range(4)] = 1.0
+        rows[..., range(4), range(len(self.step) - 4, len(self.step))] = place[..., None]
+        return rows
+
+
+def wander_of_axis(
+    fit: LineFit,
+    influence: Influence,
+    clusters: tuple[ClusterMotion, ...],
+    *,
+    skin: tuple[SkinMotion, ...] = (),
+    reference_angle: float | None = None,
+    noise_known: bool = True,
+) -> Wander | None:
+    """Test for a line that wanders with the angle, in one linear step from the fit.
+
+    Parameters
+    ----------
+    fit : LineFit
+    influence : Influence
+        `influence_of_fit`.
+    clusters, skin, reference_angle, noise_known
+        As in `joint_interval`.
+
+    Returns
+    -------
+    Wander or None
+        None where the frames do not determine it.
+
+    References
+    ----------
+    A motion about the lines ``b(theta)`` adds ``integral of b dB``, B the hinge's own columns of tilt and shift; so a
+    constant b is the hinge's step, and the numbers are those of the line and not of the poses.
+    """
+    low, high = float(fit.angle.min()), float(fit.angle.max())
+    if not high > low or not influence.determined:
+        return None
+    grid = np.linspace(low, high, _GRID)
+    columns = _columns(grid, fit.pitch)
+    change = np.diff(columns, axis=0)
+    place = np.linspace(-1.0, 1.0, _GRID)
+    wave = 0.5 * (place[1:] + place[:-1])
+    summed = np.concatenate([np.zeros((1, 6, 4)), np.cumsum(wave[:, None, None] * change, axis=0)])
+    summed = (summed - summed.mean(axis=0)).reshape(_GRID, -1)
+    extra = np.stack([np.interp(fit.angle, grid, column) for column in summed.T], axis=1).reshape(-1, 6, 4)
+    more, step = with_columns(influence, adjoint(fit.distal) @ extra)
+    if not more.determined:
+        return None
+    interval = joint_interval(more, clusters, skin=skin, reference_angle=reference_angle, noise_known=noise_known)
+    own = np.eye(len(step))
+    tilt, shift = own[-4:-2], own[-2:]
+    sizes = [float(np.linalg.norm(rows @ step)) for rows in (tilt, shift)]
+    sure = [interval.radius(rows, SURE) for rows in (tilt, shift)]
+    usual = [interval.radius(rows) for rows in (tilt, shift)]
+    return Wander(
+        turn=2.0 * sizes[0],
+        shift=2.0 * sizes[1],
+        turn_radius=2.0 * usual[0],
+        shift_radius=2.0 * usual[1],
+        unseen_turn=2.0 * sure[0],
+        unseen_shift=2.0 * sure[1],
+        significant=any(size > limit for size, limit in zip(sizes, sure, strict=True)),
+        step=step,
+        interval=interval,
+        middle=0.5 * (low + high),
+        half_range=0.5 * (high - low),
+    )
+
+
+def _columns(angle: Float, pitch: float) -> Float:
+    """Tilts and shifts of the proximal line, as twists (..., 6, 4) on the distal side of the line at these angles."""
+    half = np.zeros((len(angle), 6))
+    half[:, 2], half[:, 5] = 0.5 * angle, 0.5 * pitch * angle
+    return adjoint(dq.conjugate(dq.exp(half)))[:, :, list(_TILT_SHIFT)]

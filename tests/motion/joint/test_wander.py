@@ -1,0 +1,72 @@
+"""Wander of a hinge's axis: its size, its place, and no wander where there is none."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from cluster_noise import ROWS, Hinge, Noise, fitted, line_errors, seen, skin, wander, wandering, white
+from trials import LINE
+
+from elbowscrew.motion.joint.influence import Influence
+from elbowscrew.motion.joint.interval import joint_interval
+from elbowscrew.motion.joint.joint_fit import LineFit
+from elbowscrew.motion.joint.wander import Wander, wander_of_axis
+
+
+def found(hinge: Hinge, noise: Noise, rng: np.random.Generator) -> tuple[LineFit, Influence, Wander]:
+    case = seen(hinge, noise(hinge, rng))
+    fit, influence = fitted(case)
+    result = wander_of_axis(fit, influence, case.clusters)
+    assert result is not None
+    return fit, influence, result
+
+
+@pytest.mark.parametrize("top_deg", [60.0, 140.0])
+@pytest.mark.parametrize("turn_deg", [1.0, 2.0, 4.0, 8.0])
+def test_the_size_of_the_wander_is_found(top_deg: float, turn_deg: float) -> None:
+    rng = np.random.default_rng(1)
+    hinge = wandering(top_deg, np.radians(turn_deg), 0.0)
+    all_found = [found(hinge, white(1e-4), rng)[2] for _ in range(12)]
+    assert np.mean([np.degrees(w.turn) for w in all_found]) == pytest.approx(turn_deg, abs=0.13 + 0.02 * turn_deg)
+    assert all(w.significant for w in all_found)
+
+
+def test_the_mean_axis_is_that_of_the_middle_and_the_hinge_is_not() -> None:
+    rng = np.random.default_rng(2)
+    hinge = wandering(140.0, np.radians(4.0), 3e-3)
+    held = hinge_held = 0
+    trials = 25
+    rows = np.eye(13)
+    for _ in range(trials):
+        fit, influence, result = found(hinge, white(), rng)
+        middle = line_errors(result.proximal_line_pose(fit.proximal, np.array(result.middle)), LINE)
+        held += middle[0] <= result.interval.radius(rows[:2]) and middle[1] <= result.interval.radius(rows[2:4])
+        white_only = joint_interval(influence, ()).residuals
+        assert white_only is not None
+        hinge_held += line_errors(fit.proximal, LINE)[0] <= white_only.white.of(ROWS[0]).radius(0.95)
+    assert held >= 20
+    assert hinge_held == 0
+
+
+def test_the_axis_is_where_it_is_at_every_angle() -> None:
+    hinge = wandering(120.0, np.radians(6.0), 0.0)
+    fit, _, result = found(hinge, white(2e-5), np.random.default_rng(3))
+    across = np.cross(LINE[:3], [0.0, 0.0, 1.0])
+    across /= np.linalg.norm(across)
+    for share in (0.0, 0.25, 1.0):
+        angle = result.middle + (2.0 * share - 1.0) * result.half_range
+        turn = np.radians(6.0) * (share - 0.5)
+        h = np.cos(turn) * LINE[:3] + np.sin(turn) * np.cross(across, LINE[:3])
+        # The hinge's angle grows with the joint's, or against it.
+        errors = [
+            line_errors(result.proximal_line_pose(fit.proximal, np.array(a)), np.concatenate([h, LINE[3:]]))[0]
+            for a in (angle, 2.0 * result.middle - angle)
+        ]
+        assert np.degrees(min(errors)) < 0.15
+
+
+@pytest.mark.parametrize("noise", [white(), wander(2e-3), skin(5e-3)], ids=["white", "slow", "skin"])
+def test_noise_is_no_wander(noise: Noise) -> None:
+    rng = np.random.default_rng(4)
+    alarms = [found(Hinge(), noise, rng)[2].significant for _ in range(30)]
+    assert np.mean(alarms) <= 0.07
