@@ -187,6 +187,10 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
     signed: Literal["auto", "yes", "no"] = _setting(
         "auto", "Give theta a sense: where one axis dominates the motion, always, or never.", MOTION
     )
+    skin_motion: tuple[float, ...] | None = _setting(
+        None, "How far a cluster moves as a whole on its bone with the flexion: mm, or mm and degrees.", MOTION,
+        metavar="MM[,DEG]", shown="not stated", min_length=1, max_length=2,
+    )  # fmt: skip
     robust: bool = _setting(False, "Weigh outliers down in the joint's axis.", MOTION)
     cycle_swing_deg: float | None = _setting(
         None, "Least swing between the turns of a cycle, in degrees.", MOTION,
@@ -320,6 +324,14 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
     def _cycle_times(cls, value: object) -> object:
         """Take the name of a file with the times, too."""
         return _read_cycles(Path(value)) if isinstance(value, str | Path) else value
+
+    @field_validator("skin_motion")
+    @classmethod
+    def _check_skin(cls, value: tuple[float, ...] | None) -> tuple[float, ...] | None:
+        if value is not None and not all(0.0 <= part <= 90.0 for part in value):
+            msg = f"expected millimeters, and degrees if any, from 0 to 90, found {', '.join(f'{x:g}' for x in value)}"
+            raise ValueError(msg)
+        return value
 
     @model_validator(mode="after")
     def _check_cycles(self) -> Settings:

@@ -267,10 +267,12 @@ def _joint_axis(motion: Mapping[str, Any]) -> str:
     model = axis["model"].replace("_", "-")
     direction, point = _vector(axis["direction"], 4), _vector(axis["point_mm"], 1)
     if axis["axis_cone95_deg"] is None:
-        return f"direction ({direction}), point ({point}) mm ({model}; interval not known)"
+        return f"direction ({direction}), point ({point}) mm ({model}; undetermined: no interval can be given)"
     return (
         f"direction ({direction}) within {axis['axis_cone95_deg']:.2g} deg, point ({point}) within "
-        f"{axis['point_radius95_mm']:.2g} mm ({model}, 95 %)"
+        f"{axis['point_radius95_mm']:.2g} mm ({model}, 95 %, for the clusters' frames, {axis['interval_method']}; "
+        f"each degree that a cluster turns on its bone with the motion turns this axis by up to "
+        f"{axis['sensitivity_deg_per_deg']:.2g} deg)"
     )
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Final, Literal
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,8 +12,6 @@ from numpy.typing import NDArray
 from elbowscrew.model.brief import Brief
 
 Float = NDArray[np.float64]
-
-_SURE: Final = 3.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -68,10 +66,17 @@ class FittedJoint(Brief):
     axis_sd, point_sd : float
         Of the line as expressed: direction (rad) and place at the point nearest the forearm (m), both components.
     axis_cone, point_radius : float
-        Half-angle (rad) and radius (m) that hold 95 %; as the standard deviations, NaN where they are not known: the
-        frames are too few to tell, or do not determine the line.
+        Half-angle (rad) and radius (m) that hold 95 % for the clusters' frames, the radius about the line's point
+        nearest the origin; as the standard deviations, NaN where they are not known: the frames are too few to tell,
+        or leave the direction more than a right angle undetermined.
+    decided_by : {"A", "B", "J"} or None
+        What the cone stands on: the markers' own motion, the residuals' spectrum, or blocks of the motion.
     pitch, pitch_sd : float
         Slide for each radian (m/rad); 0 for a hinge.
+    pitch_sure : float
+        Limit (m/rad) that a pitch of 0 exceeds in 0.27 % of the trials; 0 for a hinge.
+    sensitivity : float
+        Degrees that the axis turns for each degree that a cluster turns on its bone with the flexion.
     residual_rotation, residual_translation : float
         RMS over the frames of what the model leaves: rotation across the axis (rad), and translation at the axis (m).
     noise_ratio : float
@@ -90,8 +95,11 @@ class FittedJoint(Brief):
     point_sd: float
     axis_cone: float
     point_radius: float
+    decided_by: Literal["A", "B", "J"] | None
     pitch: float
     pitch_sd: float
+    pitch_sure: float
+    sensitivity: float
     residual_rotation: float
     residual_translation: float
     noise_ratio: float
@@ -129,10 +137,10 @@ class JointAxis(Brief):
 
     @property
     def preferred(self) -> Literal["hinge", "screw_hinge"] | None:
-        """The fit to believe: the screw-hinge where its pitch is over three standard deviations, else the hinge."""
+        """The fit to believe: the screw-hinge where its pitch is beyond what a hinge shows, else the hinge."""
         if self.hinge is None or self.screw_hinge is None:
             return None
-        pitched = abs(self.screw_hinge.pitch) > _SURE * self.screw_hinge.pitch_sd
+        pitched = abs(self.screw_hinge.pitch) > self.screw_hinge.pitch_sure
         return "screw_hinge" if pitched else "hinge"
 
     @property

@@ -145,13 +145,19 @@ def _joint_axis(trial: FinishedTrial) -> Iterator[str]:
         yield (
             f"The joint axis was fitted to the relative poses of {fit['frames']} frames by maximum likelihood as a "
             f"hinge and as a screw-hinge{robust}; the {preferred.replace('_', '-')} is reported, as the pitch of the "
-            f"screw-hinge {why} three of its standard deviations."
+            f"screw-hinge {why} what a hinge shows by chance (99.73 %)."
         )
         if fit["axis_cone95_deg"] is not None:
             yield (
-                "Its 95 % cone and radius account for the size and the autocorrelation of the residuals: "
-                f"{fit['axis_cone95_deg']:.2g}° and {fit['point_radius95_mm']:.2g} mm."
+                f"Its 95 % cone and radius, {fit['axis_cone95_deg']:.2g}° and {fit['point_radius95_mm']:.2g} mm, are "
+                f"those of the marker clusters' frames, {fit['interval_method']}. They hold if the clusters move on the "
+                "bone no more as a whole than their markers among themselves; each degree that a cluster turns with the motion "
+                f"turns the axis by up to {fit['sensitivity_deg_per_deg']:.2g}°."
             )
+            if trial.settings.skin_motion is not None:
+                stated = " mm and ".join(f"{part:g}" for part in trial.settings.skin_motion)
+                unit = "°" if len(trial.settings.skin_motion) > 1 else " mm"
+                yield f"Motion of the clusters as a whole on the bone of {stated}{unit} was stated and is included."
     yield (
         "The dispersion of the helical axes is their angle to the plain mean of their directions "
         f"(median {joint['dispersion']['direction_median_deg']:.2g}°)."

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -52,6 +52,14 @@ def dispersion_summary(analysis: Analysis) -> dict[str, float | None]:
     }
 
 
+INTERVAL_METHODS: Final = {
+    "A": "from the markers' motion among themselves",
+    "B": "from the residuals of the joint's model and how they go together in time",
+    "J": "from blocks of the motion",
+}
+"""What an interval stands on."""
+
+
 def _fitted(fit: FittedJoint | None) -> dict[str, Any] | None:
     if fit is None:
         return None
@@ -60,6 +68,7 @@ def _fitted(fit: FittedJoint | None) -> dict[str, Any] | None:
         "axis_cone95_deg": float(np.degrees(fit.axis_cone)),
         "point_sd_mm": 1000.0 * fit.point_sd,
         "point_radius95_mm": 1000.0 * fit.point_radius,
+        "sensitivity_deg_per_deg": fit.sensitivity,
         "pitch_mm_per_rad": 1000.0 * fit.pitch,
         "pitch_sd_mm_per_rad": 1000.0 * fit.pitch_sd,
         "residual_rotation_deg": float(np.degrees(fit.residual_rotation)),
@@ -68,7 +77,13 @@ def _fitted(fit: FittedJoint | None) -> dict[str, Any] | None:
         "frames_that_count_as_one": fit.correlation,
         "outlier_share": float(np.mean(fit.weight < 0.5)),
     }
-    return {**_line(fit.line), "frames": int(fit.used.size), **{name: known(value) for name, value in figures.items()}}
+    return {
+        **_line(fit.line),
+        "frames": int(fit.used.size),
+        **{name: known(value) for name, value in figures.items()},
+        "decided_by": fit.decided_by,
+        "interval_method": None if fit.decided_by is None else INTERVAL_METHODS[fit.decided_by],
+    }
 
 
 def _line(line: LineEstimate) -> dict[str, list[float]]:

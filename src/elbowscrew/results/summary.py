@@ -20,6 +20,7 @@ from elbowscrew.model.anatomy import LANDMARKS
 from elbowscrew.motion.tracking.quality import body_quality, check_bodies, clock_quality
 from elbowscrew.motion.tracking.selection import choose_bodies
 from elbowscrew.reading.options import ASK_FOR_MARKERS
+from elbowscrew.results.joint_summary import INTERVAL_METHODS
 from elbowscrew.results.statistics import known, rms, statistic
 from elbowscrew.settings import Settings, options_from_settings
 
@@ -258,6 +259,8 @@ def _joint_axis(axis: JointAxis) -> dict[str, Any] | None:
         "axis_cone95_deg": known(np.degrees(axis.best.axis_cone)),
         "point_radius95_mm": known(1000.0 * axis.best.point_radius),
         "pitch_mm_per_rad": 1000.0 * axis.best.pitch,
+        "interval_method": None if axis.best.decided_by is None else INTERVAL_METHODS[axis.best.decided_by],
+        "sensitivity_deg_per_deg": known(axis.best.sensitivity),
     }
 
 

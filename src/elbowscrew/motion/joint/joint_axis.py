@@ -2,17 +2,28 @@
 
 from __future__ import annotations
 
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from elbowscrew.choices import ExpressIn
 from elbowscrew.geometry import point_nearest_origin
-from elbowscrew.geometry.dual_quaternion import conjugate, pose_from_dual_quat, transform_lines
+from elbowscrew.geometry.dual_quaternion import conjugate, multiply, pose_from_dual_quat, transform_lines
 from elbowscrew.geometry.sensitivity import confidence_radius
 from elbowscrew.model import FittedJoint, JointAxis, JointMotion, LineEstimate, PoseNoise
+from elbowscrew.motion.joint.influence import influence_of_fit
+from elbowscrew.motion.joint.interval import (
+    SURE,
+    ClusterMotion,
+    JointInterval,
+    SkinMotion,
+    joint_interval,
+    pose_radii,
+    skin_sensitivity,
+)
 from elbowscrew.motion.joint.joint_fit import LineFit, fit_joint, sara_lines
+from elbowscrew.motion.joint.nonrigid import Segment
 from elbowscrew.motion.screws.pose_noise import JointNoise
 from elbowscrew.motion.screws.uncertainty import joint_covariance
 
@@ -20,6 +31,8 @@ Float = NDArray[np.float64]
 
 _MOST_FRAMES: Final = 20_000
 _LARGEST_UNEXPLAINED: Final = 0.25
+_UNDETERMINED: Final = 0.5 * np.pi
+_NORMAL_95: Final = 1.959964
 _Z_AXIS: Final = np.array([0.0, 0.0, 1.0, 0.0, 0.0, 0.0])
 # Without a stated noise: a common cluster's, whose rotation and translation only have to be weighed against each other.
 _COMMON_NOISE: Final = np.diag([6e-6] * 3 + [1e-8] * 3)
@@ -34,6 +47,8 @@ def estimate_joint_axis(
     *,
     express_in: ExpressIn,
     robust: bool,
+    markers: tuple[BodyMarkers, ...] = (),
+    skin: tuple[SkinMotion, ...] = (),
 ) -> JointAxis:
     """Estimate the joint's axis from all measured frames.
 
@@ -50,6 +65,10 @@ def estimate_joint_axis(
     express_in : {"distal", "proximal", "lab"}
     robust : bool
         Weigh outliers down in the fits.
+    markers : tuple of BodyMarkers
+        Of every body that moves; empty if one of them has none.
+    skin : tuple of SkinMotion
+        How the clusters are stated to move as a whole on their bones.
     """
     rows = np.flatnonzero(joint.measured)
     rows = rows[np.linspace(0, rows.size - 1, min(rows.size, _MOST_FRAMES)).astype(np.int64)]
@@ -66,10 +85,25 @@ def estimate_joint_axis(
     unexplained = _rms(hinge.residual[:, :2], hinge.weight) / spread if spread > 0.0 else np.inf
     single = bool(unexplained <= _LARGEST_UNEXPLAINED)
     told = noise.known is not None
+    clusters = tuple(ClusterMotion(segment=one.segment, shape=one.shape, rms=one.rms[rows]) for one in markers)
+    intervals = {
+        screw: joint_interval(
+            influence_of_fit(fit, poses, covariance),
+            clusters,
+            skin=skin,
+            reference_angle=_reference_angle(fit, rows, joint),
+            noise_known=told,
+        )
+        if single
+        else None
+        for screw, fit in fits.items()
+    }
     proximal_line, distal_line = sara_lines(poses, angle[rows])
     fitted = {
-        screw: _fitted_joint(fit, joint, rows, express_in, start, noise_known=told) if single else None
-        for screw, fit in fits.items()
+        screw: None
+        if interval is None
+        else _fitted_joint(fits[screw], interval, joint, rows, express_in, start, noise, noise_known=told)
+        for screw, interval in intervals.items()
     }
     return JointAxis(
         single=single,
@@ -82,25 +116,67 @@ def estimate_joint_axis(
     )
 
 
+class BodyMarkers(NamedTuple):
+    """What a body's markers tell of their own motion: the body, their places (M, 3) in it, and their RMS (N,)."""
+
+    segment: Segment
+    shape: Float
+    rms: Float
+
+
+def _reference_angle(fit: LineFit, rows: NDArray[np.int64], joint: JointMotion) -> float:
+    return float(fit.angle[int(np.argmin(np.abs(rows - joint.reference_row)))])
+
+
 def _fitted_joint(
-    fit: LineFit, joint: JointMotion, rows: NDArray[np.int64], express_in: ExpressIn, start: Float, *, noise_known: bool
+    fit: LineFit,
+    interval: JointInterval,
+    joint: JointMotion,
+    rows: NDArray[np.int64],
+    express_in: ExpressIn,
+    start: Float,
+    noise: JointNoise,
+    *,
+    noise_known: bool,
 ) -> FittedJoint:
     proximal, distal = transform_lines(fit.proximal, _Z_AXIS), transform_lines(fit.distal, _Z_AXIS)
     if proximal[:3] @ start[:3] < 0.0:
         proximal, distal = -proximal, -distal
     covariance = fit.covariance(noise_known=noise_known)
     first = 4 if express_in == "distal" else 0
-    tilt, shift = (covariance[k : k + 2, k : k + 2] for k in (first, first + 2))
+    line = _estimate(proximal, distal, joint, express_in)
+    shared = np.eye(len(covariance))
+    tilt, shift = shared[first : first + 2], shared[first + 2 : first + 4]
+    # A tilt (a, b) moves the line by (b, -a) d at a distance d along it from the fit's origin.
+    frame = {
+        "distal": fit.distal,
+        "proximal": fit.proximal,
+        "lab": multiply(joint.dual_quat_lab_proximal, fit.proximal),
+    }[express_in]
+    along = (line.point - pose_from_dual_quat(frame)[1]) @ transform_lines(frame, _Z_AXIS)[:3]
+    place = shift + along * np.stack([tilt[1], -tilt[0]])
+    known = bool(np.isfinite(covariance).all())
+    cone = interval.radius(tilt) if known else float("nan")
+    radius = interval.radius(place) if known else float("nan")
+    if express_in == "lab" and noise.proximal is not None:
+        carried = pose_radii(noise.proximal.covariance, line.direction_proximal, line.point_proximal)
+        cone, radius = float(np.hypot(cone, carried[0])), float(np.hypot(radius, carried[1]))
+    if not cone < _UNDETERMINED:
+        cone = radius = float("nan")
     pitched = len(covariance) > 9
+    pitch = shared[9:]
     return FittedJoint(
-        line=_estimate(proximal, distal, joint, express_in),
+        line=line,
         covariance=covariance,
-        axis_sd=float(np.sqrt(np.trace(tilt))),
-        point_sd=float(np.sqrt(np.trace(shift))),
-        axis_cone=float(confidence_radius(tilt)),
-        point_radius=float(confidence_radius(shift)),
+        axis_sd=cone * _sd_of_radius(tilt @ covariance @ tilt.T),
+        point_sd=radius * _sd_of_radius(place @ covariance @ place.T),
+        axis_cone=cone,
+        point_radius=radius,
+        decided_by=interval.decided_by(tilt) if np.isfinite(cone) else None,
         pitch=fit.pitch,
-        pitch_sd=float(np.sqrt(covariance[9, 9])) if pitched else 0.0,
+        pitch_sd=interval.radius(pitch) / _NORMAL_95 if pitched and known else 0.0 if not pitched else float("nan"),
+        pitch_sure=interval.radius(pitch, SURE) if pitched and known else 0.0 if not pitched else float("nan"),
+        sensitivity=skin_sensitivity(fit.angle, fit.weight),
         residual_rotation=_rms(fit.residual[:, :2], fit.weight),
         residual_translation=_rms(fit.residual[:, 3:], fit.weight),
         noise_ratio=fit.noise_ratio if noise_known else float("nan"),
@@ -108,6 +184,12 @@ def _fitted_joint(
         used=rows,
         weight=fit.weight,
     )
+
+
+def _sd_of_radius(covariance: Float) -> float:
+    """Standard deviation of both components together, for each unit of the radius that holds 95 %."""
+    radius = float(confidence_radius(covariance))
+    return float(np.sqrt(np.trace(covariance))) / radius if radius > 0.0 else 0.0
 
 
 def _estimate(proximal: Float, distal: Float, joint: JointMotion, express_in: ExpressIn) -> LineEstimate:

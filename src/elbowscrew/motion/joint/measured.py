@@ -6,13 +6,16 @@ from typing import Final
 
 import numpy as np
 
-from elbowscrew.model import JointAxis, MeanAxis, QualityWarning
-from elbowscrew.motion.joint.joint_axis import distal_line, estimate_joint_axis
+from elbowscrew.model import JointAxis, MeanAxis, QualityWarning, RigidBody
+from elbowscrew.motion.joint.interval import SkinMotion
+from elbowscrew.motion.joint.joint_axis import BodyMarkers, distal_line, estimate_joint_axis
+from elbowscrew.motion.joint.nonrigid import Segment
 from elbowscrew.motion.screws.measurement import Measurement
 from elbowscrew.motion.screws.pose_noise import STILL_STRETCH
 from elbowscrew.settings import Settings
 
 _LARGE_NOISE_RATIO: Final = 2.0
+_FEWEST_MARKERS: Final = 3
 
 
 def measured_joint_axis(measured: Measurement, mean: MeanAxis, settings: Settings) -> JointAxis:
@@ -25,7 +28,37 @@ def measured_joint_axis(measured: Measurement, mean: MeanAxis, settings: Setting
         measured.noise_gain,
         express_in=measured.express_in,
         robust=settings.robust,
+        markers=_markers(measured),
+        skin=_skin(measured, settings),
     )
+
+
+def _markers(measured: Measurement) -> tuple[BodyMarkers, ...]:
+    """Markers of the bodies that move; none if one of them does not tell of its markers."""
+    found = []
+    for segment, body in _moving(measured):
+        if body.marker_offsets is None or body.marker_residual is None or len(body.marker_offsets) < _FEWEST_MARKERS:
+            return ()
+        found.append(BodyMarkers(segment, body.marker_offsets, body.marker_residual))
+    return tuple(found)
+
+
+def _skin(measured: Measurement, settings: Settings) -> tuple[SkinMotion, ...]:
+    """Motion of the clusters as a whole as it is stated, the same for each body that moves."""
+    if settings.skin_motion is None:
+        return ()
+    shift, turn = settings.skin_motion[0], settings.skin_motion[1] if len(settings.skin_motion) > 1 else 0.0
+    return tuple(
+        SkinMotion(segment=segment, shift=1e-3 * shift, turn=float(np.radians(turn)))
+        for segment, _ in _moving(measured)
+    )
+
+
+def _moving(measured: Measurement) -> list[tuple[Segment, RigidBody]]:
+    found: list[tuple[Segment, RigidBody]] = [("distal", measured.distal)]
+    if measured.proximal is not None and measured.noise.proximal_moves:
+        found.insert(0, ("proximal", measured.proximal))
+    return found
 
 
 def joint_axis_warnings(joint_axis: JointAxis, measured: Measurement) -> tuple[QualityWarning, ...]:
