@@ -139,7 +139,7 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
     )
     express_in: Literal["distal", "proximal", "lab", "arm", "forearm"] | str = _setting(
         "distal",
-        "Frame the screw is written in: distal, proximal, lab, or a segment's word, as shank.",
+        "Frame the screw is written in: distal, proximal, lab, or a segment's own word.",
         MOTION,
         metavar="FRAME",
     )
@@ -188,7 +188,7 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
         "auto", "Give theta a sense: where one axis dominates the motion, always, or never.", MOTION
     )
     skin_motion: tuple[float, ...] | None = _setting(
-        None, "How far a cluster moves as a whole on its bone with the flexion: mm, or mm and degrees.", MOTION,
+        None, "How far a cluster moves as a whole on its bone with the motion: mm, or mm and degrees.", MOTION,
         metavar="MM[,DEG]", shown="not stated", min_length=1, max_length=2,
     )  # fmt: skip
     robust: bool = _setting(False, "Weigh outliers down in the joint's axis.", MOTION)

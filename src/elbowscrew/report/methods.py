@@ -150,9 +150,9 @@ def _joint_axis(trial: FinishedTrial) -> Iterator[str]:
         if fit["axis_cone95_deg"] is not None:
             yield (
                 f"Its 95 % cone and radius, {fit['axis_cone95_deg']:.2g}° and {fit['point_radius95_mm']:.2g} mm, are "
-                f"those of the marker clusters' frames, {fit['interval_method']}. They hold if the clusters move on the "
-                "bone no more as a whole than their markers among themselves; each degree that a cluster turns with the motion "
-                f"turns the axis by up to {fit['sensitivity_deg_per_deg']:.2g}°."
+                f"those of the marker clusters' frames, {fit['interval_method']}. They hold if the clusters move on "
+                "the bone no more as a whole than their markers among themselves; each degree that a cluster turns "
+                f"with the motion turns the axis by up to {fit['sensitivity_deg_per_deg']:.2g}°."
             )
             if trial.settings.skin_motion is not None:
                 stated = " mm and ".join(f"{part:g}" for part in trial.settings.skin_motion)

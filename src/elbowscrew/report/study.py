@@ -17,7 +17,7 @@ from elbowscrew.errors import ResultError
 from elbowscrew.report.charts import min_max_rows
 from elbowscrew.results.read_back import UNREADABLE, check_version, is_result, read_summary
 from elbowscrew.results.table_reading import read_columns
-from elbowscrew.settings import Settings
+from elbowscrew.settings import settings_from_options
 
 Float = NDArray[np.float64]
 
@@ -132,7 +132,7 @@ def _trial(result: Path, place: str) -> StudyTrial:
     summary = read_summary(result / "summary.json")
     check_version(result, summary)
     try:
-        settings = Settings.model_validate(summary["settings"])
+        settings = settings_from_options(summary["settings"])
         columns = read_columns(result / "screw.csv", _THETA, settings.angle_unit, settings.length_unit)
     except UNREADABLE as error:
         msg = f"{result}: not a result of this version of the program: {' '.join(str(error).split())}"

@@ -20,6 +20,8 @@ SHORTEST_REST_S: Final = 0.25
 IN_DOUBT_SD: Final = 2.0
 """A rest is in doubt within so many standard deviations of the shortest."""
 _SLOW_SHARE: Final = 0.1
+_LEAST_HELD: Final = float(np.radians(2.0))
+_SURE: Final = 6.0
 
 
 class Strokes(NamedTuple):
@@ -138,7 +140,10 @@ def _with_stops(swings: Swings) -> tuple[Index, Float]:
     for first, last in zip(turns[:-1].tolist(), turns[1:].tolist(), strict=True):
         for begin, end in _slow_parts(smooth[first : last + 1], speed[first : last + 1]):
             level = float(np.median(smooth[first + begin : first + end + 1]))
-            if min(abs(level - values[-1]), abs(float(smooth[last]) - level)) >= swings.least:
+            # A joint that is held rests wherever that is; a short stop counts only well inside the stroke.
+            held = end - begin >= SHORTEST_REST_S * swings.rate_hz
+            least = min(swings.least, max(_LEAST_HELD, _SURE * swings.smooth_noise)) if held else swings.least
+            if min(abs(level - values[-1]), abs(float(smooth[last]) - level)) >= least:
                 places.append(first + (begin + end) // 2)
                 values.append(level)
         places.append(last)
