@@ -317,20 +317,42 @@ def settled(mechanism: Mechanism, poses: Poses, *, rounds: int = 3) -> Fit:
     )
 
 
-def influence(fit: Fit, poses: Poses) -> Float:
-    """How the shared numbers follow the error of each pose: ``Psi_t``, shape (F, P, 6).
+class Pieces(NamedTuple):
+    """A fit, linear in the errors of its poses: what a covariance under any noise is made of.
 
-    A pose error ``e_t`` (twist in the distal body's frame) moves the shared numbers by ``Psi_t e_t``, so that their
-    covariance under any errors is that of ``sum_t Psi_t e_t``. With `G`, `D` and `W` in the residuals' frame it is
-    ``I^-1 (G^T W - G^T W D (D^T W D)^-1 D^T W) Ad(F)^-1``.
+    A pose error ``e_t`` (twist in the distal body's frame) moves the shared numbers by ``I^-1 design^T whitener e_t``.
+
+    Attributes
+    ----------
+    whitened : ndarray, shape (F, 6 - k)
+        Residuals across the frame's own numbers, each of variance 1 under the stated noise.
+    design : ndarray, shape (F, 6 - k, P)
+        Their derivatives by the shared numbers.
+    whitener : ndarray, shape (F, 6 - k, 6)
+        Their derivatives by the error of the pose.
+    """
+
+    whitened: Float
+    design: Float
+    whitener: Float
+
+
+def influence_pieces(fit: Fit, poses: Poses) -> Pieces:
+    """Take a fit apart, frame by frame, weights of a robust fit included.
+
+    Parameters
+    ----------
+    fit : Fit
+    poses : Poses
+        Those of the fit.
     """
     linear = fit.mechanism.linear(poses.joint)
     whitener = poses.whitener @ adjoint(fit.mechanism.residual_frame)
-    own, shared = whitener @ linear.own, whitener @ linear.shared
-    shared = shared - own @ (fit.own_covariance @ (np.swapaxes(own, -1, -2) @ shared))
-    pull = np.swapaxes(shared, -1, -2) @ poses.whitener * fit.weight[:, None, None]
-    found: Float = np.linalg.pinv(fit.information, hermitian=True) @ pull
-    return found
+    k = linear.own.shape[2]
+    across = np.linalg.qr(whitener @ linear.own, mode="complete")[0][..., k:] if k else np.eye(6)
+    across = np.swapaxes(across, -1, -2) * np.sqrt(fit.weight)[:, None, None]
+    whitened = across @ (whitener @ linear.residual[..., None])
+    return Pieces(whitened[..., 0], across @ whitener @ linear.shared, across @ poses.whitener)
 
 
 def residual_twist(model: Float, joint: Float) -> Float:
