@@ -25,7 +25,8 @@ class TypeCandidate:
     residual_rotation, residual_translation : float
         RMS that it leaves, rad and m.
     heldout_variance : float
-        Whitened variance that it leaves of frames it was not fitted to, for each degree of freedom.
+        Whitened variance that it leaves of frames it was not fitted to, for each degree of freedom;
+        NaN where it did not matter.
     shared, per_frame : int
         Numbers that all frames share, and that each has of its own.
     valid : bool

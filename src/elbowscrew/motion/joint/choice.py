@@ -24,6 +24,8 @@ Float = NDArray[np.float64]
 Fitted = Literal["rigid", "hinge", "screw_hinge", "two_axes", "ball"]
 
 _FRAMES: Final = 200
+_ITERATIONS: Final = 25
+_TOLERANCE: Final = 1e-6
 _FOLDS: Final = 5
 _BLOCKS: Final = 4
 _FOLD_ITERATIONS: Final = 2
@@ -51,6 +53,9 @@ NAMES: Final[dict[str, str]] = {
 }
 
 
+_ORDER: Final[tuple[Fitted, ...]] = ("rigid", "hinge", "screw_hinge", "two_axes", "ball")
+
+
 class Choice(NamedTuple):
     """The type, how sure it is, why, and what all types that were tried leave."""
 
@@ -66,7 +71,6 @@ class _Tried:
     """A type fitted to the frames that decide."""
 
     fit: Fit
-    heldout: float
     valid: bool
     shared_sd: Float
 
@@ -93,13 +97,20 @@ class _Contest:
         self.noise_known = noise_known
         self.robust = robust
         self.tried: dict[Fitted, _Tried] = {}
+        self.known_heldout: dict[Fitted, float] = {}
 
     def __getitem__(self, name: Fitted) -> _Tried:
         if name not in self.tried:
             fit = fit_type(name, self.poses, robust=self.robust)
             deviation = np.sqrt(np.diag(shared_covariance(fit, noise_known=self.noise_known)))
-            self.tried[name] = _Tried(fit, self._heldout(fit), _is_valid(name, fit, deviation), deviation)
+            self.tried[name] = _Tried(fit, _is_valid(name, fit, deviation), deviation)
         return self.tried[name]
+
+    def heldout(self, name: Fitted) -> float:
+        """Held-out variance of a type, found when it is first asked for."""
+        if name not in self.known_heldout:
+            self.known_heldout[name] = self._heldout(self[name].fit)
+        return self.known_heldout[name]
 
     def _heldout(self, fit: Fit) -> float:
         """Whitened variance for each degree of freedom of frames that the shared numbers were not fitted to.
@@ -136,9 +147,7 @@ class _Contest:
         return bool(self["two_axes"].shared_sd[[0, 1, 8, 9]].max() <= _LARGEST_AXIS_SD)
 
 
-def choose_type(
-    poses: Poses, *, noise_known: bool, robust: bool = False, forced: Fitted | None = None
-) -> Choice:
+def choose_type(poses: Poses, *, noise_known: bool, robust: bool = False, forced: Fitted | None = None) -> Choice:
     """Tell which type of joint moved so.
 
     Parameters
@@ -161,15 +170,15 @@ def choose_type(
 
 def _explained(contest: _Contest) -> Choice | None:
     """Take the simplest type that the stated noise explains; None if it explains none."""
-    order: tuple[Fitted, ...] = ("rigid", "hinge", "screw_hinge", "two_axes", "ball")
     simpler: dict[Fitted, Fitted] = {"two_axes": "hinge", "ball": "two_axes"}
-    for name in order:
+    for name in _ORDER:
         tried = contest[name]
-        if not tried.valid or tried.heldout > _EXPLAINED:
+        # What leaves more of the frames it was fitted to leaves no less of others.
+        if not tried.valid or tried.fit.variance > _EXPLAINED or contest.heldout(name) > _EXPLAINED:
             continue
         if name in simpler:
-            less = contest[contest.one if name == "two_axes" else simpler[name]]
-            if less.heldout < _TIMES_BETTER * tried.heldout:
+            less = contest.one if name == "two_axes" else simpler[name]
+            if contest.heldout(less) < _TIMES_BETTER * contest.heldout(name):
                 continue
         found = contest.one if name == "hinge" else name
         approximate = name == "two_axes" and not contest.sure_axes()
@@ -182,14 +191,16 @@ def _best(contest: _Contest) -> Choice:
     """Take the simplest type that no richer one beats by enough."""
     one = contest.one
     rigid, single, two, ball = contest["rigid"], contest[one], contest["two_axes"], contest["ball"]
-    center = ball.heldout if ball.valid else np.inf
-    gain = _over(rigid.heldout, min(single.heldout, two.heldout, ball.heldout))
+    names: tuple[Fitted, ...] = ("rigid", one, "two_axes", "ball")
+    left_rigid, left_single, left_two, left_ball = (contest.heldout(name) for name in names)
+    center = left_ball if ball.valid else np.inf
+    gain = _over(left_rigid, min(left_single, left_two, left_ball))
     if gain < rigid.need:
         return _unless_too_far(contest, "rigid", gain, sure=True)
-    gain = _over(single.heldout, min(two.heldout, center))
+    gain = _over(left_single, min(left_two, center))
     if gain < single.need:
         return _unless_too_far(contest, one, gain, sure=True)
-    gain = _over(two.heldout, ball.heldout)
+    gain = _over(left_two, left_ball)
     if ball.valid and gain >= two.need:
         return _unless_too_far(contest, "ball", 0.0, sure=True)
     if two.valid:
@@ -213,7 +224,9 @@ def _unless_too_far(contest: _Contest, name: Fitted, gain: float, *, sure: bool)
         )
         return _chosen(contest, name, "approximate", reason)
     if not sure:
-        reason = f"{NAMES[name]} {left}; the direction of an axis is not known to {np.degrees(_LARGEST_AXIS_SD):.0f} deg"
+        reason = (
+            f"{NAMES[name]} {left}; the direction of an axis is not known to {np.degrees(_LARGEST_AXIS_SD):.0f} deg"
+        )
         return _chosen(contest, name, "approximate", reason)
     return _chosen(contest, name, "determined", f"{NAMES[name]} {left}; no richer type explains much more")
 
@@ -238,12 +251,12 @@ def _chosen(
             type=tried_name,
             residual_rotation=tried.fit.residual_rotation,
             residual_translation=tried.fit.residual_translation,
-            heldout_variance=tried.heldout,
+            heldout_variance=contest.known_heldout.get(tried_name, float("nan")),
             shared=len(tried.fit.information),
             per_frame=tried.fit.own_count,
             valid=tried.valid,
         )
-        for tried_name, tried in contest.tried.items()
+        for tried_name, tried in ((k, contest.tried[k]) for k in _ORDER if k in contest.tried)
     )
     return Choice(name, status, reason, candidates, {key: tried.fit for key, tried in contest.tried.items()})
 
@@ -251,7 +264,9 @@ def _chosen(
 def fit_type(name: Fitted, poses: Poses, *, robust: bool = False) -> Fit:
     """Fit one type of joint to poses, from its own start."""
     if name == "two_axes":
-        fit = fit_mechanism(find_two_axes(poses).mechanism.placed(poses.joint), poses)
+        fit = fit_mechanism(
+            find_two_axes(poses).mechanism.placed(poses.joint), poses, iterations=_ITERATIONS, tolerance=_TOLERANCE
+        )
     else:
         start = {
             "rigid": Rigid.start,
@@ -259,7 +274,7 @@ def fit_type(name: Fitted, poses: Poses, *, robust: bool = False) -> Fit:
             "screw_hinge": lambda joint: OneAxis.start(joint, screw=True),
             "ball": Ball.start,
         }[name](poses.joint)
-        fit = fit_mechanism(start, poses)
+        fit = fit_mechanism(start, poses, iterations=_ITERATIONS, tolerance=_TOLERANCE)
     return fit_robustly(fit, poses) if robust else fit
 
 

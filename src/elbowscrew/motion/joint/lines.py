@@ -13,6 +13,8 @@ from elbowscrew.geometry.quaternion import quat_from_rotation_matrix, rotation_m
 
 Float = NDArray[np.float64]
 
+_LEAST_EIGENVALUE: Final = 1e-6
+
 Z_LINE: Final = np.array([0.0, 0.0, 1.0, 0.0, 0.0, 0.0])
 """The z axis as a line, and as the twist of a rotation about it."""
 
@@ -49,18 +51,32 @@ def line_twist(step: Float) -> Float:
     return twist
 
 
-def nearest_points(joint: Float) -> tuple[Float, Float]:
+def nearest_points(joint: Float, *, undetermined: int) -> tuple[Float, Float]:
     """Points (3,) of the distal and of the proximal body that stay nearest each other: ``R c_F - c_A = -d``.
 
-    Of an axis it is one point of the line; the direction that is not determined is left at the least norm.
+    Parameters
+    ----------
+    joint : ndarray, shape (F, 8)
+    undetermined : int
+        How many directions the motion leaves open: 1 of an axis, along which any point does, 0 of a ball. They are
+        taken out, not left to the noise.
     """
     quat, position = dq.pose_from_dual_quat(joint)
     R = rotation_matrix_from_quat(quat)
     mean_R, mean_d = R.mean(axis=0), position.mean(axis=0)
     square = np.block([[np.eye(3), -mean_R.T], [-mean_R, np.eye(3)]])
     right = np.concatenate([-np.einsum("fji,fj->i", R, position) / len(joint), mean_d])
-    solution = np.linalg.pinv(square, rcond=1e-6, hermitian=True) @ right
+    solution = least_solution(square, right, undetermined)
     return solution[:3], solution[3:]
+
+
+def least_solution(square: Float, right: Float, undetermined: int) -> Float:
+    """Solution of symmetric equations with the least norm, without so many directions of least eigenvalue."""
+    values, vectors = np.linalg.eigh(square)
+    kept = values > _LEAST_EIGENVALUE * values[-1]
+    kept[:undetermined] = False
+    found: Float = vectors[:, kept] @ ((vectors[:, kept].T @ right) / values[kept])
+    return found
 
 
 def mean_rotation_pair(joint: Float) -> tuple[Float, Float]:

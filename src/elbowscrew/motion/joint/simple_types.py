@@ -71,7 +71,7 @@ class OneAxis(Mechanism):
     @classmethod
     def start(cls, joint: Float, *, screw: bool = False) -> OneAxis:
         """From the direction and the point that move least."""
-        in_distal, in_proximal = nearest_points(joint)
+        in_distal, in_proximal = nearest_points(joint, undetermined=1)
         h, g = mean_rotation_pair(joint)
         A, F = line_pose(h, in_proximal), line_pose(g, in_distal)
         slide = dq.pose_from_dual_quat(dq.multiply(dq.multiply(dq.conjugate(A), joint), F))[1][:, 2].mean()
@@ -130,7 +130,7 @@ class Ball(Mechanism):
     @classmethod
     def start(cls, joint: Float) -> Ball:
         """From the points that stay nearest each other, which is SCoRE."""
-        in_distal, in_proximal = nearest_points(joint)
+        in_distal, in_proximal = nearest_points(joint, undetermined=0)
         return cls(proximal=in_proximal, distal=in_distal, frames=np.zeros((0, 8))).placed(joint)
 
     @property

@@ -18,7 +18,7 @@ from elbowscrew.geometry._small_angle import length
 from elbowscrew.geometry.quaternion import rotation_matrix_from_quat
 from elbowscrew.geometry.twist import adjoint
 from elbowscrew.motion.joint.likelihood import Fit, Mechanism, Poses, fit_mechanism
-from elbowscrew.motion.joint.lines import Z_LINE, about_z, angle_about_z, line_pose, mean_rotation_pair
+from elbowscrew.motion.joint.lines import Z_LINE, about_z, angle_about_z, least_solution, line_pose, mean_rotation_pair
 from elbowscrew.motion.joint.simple_types import OneAxis
 from elbowscrew.motion.joint.two_axes import TwoAxesMechanism, is_phantom
 
@@ -164,8 +164,7 @@ def _points_of_lines(joint: Float, h1: Float, h2: Float) -> tuple[Float, Float]:
     system = np.concatenate(
         [R, -np.broadcast_to(np.eye(3), R.shape), -radial[..., None], -normal[..., None]], axis=2
     ).reshape(-1, 8)
-    square = system.T @ system
-    solution = np.linalg.pinv(square, rcond=3e-6, hermitian=True) @ (system.T @ -position.reshape(-1))
+    solution = least_solution(system.T @ system, system.T @ -position.reshape(-1), 1)
     return solution[3:6], solution[:3]
 
 
