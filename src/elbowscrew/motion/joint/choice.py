@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from elbowscrew.model.joint_type import JointTypeName, TypeCandidate
 from elbowscrew.motion.joint.joint_fit import _integrated_autocorrelation
-from elbowscrew.motion.joint.likelihood import Fit, Poses, fit_mechanism, fit_robustly, settled
+from elbowscrew.motion.joint.likelihood import Fit, Mechanism, Poses, fit_mechanism, fit_robustly, settled
 from elbowscrew.motion.joint.simple_types import Ball, OneAxis, Rigid
 from elbowscrew.motion.joint.starts import find_two_axes
 from elbowscrew.motion.joint.two_axes import angle_sd, is_phantom
@@ -63,14 +63,14 @@ class Choice(NamedTuple):
     status: Literal["determined", "approximate", "forced"] | None
     reason: str
     candidates: tuple[TypeCandidate, ...]
-    fits: dict[Fitted, Fit]
+    fits: dict[str, Fit[Mechanism]]
 
 
 @dataclass(slots=True, frozen=True)
 class _Tried:
     """A type fitted to the frames that decide."""
 
-    fit: Fit
+    fit: Fit[Mechanism]
     valid: bool
     shared_sd: Float
 
@@ -112,7 +112,7 @@ class _Contest:
             self.known_heldout[name] = self._heldout(self[name].fit)
         return self.known_heldout[name]
 
-    def _heldout(self, fit: Fit) -> float:
+    def _heldout(self, fit: Fit[Mechanism]) -> float:
         """Whitened variance for each degree of freedom of frames that the shared numbers were not fitted to.
 
         Five folds of four interleaved blocks, so that neither neighbors nor one end of the motion decide.
@@ -139,8 +139,8 @@ class _Contest:
         """Hinge or screw-hinge: by the pitch's own interval."""
         screw = self["screw_hinge"]
         mechanism = screw.fit.mechanism
-        assert isinstance(mechanism, OneAxis)
-        return "screw_hinge" if abs(mechanism.pitch) > _SURE * screw.shared_sd[9] else "hinge"
+        pitch = mechanism.pitch if isinstance(mechanism, OneAxis) else 0.0
+        return "screw_hinge" if abs(pitch) > _SURE * screw.shared_sd[9] else "hinge"
 
     def sure_axes(self) -> bool:
         """Whether both directions of two axes are known to 15 deg."""
@@ -224,9 +224,7 @@ def _unless_too_far(contest: _Contest, name: Fitted, gain: float, *, sure: bool)
         )
         return _chosen(contest, name, "approximate", reason)
     if not sure:
-        reason = (
-            f"{NAMES[name]} {left}; the direction of an axis is not known to {np.degrees(_LARGEST_AXIS_SD):.0f} deg"
-        )
+        reason = f"{NAMES[name]} {left}; a direction is not known to {np.degrees(_LARGEST_AXIS_SD):.0f} deg"
         return _chosen(contest, name, "approximate", reason)
     return _chosen(contest, name, "determined", f"{NAMES[name]} {left}; no richer type explains much more")
 
@@ -261,24 +259,23 @@ def _chosen(
     return Choice(name, status, reason, candidates, {key: tried.fit for key, tried in contest.tried.items()})
 
 
-def fit_type(name: Fitted, poses: Poses, *, robust: bool = False) -> Fit:
+def fit_type(name: Fitted, poses: Poses, *, robust: bool = False) -> Fit[Mechanism]:
     """Fit one type of joint to poses, from its own start."""
-    if name == "two_axes":
-        fit = fit_mechanism(
-            find_two_axes(poses).mechanism.placed(poses.joint), poses, iterations=_ITERATIONS, tolerance=_TOLERANCE
-        )
-    else:
-        start = {
-            "rigid": Rigid.start,
-            "hinge": OneAxis.start,
-            "screw_hinge": lambda joint: OneAxis.start(joint, screw=True),
-            "ball": Ball.start,
-        }[name](poses.joint)
-        fit = fit_mechanism(start, poses, iterations=_ITERATIONS, tolerance=_TOLERANCE)
+    start: Mechanism
+    match name:
+        case "rigid":
+            start = Rigid.start(poses.joint)
+        case "hinge" | "screw_hinge":
+            start = OneAxis.start(poses.joint, screw=name == "screw_hinge")
+        case "two_axes":
+            start = find_two_axes(poses).mechanism.placed(poses.joint)
+        case "ball":
+            start = Ball.start(poses.joint)
+    fit = fit_mechanism(start, poses, iterations=_ITERATIONS, tolerance=_TOLERANCE)
     return fit_robustly(fit, poses) if robust else fit
 
 
-def shared_covariance(fit: Fit, *, noise_known: bool) -> Float:
+def shared_covariance(fit: Fit[Mechanism], *, noise_known: bool) -> Float:
     """Covariance (P, P) of the shared numbers: of the stated noise, or of larger and correlated residuals.
 
     NaN where the frames do not determine them, or are too few to tell of a noise that nobody states.
@@ -301,7 +298,7 @@ def middle_range(values: Float) -> float:
     return float(high - low)
 
 
-def _is_valid(name: Fitted, fit: Fit, deviation: Float) -> bool:
+def _is_valid(name: Fitted, fit: Fit[Mechanism], deviation: Float) -> bool:
     if name == "ball":
         return bool(np.nan_to_num(deviation, nan=np.inf).max() < _LARGEST_CENTER_SD)
     if name != "two_axes":

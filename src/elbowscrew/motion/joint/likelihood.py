@@ -11,7 +11,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Final, NamedTuple, Self
+from typing import Final, Generic, NamedTuple, Self, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +21,8 @@ from elbowscrew.geometry.twist import adjoint
 
 Float = NDArray[np.float64]
 Rows = NDArray[np.int64]
+M = TypeVar("M", bound="Mechanism")
+M_co = TypeVar("M_co", bound="Mechanism", covariant=True)
 
 _TRIES: Final = 10
 _LARGEST_FRAME_STEP: Final = 0.7
@@ -118,7 +120,7 @@ class Mechanism(ABC):
         return replace(self, frames=self.frames[rows])
 
 
-class Fit(NamedTuple):
+class Fit(NamedTuple, Generic[M_co]):
     """A mechanism at its most likely numbers.
 
     Attributes
@@ -138,7 +140,7 @@ class Fit(NamedTuple):
         Of the frame's own numbers for given shared ones, under the stated noise.
     """
 
-    mechanism: Mechanism
+    mechanism: M_co
     square: Float
     whitened: Float
     residual: Float
@@ -219,13 +221,13 @@ def _reduced(mechanism: Mechanism, poses: Poses, weight: Float) -> _Reduced:
 
 
 def fit_mechanism(
-    mechanism: Mechanism,
+    mechanism: M,
     poses: Poses,
     *,
     iterations: int = 40,
     tolerance: float = 1e-10,
     weight: Float | None = None,
-) -> Fit:
+) -> Fit[M]:
     """Maximize the likelihood from a start, by Levenberg and Marquardt with the frames' own numbers eliminated.
 
     Parameters
@@ -265,7 +267,7 @@ def fit_mechanism(
     return Fit(mechanism, at.square, at.whitened, at.residual, weight, at.information, at.own_covariance)
 
 
-def fit_robustly(fit: Fit, poses: Poses) -> Fit:
+def fit_robustly(fit: Fit[M], poses: Poses) -> Fit[M]:
     """Go on from a fit by Tukey's biweight, after a start by weights 1/distance that forgets the outliers.
 
     References
@@ -289,7 +291,7 @@ def fit_robustly(fit: Fit, poses: Poses) -> Fit:
     return fit
 
 
-def settled(mechanism: Mechanism, poses: Poses, *, rounds: int = 3) -> Fit:
+def settled(mechanism: M, poses: Poses, *, rounds: int = 3) -> Fit[M]:
     """Put a joint on poses: each frame's own numbers at their optimum, the shared ones as they are.
 
     Frames are looked at in blocks, so that a long trial needs no more memory than a short one beside its results.
@@ -337,7 +339,7 @@ class Pieces(NamedTuple):
     whitener: Float
 
 
-def influence_pieces(fit: Fit, poses: Poses) -> Pieces:
+def influence_pieces(fit: Fit[Mechanism], poses: Poses) -> Pieces:
     """Take a fit apart, frame by frame, weights of a robust fit included.
 
     Parameters

@@ -17,7 +17,7 @@ from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry._small_angle import length
 from elbowscrew.geometry.quaternion import rotation_matrix_from_quat
 from elbowscrew.geometry.twist import adjoint
-from elbowscrew.motion.joint.likelihood import Fit, Mechanism, Poses, fit_mechanism
+from elbowscrew.motion.joint.likelihood import Fit, Poses, fit_mechanism
 from elbowscrew.motion.joint.lines import Z_LINE, about_z, angle_about_z, least_solution, line_pose, mean_rotation_pair
 from elbowscrew.motion.joint.simple_types import OneAxis
 from elbowscrew.motion.joint.two_axes import TwoAxesMechanism, is_phantom
@@ -37,7 +37,7 @@ _NEARLY_PARALLEL: Final = 0.35
 
 
 class _Runner(NamedTuple):
-    fit: Fit
+    fit: Fit[TwoAxesMechanism]
     phantom: bool
 
     @property
@@ -45,7 +45,7 @@ class _Runner(NamedTuple):
         return float(np.mean(self.fit.square))
 
 
-def find_two_axes(poses: Poses) -> Fit:
+def find_two_axes(poses: Poses) -> Fit[TwoAxesMechanism]:
     """Find the two axes of poses without a start: the best of all families, fitted to at most 150 frames.
 
     Parameters
@@ -85,7 +85,7 @@ def find_two_axes(poses: Poses) -> Fit:
     return _winner(best, few)
 
 
-def _winner(best: list[_Runner], few: Poses) -> Fit:
+def _winner(best: list[_Runner], few: Poses) -> Fit[TwoAxesMechanism]:
     """Finish the best two; a phantom wins only by more than four times the likelihood's exponent."""
     best = sorted(best, key=lambda runner: runner.cost)
     real = [runner for runner in best if not runner.phantom and runner.cost < 4.0 * best[0].cost]
@@ -98,13 +98,12 @@ def _winner(best: list[_Runner], few: Poses) -> Fit:
     return min(finished, key=lambda runner: runner.cost * (4.0 if runner.phantom else 1.0)).fit
 
 
-def _run(start: Mechanism, poses: Poses, iterations: int, tolerance: float) -> _Runner:
+def _run(start: TwoAxesMechanism, poses: Poses, iterations: int, tolerance: float) -> _Runner:
     fit = fit_mechanism(start, poses, iterations=iterations, tolerance=tolerance)
     return _Runner(fit, is_phantom(fit))
 
 
-def _sine(fit: Fit) -> float:
-    assert isinstance(fit.mechanism, TwoAxesMechanism)
+def _sine(fit: Fit[TwoAxesMechanism]) -> float:
     return float(np.hypot(*dq.transform_lines(fit.mechanism.between, Z_LINE)[:2]))
 
 
@@ -193,7 +192,7 @@ def _parallel_starts(joint: Float) -> list[TwoAxesMechanism]:
     return [_from_lines(joint, (h, q1), (g, q2), first)]
 
 
-def _residual_starts(hinge: Fit, distances: tuple[float, ...] | None) -> list[TwoAxesMechanism]:
+def _residual_starts(hinge: Fit[OneAxis], distances: tuple[float, ...] | None) -> list[TwoAxesMechanism]:
     """Second axes from what a hinge leaves, on either side of it.
 
     The main twist ``(w, v)`` of the residual is the second axis' but for a share c of the hinge's own rotation, which
@@ -201,7 +200,6 @@ def _residual_starts(hinge: Fit, distances: tuple[float, ...] | None) -> list[Tw
     is what puts the second axis at a distance.
     """
     at = hinge.mechanism
-    assert isinstance(at, OneAxis)
     angle = at.frames[:, 0]
     starts = []
     for in_distal in (True, False):

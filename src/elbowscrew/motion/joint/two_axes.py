@@ -1,8 +1,8 @@
 """Joints that rotate about two axes: ``J_i = A Z(alpha_i) M Z(beta_i) F^-1``.
 
-The z axis of A is the axis in the proximal body, that of F the one in the distal body, and M holds how the second stands
-to the first. M moves by the four directions across the two that only rename angles, so that parallel, crossing and
-intersecting axes are alike regular, which they are not in the numbers of Denavit and Hartenberg.
+The z axis of A is the axis in the proximal body, that of F the one in the distal body, and M holds how the second
+stands to the first. M moves by the four directions across the two that only rename angles, so that parallel, crossing
+and intersecting axes are alike regular, which they are not in the numbers of Denavit and Hartenberg.
 """
 
 from __future__ import annotations
@@ -168,13 +168,13 @@ def geometry_covariance(at: TwoAxesMechanism, covariance: Float) -> Float:
     return found
 
 
-def angle_sd(fit: Fit) -> Float:
+def angle_sd(fit: Fit[Mechanism]) -> Float:
     """Median standard deviation (2,) of both angles, rad, scaled by the fit's own residuals."""
     variance = np.median(np.diagonal(fit.own_covariance, axis1=1, axis2=2), axis=0) * fit.variance
     return np.asarray(np.sqrt(variance), dtype=np.float64)
 
 
-def is_phantom(fit: Fit) -> bool:
+def is_phantom(fit: Fit[Mechanism]) -> bool:
     """Whether two axes nearly in one only share out its rotation: their angles wind, or are not determined."""
     winding = np.ptp(fit.mechanism.frames, axis=0).max()
     return bool(angle_sd(fit).max() > _LARGEST_ANGLE_SD or winding > _LARGEST_WINDING)

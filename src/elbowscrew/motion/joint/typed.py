@@ -13,7 +13,7 @@ from elbowscrew.geometry.quaternion import rotation_matrix_from_quat
 from elbowscrew.geometry.sensitivity import confidence_radius
 from elbowscrew.model.joint_type import BallJoint, JointLine, JointType, Measure, SecondRotation, TwoAxes
 from elbowscrew.motion.joint.choice import Choice, Fitted, choose_type, middle_range, shared_covariance
-from elbowscrew.motion.joint.likelihood import Fit, Poses, fit_mechanism, fit_robustly, settled
+from elbowscrew.motion.joint.likelihood import Fit, Mechanism, Poses, fit_mechanism, fit_robustly, settled
 from elbowscrew.motion.joint.lines import Z_LINE
 from elbowscrew.motion.joint.simple_types import Ball, OneAxis
 from elbowscrew.motion.joint.two_axes import TwoAxesMechanism, angle_sd, axes_geometry, geometry_covariance
@@ -77,12 +77,12 @@ def identify_joint(
     start = settled(mechanism, Poses(reference[None], most.whitener[:1]), rounds=5).mechanism
     if isinstance(mechanism, TwoAxesMechanism):
         at = _oriented(mechanism.zeroed(start.frames[0]), left=left)
-        fit = fit_mechanism(at, most, iterations=0, weight=fit.weight)
-        every = settled(at, poses)
-        return _result(choice, every, two_axes=_two_axes(fit, reference, noise_known=noise_known), scale=fit)
-    every = settled(mechanism, poses)
+        written = fit_mechanism(at, most, iterations=0, weight=fit.weight)
+        two_axes = _two_axes(written, reference, noise_known=noise_known)
+        return _result(choice, settled(at, poses), two_axes=two_axes, scale=fit)
+    every: Fit[Mechanism] = settled(mechanism, poses)
     if isinstance(mechanism, OneAxis):
-        angle = every.mechanism.frames - start.frames[0]
+        angle = _near_zero(every.mechanism.frames - start.frames[0])
         sense = 1.0 if angle.max() >= -angle.min() else -1.0
         every = every._replace(mechanism=replace(every.mechanism, frames=sense * angle))
         return _result(choice, every, second=_second_rotation(choice, reference, noise_known=noise_known), scale=fit)
@@ -94,18 +94,18 @@ def identify_joint(
             mechanism=replace(every.mechanism, frames=vector),
             own_covariance=R @ every.own_covariance @ np.swapaxes(R, -1, -2),
         )
-        return _result(choice, every, ball=_ball(fit, noise_known=noise_known), scale=fit)
+        return _result(choice, every, ball=_ball(fit, mechanism, noise_known=noise_known), scale=fit)
     return _result(choice, every._replace(mechanism=replace(mechanism, frames=np.zeros((len(joint), 0)))))
 
 
 def _result(
     choice: Choice,
-    every: Fit | None,
+    every: Fit[Mechanism] | None,
     *,
     two_axes: TwoAxes | None = None,
     ball: BallJoint | None = None,
     second: SecondRotation | None = None,
-    scale: Fit | None = None,
+    scale: Fit[Mechanism] | None = None,
 ) -> JointType:
     empty = np.zeros((0, 0))
     angle, deviation = empty, empty
@@ -165,15 +165,14 @@ def _to_origin(pose: Float) -> float:
     return -float(dq.pose_from_dual_quat(pose)[1] @ dq.transform_lines(pose, Z_LINE)[:3])
 
 
-def _two_axes(fit: Fit, reference: Float, *, noise_known: bool) -> TwoAxes:
+def _two_axes(fit: Fit[TwoAxesMechanism], reference: Float, *, noise_known: bool) -> TwoAxes:
     at = fit.mechanism
-    assert isinstance(at, TwoAxesMechanism)
     covariance = shared_covariance(fit, noise_known=noise_known)
     geometry = axes_geometry(at)
     sd = np.sqrt(np.maximum(np.diag(geometry_covariance(at, covariance)), 0.0))
     between = min(geometry.angle, np.pi - geometry.angle)
     parallel = between < max(_PARALLEL, _SURE * sd[0])
-    lines = _lines(fit, reference, covariance)
+    lines = _lines(at, fit, reference, covariance)
     return TwoAxes(
         axis1=lines[0],
         axis2=lines[1],
@@ -186,9 +185,9 @@ def _two_axes(fit: Fit, reference: Float, *, noise_known: bool) -> TwoAxes:
     )
 
 
-def _lines(fit: Fit, reference: Float, covariance: Float) -> tuple[JointLine, JointLine]:
-    at = fit.mechanism
-    assert isinstance(at, TwoAxesMechanism)
+def _lines(
+    at: TwoAxesMechanism, fit: Fit[Mechanism], reference: Float, covariance: Float
+) -> tuple[JointLine, JointLine]:
     deviation = angle_sd(fit)
     poses = [
         (at.proximal, dq.multiply(dq.conjugate(reference), at.proximal)),
@@ -222,7 +221,9 @@ def _second_rotation(choice: Choice, reference: Float, *, noise_known: bool) -> 
     if "two_axes" not in choice.fits:
         return None
     two = choice.fits["two_axes"]
-    lines = _lines(two, reference, shared_covariance(two, noise_known=noise_known))
+    if not isinstance(two.mechanism, TwoAxesMechanism):
+        return None
+    lines = _lines(two.mechanism, two, reference, shared_covariance(two, noise_known=noise_known))
     smaller = min(lines, key=lambda line: line.range)
     valid = any(candidate.valid for candidate in choice.candidates if candidate.type == "two_axes")
     if valid and all(line.determined for line in lines):
@@ -231,9 +232,7 @@ def _second_rotation(choice: Choice, reference: Float, *, noise_known: bool) -> 
     return SecondRotation(range=3.3 * left, axis=None)
 
 
-def _ball(fit: Fit, *, noise_known: bool) -> BallJoint:
-    at = fit.mechanism
-    assert isinstance(at, Ball)
+def _ball(fit: Fit[Mechanism], at: Ball, *, noise_known: bool) -> BallJoint:
     covariance = shared_covariance(fit, noise_known=noise_known)
     # Between that of one direction and that of three alike: exact at both ends.
     values = np.linalg.eigvalsh(covariance[:3, :3]) if np.isfinite(covariance).all() else np.full(3, np.nan)
