@@ -11,13 +11,16 @@ import pytest
 from numpy.typing import NDArray
 
 from elbowscrew.geometry import dual_quaternion as dq
+from elbowscrew.geometry import pose_from_points
 from elbowscrew.geometry import quaternion as qn
 from elbowscrew.geometry.twist import adjoint
 from elbowscrew.model import PoseNoise
-from elbowscrew.motion.joint.choice import Fitted, choose_type, fit_type, shared_covariance
+from elbowscrew.motion.joint.choice import choose_type
+from elbowscrew.motion.joint.fitting import Fitted, fit_type, shared_covariance
 from elbowscrew.motion.joint.joint_fit import fit_joint
-from elbowscrew.motion.joint.likelihood import Poses, fit_mechanism, influence_pieces
+from elbowscrew.motion.joint.likelihood import Poses, fit_mechanism
 from elbowscrew.motion.joint.lines import Z_LINE
+from elbowscrew.motion.joint.pieces import influence_pieces
 from elbowscrew.motion.joint.simple_types import OneAxis
 from elbowscrew.motion.joint.starts import find_two_axes
 from elbowscrew.motion.joint.two_axes import TwoAxesMechanism, axes_geometry, geometry_covariance
@@ -302,3 +305,21 @@ def test_the_hip_is_a_ball(real_data: Path) -> None:
     np.testing.assert_allclose(found.ball.center_proximal, [0.03, -0.05, 0.08], atol=2e-4)
     np.testing.assert_allclose(found.ball.center_distal, [0.0, 0.25, 0.0], atol=2e-4)
     assert np.linalg.norm(found.ball.center_proximal - [0.03, -0.05, 0.08]) < 2.0 * found.ball.radius
+
+
+def test_flexion_with_pronation_is_no_hinge(real_data: Path) -> None:
+    """140 deg of flexion with 60 deg of pronation at the same time; one axis would be 20 deg off."""
+    table = pd.read_csv(real_data / "cases" / "pronation60.csv")
+
+    def cluster(name: str) -> Float:
+        columns = [f"{name}{k}_{c}_m" for k in range(4) for c in "xyz"]
+        markers = table[columns].to_numpy(np.float64).reshape(-1, 4, 3)
+        return pose_from_points(markers[0] - markers[0].mean(axis=0), markers)
+
+    seen = dq.multiply(dq.conjugate(cluster("UA")), cluster("FA"))
+    one = noise(0.2, 1e-4)
+    found = identify_joint(seen, joint_covariance(seen, one, one), seen[0], noise_known=False)
+    assert found.type == "two_axes"
+    assert found.two_axes is not None
+    ranges = np.degrees(np.ptp(found.angle, axis=0))
+    np.testing.assert_allclose(ranges, [140.0, 60.0], atol=3.0)

@@ -14,18 +14,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowscrew.model.joint_type import JointTypeName, TypeCandidate
-from elbowscrew.motion.joint.joint_fit import _integrated_autocorrelation
-from elbowscrew.motion.joint.likelihood import Fit, Mechanism, Poses, fit_mechanism, fit_robustly, settled
-from elbowscrew.motion.joint.simple_types import Ball, OneAxis, Rigid
-from elbowscrew.motion.joint.starts import find_two_axes
+from elbowscrew.motion.joint.fitting import Fitted, fit_type, shared_covariance
+from elbowscrew.motion.joint.likelihood import Fit, Mechanism, Poses, fit_mechanism, settled
+from elbowscrew.motion.joint.simple_types import OneAxis
 from elbowscrew.motion.joint.two_axes import angle_sd, is_phantom
 
 Float = NDArray[np.float64]
-Fitted = Literal["rigid", "hinge", "screw_hinge", "two_axes", "ball"]
 
 _FRAMES: Final = 200
-_ITERATIONS: Final = 25
-_TOLERANCE: Final = 1e-6
 _FOLDS: Final = 5
 _BLOCKS: Final = 4
 _FOLD_ITERATIONS: Final = 2
@@ -41,8 +37,6 @@ _LARGEST_ANGLE_SD: Final = np.radians(8.0)
 _LARGEST_AXIS_SD: Final = np.radians(15.0)
 _LEAST_RANGE: Final = np.radians(1.5)
 _SURE: Final = 3.0
-_LEAST_INFORMATION: Final = 1e-13
-_LEAST_FREEDOM: Final = 20.0
 
 NAMES: Final[dict[str, str]] = {
     "rigid": "a rigid joint",
@@ -257,39 +251,6 @@ def _chosen(
         for tried_name, tried in ((k, contest.tried[k]) for k in _ORDER if k in contest.tried)
     )
     return Choice(name, status, reason, candidates, {key: tried.fit for key, tried in contest.tried.items()})
-
-
-def fit_type(name: Fitted, poses: Poses, *, robust: bool = False) -> Fit[Mechanism]:
-    """Fit one type of joint to poses, from its own start."""
-    start: Mechanism
-    match name:
-        case "rigid":
-            start = Rigid.start(poses.joint)
-        case "hinge" | "screw_hinge":
-            start = OneAxis.start(poses.joint, screw=name == "screw_hinge")
-        case "two_axes":
-            start = find_two_axes(poses).mechanism.placed(poses.joint)
-        case "ball":
-            start = Ball.start(poses.joint)
-    fit = fit_mechanism(start, poses, iterations=_ITERATIONS, tolerance=_TOLERANCE)
-    return fit_robustly(fit, poses) if robust else fit
-
-
-def shared_covariance(fit: Fit[Mechanism], *, noise_known: bool) -> Float:
-    """Covariance (P, P) of the shared numbers: of the stated noise, or of larger and correlated residuals.
-
-    NaN where the frames do not determine them, or are too few to tell of a noise that nobody states.
-    """
-    scale = np.sqrt(np.maximum(np.diag(fit.information), 0.0))
-    unknown = np.full(fit.information.shape, np.nan)
-    if not (scale > 0.0).all() or not (noise_known or fit.freedom >= _LEAST_FREEDOM):
-        return unknown
-    values, vectors = np.linalg.eigh(fit.information / np.outer(scale, scale))
-    if values[0] < _LEAST_INFORMATION:
-        return unknown
-    inverse: Float = (vectors / values) @ vectors.T / np.outer(scale, scale)
-    correlation = _integrated_autocorrelation(fit.whitened * np.sqrt(fit.weight)[:, None])
-    return inverse * max(fit.variance, 1.0 if noise_known else 0.0) * correlation
 
 
 def middle_range(values: Float) -> float:

@@ -12,7 +12,8 @@ from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry.quaternion import rotation_matrix_from_quat
 from elbowscrew.geometry.sensitivity import confidence_radius
 from elbowscrew.model.joint_type import BallJoint, JointLine, JointType, Measure, SecondRotation, TwoAxes
-from elbowscrew.motion.joint.choice import Choice, Fitted, choose_type, middle_range, shared_covariance
+from elbowscrew.motion.joint.choice import Choice, choose_type, middle_range
+from elbowscrew.motion.joint.fitting import Fitted, shared_covariance
 from elbowscrew.motion.joint.likelihood import Fit, Mechanism, Poses, fit_mechanism, fit_robustly, settled
 from elbowscrew.motion.joint.lines import Z_LINE
 from elbowscrew.motion.joint.simple_types import Ball, OneAxis
