@@ -70,7 +70,7 @@ def starts(share: int) -> None:
             fit = fit_mechanism(find_two_axes(poses).mechanism.placed(seen), poses)
             used += time.process_time() - start
             # At the truth the variance is 1 with a standard deviation of sqrt(2 / 1788) = 0.033.
-            failures += fit.variance > 1.2
+            failures += int(fit.variance > 1.2)
         searches = count // share
         print(f"| {name} | {searches} | {failures} | {1000.0 * used / searches:.0f} |")
 
@@ -137,12 +137,13 @@ def coverage(trials: int) -> None:
             error = np.array([-line[1], line[0], -line[4], line[3]])
             for part, name in ((slice(0, 2), "direction"), (slice(2, 4), "place")):
                 block = C[8 * k : 8 * k + 4, 8 * k : 8 * k + 4][part, part]
-                inside[f"axis {k + 1} {name}"] += error[part] @ np.linalg.solve(block, error[part]) < 5.991
+                square = float(error[part] @ np.linalg.solve(block, error[part]))
+                inside[f"axis {k + 1} {name}"] += int(square < 5.991)
         joint = mj.ball(FRAMES, 60.0, rng)
         seen, covariance = mj.noisy(joint.poses, rng, *NOISES[0])
         ball = fit_type("ball", Poses.of(seen, covariance))
         off = ball.mechanism.proximal - joint.truth["proximal"]  # type: ignore[attr-defined]
-        inside["center"] += off @ np.linalg.solve(np.linalg.inv(ball.information)[:3, :3], off) < 7.815
+        inside["center"] += int(float(off @ np.linalg.solve(np.linalg.inv(ball.information)[:3, :3], off)) < 7.815)
     print("\n| number | covered |\n| --- | --- |")
     for name, count in inside.items():
         print(f"| {name} | {count / trials:.3f} |")

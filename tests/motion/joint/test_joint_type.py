@@ -109,7 +109,7 @@ def test_two_axes_are_covered_by_their_intervals() -> None:
         seen, covariance = mj.noisy(exact.poses, rng, ROTATION_DEG, PLACE)
         poses = Poses.of(seen, covariance)
         fit = fit_mechanism(find_two_axes(poses).mechanism.placed(seen), poses)
-        C = np.linalg.inv(fit.information)
+        C = np.asarray(np.linalg.inv(fit.information), dtype=np.float64)
         for k, pose in enumerate((fit.mechanism.proximal, fit.mechanism.distal)):
             error = tangent_error(pose, exact.truth[f"axis{k + 1}"])
             square = error @ np.linalg.solve(C[8 * k : 8 * k + 4, 8 * k : 8 * k + 4], error)
@@ -154,7 +154,7 @@ def test_pieces_of_influence_tell_what_a_pose_error_does() -> None:
             2.0 * dq.log(dq.canonical(dq.multiply(dq.conjugate(fit.mechanism.proximal), again.mechanism.proximal)))
         )
     step, expected = 0.5 * (ends[0] - ends[1])[[0, 1, 3, 4]], (psi @ error)[:4]
-    np.testing.assert_allclose(step, expected, atol=0.03 * np.linalg.norm(expected))
+    np.testing.assert_allclose(step, expected, atol=0.03 * float(np.abs(expected).max()))
     np.testing.assert_allclose(
         np.einsum("fip,fiq->pq", pieces.design, pieces.design), fit.information, rtol=1e-6, atol=1e-3
     )

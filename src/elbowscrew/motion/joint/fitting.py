@@ -11,11 +11,13 @@ from elbowscrew.motion.joint.joint_fit import _integrated_autocorrelation
 from elbowscrew.motion.joint.likelihood import Fit, Mechanism, Poses, fit_mechanism, fit_robustly
 from elbowscrew.motion.joint.simple_types import Ball, OneAxis, Rigid
 from elbowscrew.motion.joint.starts import find_two_axes
+from elbowscrew.motion.joint.two_axes import is_phantom
 
 Float = NDArray[np.float64]
 Fitted = Literal["rigid", "hinge", "screw_hinge", "two_axes", "ball"]
 
 _ITERATIONS: Final = 25
+_PHANTOM_ITERATIONS: Final = 4
 _TOLERANCE: Final = 1e-6
 _LEAST_INFORMATION: Final = 1e-13
 _LEAST_FREEDOM: Final = 20.0
@@ -24,16 +26,20 @@ _LEAST_FREEDOM: Final = 20.0
 def fit_type(name: Fitted, poses: Poses, *, robust: bool = False) -> Fit[Mechanism]:
     """Fit one type of joint to poses, from its own start."""
     start: Mechanism
+    iterations = _ITERATIONS
     match name:
         case "rigid":
             start = Rigid.start(poses.joint)
         case "hinge" | "screw_hinge":
             start = OneAxis.start(poses.joint, screw=name == "screw_hinge")
         case "two_axes":
-            start = find_two_axes(poses).mechanism.placed(poses.joint)
+            found = find_two_axes(poses)
+            start = found.mechanism.placed(poses.joint)
+            # A phantom has no optimum worth a long search: it only has to be told.
+            iterations = _PHANTOM_ITERATIONS if is_phantom(found) else _ITERATIONS
         case "ball":
             start = Ball.start(poses.joint)
-    fit = fit_mechanism(start, poses, iterations=_ITERATIONS, tolerance=_TOLERANCE)
+    fit = fit_mechanism(start, poses, iterations=iterations, tolerance=_TOLERANCE)
     return fit_robustly(fit, poses) if robust else fit
 
 

@@ -27,6 +27,7 @@ M_co = TypeVar("M_co", bound="Mechanism", covariant=True)
 _TRIES: Final = 10
 _LARGEST_FRAME_STEP: Final = 0.7
 _SETTLED: Final = 1e-4
+_SMALLEST_STEP: Final = 1e-7
 _ROBUST_ROUNDS: Final = 30
 _ROBUST_STEPS: Final = 2
 _BLOCK: Final = 4096
@@ -247,9 +248,13 @@ def fit_mechanism(
     for _ in range(iterations):
         scale = np.sqrt(np.maximum(np.diag(at.information), _TINY))
         scaled = at.information / np.outer(scale, scale)
+        unsettled = np.abs(at.own_step).max(initial=0.0)
         for _ in range(_TRIES):
             damped = scaled + damping * np.eye(len(scale))
             step = np.linalg.lstsq(damped, at.gradient / scale, rcond=1e-13)[0] / scale
+            # A full step lowers the cost by gradient times step: below the tolerance there is nothing to try.
+            if unsettled < _SETTLED and at.gradient @ step <= tolerance * cost:
+                return _fitted(mechanism, at, weight)
             own = np.clip(at.own_step - at.own_by_shared @ step, -_LARGEST_FRAME_STEP, _LARGEST_FRAME_STEP)
             after = mechanism.moved(step, own)
             new = _reduced(after, poses, weight)
@@ -259,11 +264,15 @@ def fit_mechanism(
             damping = 10.0 * max(damping, 1e-7)
         else:
             break
-        gain, unsettled = cost - new_cost, np.abs(at.own_step).max(initial=0.0)
+        gain = cost - new_cost
         mechanism, at, cost = after, new, new_cost
         damping = max(0.1 * damping, 1e-10)
         if gain <= tolerance * cost and unsettled < _SETTLED:
             break
+    return _fitted(mechanism, at, weight)
+
+
+def _fitted(mechanism: M, at: _Reduced, weight: Float) -> Fit[M]:
     return Fit(mechanism, at.square, at.whitened, at.residual, weight, at.information, at.own_covariance)
 
 
@@ -303,10 +312,12 @@ def settled(mechanism: M, poses: Poses, *, rounds: int = 3) -> Fit[M]:
         part, block, weight = start.on(rows), poses.at(rows), np.ones(rows.size)
         at = _reduced(part, block, weight)
         for _ in range(rounds if at.own_step.size else 0):
+            if np.abs(at.own_step).max() < _SMALLEST_STEP:
+                break
             step = np.clip(at.own_step, -_LARGEST_FRAME_STEP, _LARGEST_FRAME_STEP)
             part = part.moved(np.zeros(len(at.information)), step)
             at = _reduced(part, block, weight)
-        fits.append(Fit(part, at.square, at.whitened, at.residual, weight, at.information, at.own_covariance))
+        fits.append(_fitted(part, at, weight))
     join: Callable[[list[Float]], Float] = np.concatenate
     return Fit(
         mechanism=replace(fits[0].mechanism, frames=join([fit.mechanism.frames for fit in fits])),

@@ -31,6 +31,7 @@ _MOST_PAIRS: Final = 6
 _SAME_PAIR: Final = np.cos(np.radians(8.0))
 _RADIAN: Final = 0.08  # m that weigh as a radian in a hinge's residual
 _SCANNED: Final = (0.005, 0.015, 0.04, 0.1)  # m between axes whose distance no start tells
+_MOST_SCANNED: Final = 3
 _RACE_FRAMES: Final = 80
 _FRAMES: Final = 150
 _NEARLY_PARALLEL: Final = 0.35
@@ -78,10 +79,10 @@ def find_two_axes(poses: Poses) -> Fit[TwoAxesMechanism]:
         best.append(_run(runner.fit.mechanism.placed(few.joint), few, 6, 1e-3))
     least = min(best, key=lambda runner: runner.cost)
     if least.phantom or _sine(least.fit) < _NEARLY_PARALLEL:
-        for start in _residual_starts(hinge, _SCANNED):
-            runner = _run(start.on(racing), fewer, 5, 1e-2)
-            if not runner.phantom and runner.cost < 3.0 * least.cost:
-                best.append(_run(runner.fit.mechanism.placed(few.joint), few, 8, 1e-3))
+        scanned = [_run(start.on(racing), fewer, 5, 1e-2) for start in _residual_starts(hinge, _SCANNED)]
+        near = [runner for runner in scanned if not runner.phantom and runner.cost < 3.0 * least.cost]
+        for runner in sorted(near, key=lambda runner: runner.cost)[:_MOST_SCANNED]:
+            best.append(_run(runner.fit.mechanism.placed(few.joint), few, 8, 1e-3))
     return _winner(best, few)
 
 
@@ -94,7 +95,7 @@ def _winner(best: list[_Runner], few: Poses) -> Fit[TwoAxesMechanism]:
     for runner in order[:2]:
         if finished and (runner.cost > 10.0 * finished[0].cost or abs(runner.cost / finished[0].cost - 1.0) < 0.05):
             break
-        finished.append(_run(runner.fit.mechanism, few, 30, 1e-6))
+        finished.append(_run(runner.fit.mechanism, few, 8 if runner.phantom else 30, 1e-6))
     return min(finished, key=lambda runner: runner.cost * (4.0 if runner.phantom else 1.0)).fit
 
 
