@@ -1,0 +1,153 @@
+"""Whether the search for two axes fails, which joint is told for which, and what the intervals cover.
+
+    python benchmarks/joint_types.py [--quick] [starts] [types] [coverage]
+
+Synthetic joints with both bodies' noise. Types: by noise, range and what real joints add, an axis that wanders by 5 deg
+and a cluster that moves on the bone by 4 deg and 5 mm; the noise's size is not told to the choice.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+from collections import Counter
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "support"))
+
+import moving_joints as mj
+
+from elbowscrew.geometry import dual_quaternion as dq
+from elbowscrew.motion.joint.choice import choose_type
+from elbowscrew.motion.joint.fitting import fit_type
+from elbowscrew.motion.joint.likelihood import Poses, fit_mechanism
+from elbowscrew.motion.joint.starts import find_two_axes
+
+Float = NDArray[np.float64]
+
+FRAMES = 200
+NOISES = ((0.1, 2e-4), (0.5, 1e-3))
+RANGES_DEG = (20, 40, 90, 140)
+DISTURBANCES = ("clean", "wander", "skin")
+TYPES = ("rigid", "hinge", "two_axes", "ball", "free")
+
+
+def main() -> None:
+    """Print the tables in Markdown."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("parts", nargs="*", default=["starts", "types", "coverage"])
+    parser.add_argument("--quick", action="store_true")
+    options = parser.parse_args()
+    if "starts" in options.parts:
+        starts(20 if options.quick else 1)
+    if "types" in options.parts:
+        types(2 if options.quick else 12)
+    if "coverage" in options.parts:
+        coverage(30 if options.quick else 300)
+
+
+def starts(share: int) -> None:
+    """Print how many searches end above the likelihood of the truth."""
+    kinds = {
+        "elbow": (1000, (60.0, 120.0), (0.0, 0.025)),
+        "nearly parallel": (300, (0.0, 5.0), (0.01, 0.06)),
+        "intersecting": (200, (30.0, 150.0), (0.0, 0.0)),
+    }
+    print("| axes | searches | failures | CPU time each, ms |\n| --- | --- | --- | --- |")
+    for name, (count, between, distance) in kinds.items():
+        rng = np.random.default_rng(len(name))
+        failures, used = 0, 0.0
+        for _ in range(count // share):
+            ranges = (float(rng.uniform(20.0, 140.0)), float(rng.uniform(20.0, 140.0)))
+            exact = mj.two_axes(450, ranges, rng.uniform(*between), rng.uniform(*distance), rng)
+            seen, covariance = mj.noisy(exact.poses, rng, *NOISES[0])
+            poses = Poses.of(seen, covariance)
+            start = time.process_time()
+            fit = fit_mechanism(find_two_axes(poses).mechanism.placed(seen), poses)
+            used += time.process_time() - start
+            # At the truth the variance is 1 with a standard deviation of sqrt(2 / 1788) = 0.033.
+            failures += int(fit.variance > 1.2)
+        searches = count // share
+        print(f"| {name} | {searches} | {failures} | {1000.0 * used / searches:.0f} |")
+
+
+def sample(kind: str, range_deg: float, rng: np.random.Generator) -> mj.MovingJoint:
+    """A joint of a type; what is not rigid goes through the range with each of its angles."""
+    match kind:
+        case "rigid":
+            return mj.rigid(FRAMES, rng)
+        case "hinge":
+            return mj.hinge(FRAMES, range_deg, rng)
+        case "two_axes":
+            between, apart = rng.uniform(60.0, 120.0), rng.uniform(0.0, 0.02)
+            return mj.two_axes(FRAMES, (range_deg, rng.uniform(0.5, 1.0) * range_deg), between, apart, rng)
+        case "ball":
+            return mj.ball(FRAMES, range_deg, rng)
+    return mj.free(FRAMES, range_deg, rng)
+
+
+def types(trials: int) -> None:
+    """Print what is told for each type, and the shares that are right and surely wrong at ranges from 40 deg."""
+    told: dict[tuple[str, str, int], Counter[str]] = {}
+    right = sure_wrong = total = 0
+    rng = np.random.default_rng(15)
+    for disturbance in DISTURBANCES:
+        for range_deg in RANGES_DEG:
+            for kind in TYPES:
+                counter = told.setdefault((disturbance, kind, range_deg), Counter())
+                for noise in NOISES:
+                    for _ in range(trials):
+                        exact = sample(kind, range_deg, rng)
+                        poses = exact.poses
+                        if disturbance == "wander" and kind in ("hinge", "two_axes"):
+                            poses = mj.with_wander(poses, exact.truth, 5.0)
+                        if disturbance == "skin" and kind != "rigid":
+                            poses = mj.with_skin(poses, rng, 4.0, 0.005)
+                        seen, covariance = mj.noisy(poses, rng, *noise)
+                        choice = choose_type(Poses.of(seen, covariance), noise_known=False)
+                        name = "hinge" if choice.type == "screw_hinge" else choice.type
+                        counter[f"{name} {choice.status or ''}".strip()] += 1
+                        if range_deg >= 40:
+                            total += 1
+                            right += name == kind
+                            sure_wrong += name != kind and choice.status == "determined"
+    print("\n| disturbance | joint | range, deg | told |\n| --- | --- | --- | --- |")
+    for (disturbance, kind, range_deg), counter in told.items():
+        print(f"| {disturbance} | {kind} | {range_deg} | " + ", ".join(f"{n} {k}" for k, n in counter.items()) + " |")
+    print(f"\nFrom 40 deg: right {right / total:.3f}, wrong and determined {sure_wrong / total:.3f} of {total}.")
+
+
+def coverage(trials: int) -> None:
+    """Print how often the truth is within its interval of 95 %, on white noise."""
+    rng = np.random.default_rng(95)
+    inside = {"axis 1 direction": 0, "axis 1 place": 0, "axis 2 direction": 0, "axis 2 place": 0, "center": 0}
+    for _ in range(trials):
+        exact = mj.two_axes(FRAMES, (100.0, 70.0), 85.0, 0.012, rng)
+        seen, covariance = mj.noisy(exact.poses, rng, *NOISES[0])
+        poses = Poses.of(seen, covariance)
+        fit = fit_mechanism(find_two_axes(poses).mechanism.placed(seen), poses)
+        C = np.linalg.inv(fit.information)
+        for k, pose in enumerate((fit.mechanism.proximal, fit.mechanism.distal)):
+            line = dq.transform_lines(dq.conjugate(pose), exact.truth[f"axis{k + 1}"])
+            line = line if line[2] > 0.0 else -line
+            error = np.array([-line[1], line[0], -line[4], line[3]])
+            for part, name in ((slice(0, 2), "direction"), (slice(2, 4), "place")):
+                block = C[8 * k : 8 * k + 4, 8 * k : 8 * k + 4][part, part]
+                square = float(error[part] @ np.linalg.solve(block, error[part]))
+                inside[f"axis {k + 1} {name}"] += int(square < 5.991)
+        joint = mj.ball(FRAMES, 60.0, rng)
+        seen, covariance = mj.noisy(joint.poses, rng, *NOISES[0])
+        ball = fit_type("ball", Poses.of(seen, covariance))
+        off = ball.mechanism.proximal - joint.truth["proximal"]  # type: ignore[attr-defined]
+        inside["center"] += int(float(off @ np.linalg.solve(np.linalg.inv(ball.information)[:3, :3], off)) < 7.815)
+    print("\n| number | covered |\n| --- | --- |")
+    for name, count in inside.items():
+        print(f"| {name} | {count / trials:.3f} |")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,183 @@
+"""Which type of joint moved, and where its axes or its center are; frozen, in SI units and radians."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowscrew.model.brief import Brief
+
+Float = NDArray[np.float64]
+
+JointTypeName = Literal["rigid", "hinge", "screw_hinge", "two_axes", "ball", "free", "undetermined"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TypeCandidate:
+    """A type that was tried.
+
+    Attributes
+    ----------
+    type : str
+    residual_rotation, residual_translation : float
+        RMS that it leaves, rad and m.
+    heldout_variance : float
+        Whitened variance that it leaves of frames it was not fitted to, for each degree of freedom;
+        NaN where it did not matter.
+    shared, per_frame : int
+        Numbers that all frames share, and that each has of its own.
+    valid : bool
+        Whether the frames determine it: no phantom, no center beyond 50 mm.
+    """
+
+    type: JointTypeName
+    residual_rotation: float
+    residual_translation: float
+    heldout_variance: float
+    shared: int
+    per_frame: int
+    valid: bool
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class JointLine(Brief):
+    """One of two axes.
+
+    Attributes
+    ----------
+    direction_proximal, point_proximal, direction_distal, point_distal : ndarray, shape (3,)
+        In the frames of the bodies, with the joint in its reference pose; the point is where `point_radius` holds.
+    covariance : ndarray, shape (4, 4)
+        Of tilts and shifts about two axes across the line, in the body it belongs to.
+    axis_cone, point_radius : float
+        Half-angle (rad) and radius (m) that hold 95 %.
+    axis_sd : float
+        Larger of the two tilts' standard deviations, rad.
+    range : float
+        From the 5 % to the 95 % quantile of the angle, rad.
+    angle_sd : float
+        Median standard deviation of the angle of a frame, rad.
+    determined : bool
+        Whether the range is 12 times that and the direction known to 15 deg.
+    """
+
+    direction_proximal: Float
+    point_proximal: Float
+    direction_distal: Float
+    point_distal: Float
+    covariance: Float
+    axis_cone: float
+    point_radius: float
+    axis_sd: float
+    range: float
+    angle_sd: float
+    determined: bool
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Measure:
+    """A number with its standard deviation."""
+
+    value: float
+    sd: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class TwoAxes(Brief):
+    """Two axes, the first fixed in the proximal body, the second in the distal one.
+
+    Attributes
+    ----------
+    axis1, axis2 : JointLine
+    covariance : ndarray, shape (12, 12)
+        Of tilts and shifts of axis 1, four numbers between the axes, and tilts and shifts of axis 2.
+    angle_between : Measure
+        Folded to 90 deg at most, rad.
+    distance, foot1, foot2 : Measure or None
+        Along the common normal (m, positive on the side of ``axis 1 x axis 2``), and of its feet along each axis (m)
+        from the point nearest the body's origin; None for parallel axes.
+    offset : Measure or None
+        Distance of parallel axes, m; None where they are not parallel.
+    """
+
+    axis1: JointLine
+    axis2: JointLine
+    covariance: Float
+    angle_between: Measure
+    distance: Measure | None
+    foot1: Measure | None
+    foot2: Measure | None
+    offset: Measure | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class BallJoint(Brief):
+    """A center.
+
+    Attributes
+    ----------
+    center_proximal, center_distal : ndarray, shape (3,)
+        In the frames of both bodies, m.
+    covariance : ndarray, shape (6, 6)
+        Of both, in that order, along the axes of the bodies.
+    radius : float
+        That holds 95 % of the center in the proximal body, m.
+    """
+
+    center_proximal: Float
+    center_distal: Float
+    covariance: Float
+    radius: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class SecondRotation(Brief):
+    """What rotates beside a hinge.
+
+    Attributes
+    ----------
+    range : float
+        rad.
+    axis : JointLine or None
+        None where its direction is not determined.
+    """
+
+    range: float
+    axis: JointLine | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class JointType(Brief):
+    """Which joint it is, and its numbers.
+
+    Attributes
+    ----------
+    type : str
+    status : {"determined", "approximate", "forced"} or None
+    reason : str
+    candidates : tuple of TypeCandidate
+        The types that were tried, simplest first.
+    two_axes : TwoAxes or None
+    ball : BallJoint or None
+    second_rotation : SecondRotation or None
+        Beside a hinge.
+    angle, angle_sd : ndarray, shape (F, k)
+        Of each frame, rad, from the reference pose: one of a hinge, two of two axes, the rotation vector of a ball.
+    residual_rotation, residual_translation : ndarray, shape (F,)
+        That the joint leaves in each frame, rad and m.
+    """
+
+    type: JointTypeName
+    status: Literal["determined", "approximate", "forced"] | None
+    reason: str
+    candidates: tuple[TypeCandidate, ...]
+    two_axes: TwoAxes | None
+    ball: BallJoint | None
+    second_rotation: SecondRotation | None
+    angle: Float
+    angle_sd: Float
+    residual_rotation: Float
+    residual_translation: Float

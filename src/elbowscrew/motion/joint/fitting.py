@@ -1,0 +1,60 @@
+"""Each type of joint fitted to poses from its own start, and how sure its shared numbers are."""
+
+from __future__ import annotations
+
+from typing import Final, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowscrew.motion.joint.joint_fit import _integrated_autocorrelation
+from elbowscrew.motion.joint.likelihood import Fit, Mechanism, Poses, fit_mechanism, fit_robustly
+from elbowscrew.motion.joint.simple_types import Ball, OneAxis, Rigid
+from elbowscrew.motion.joint.starts import find_two_axes
+from elbowscrew.motion.joint.two_axes import is_phantom
+
+Float = NDArray[np.float64]
+Fitted = Literal["rigid", "hinge", "screw_hinge", "two_axes", "ball"]
+
+_ITERATIONS: Final = 25
+_PHANTOM_ITERATIONS: Final = 4
+_TOLERANCE: Final = 1e-6
+_LEAST_INFORMATION: Final = 1e-13
+_LEAST_FREEDOM: Final = 20.0
+
+
+def fit_type(name: Fitted, poses: Poses, *, robust: bool = False) -> Fit[Mechanism]:
+    """Fit one type of joint to poses, from its own start."""
+    start: Mechanism
+    iterations = _ITERATIONS
+    match name:
+        case "rigid":
+            start = Rigid.start(poses.joint)
+        case "hinge" | "screw_hinge":
+            start = OneAxis.start(poses.joint, screw=name == "screw_hinge")
+        case "two_axes":
+            found = find_two_axes(poses)
+            start = found.mechanism.placed(poses.joint)
+            # A phantom has no optimum worth a long search: it only has to be told.
+            iterations = _PHANTOM_ITERATIONS if is_phantom(found) else _ITERATIONS
+        case "ball":
+            start = Ball.start(poses.joint)
+    fit = fit_mechanism(start, poses, iterations=iterations, tolerance=_TOLERANCE)
+    return fit_robustly(fit, poses) if robust else fit
+
+
+def shared_covariance(fit: Fit[Mechanism], *, noise_known: bool) -> Float:
+    """Covariance (P, P) of the shared numbers: of the stated noise, or of larger and correlated residuals.
+
+    NaN where the frames do not determine them, or are too few to tell of a noise that nobody states.
+    """
+    scale = np.sqrt(np.maximum(np.diag(fit.information), 0.0))
+    unknown = np.full(fit.information.shape, np.nan)
+    if not (scale > 0.0).all() or not (noise_known or fit.freedom >= _LEAST_FREEDOM):
+        return unknown
+    values, vectors = np.linalg.eigh(fit.information / np.outer(scale, scale))
+    if values[0] < _LEAST_INFORMATION:
+        return unknown
+    inverse: Float = (vectors / values) @ vectors.T / np.outer(scale, scale)
+    correlation = _integrated_autocorrelation(fit.whitened * np.sqrt(fit.weight)[:, None])
+    return inverse * max(fit.variance, 1.0 if noise_known else 0.0) * correlation

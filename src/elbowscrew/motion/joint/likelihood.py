@@ -1,0 +1,335 @@
+"""One likelihood for every type of joint: all relative poses at once, the frames' own numbers eliminated.
+
+The model of frame i is a pose ``J_i(shared, own_i)``; the measured one is ``J_i exp(e_i)`` with ``e_i`` normal. Shared
+numbers (lines, centers) are the same in all frames, own numbers (angles) belong to one. At a point of the search the
+whitened residual of a frame is ``r - G d - D f``: projecting it off the columns of D eliminates the frame's numbers
+(Schur's complement), what is left is a small problem for the shared ones. ``docs/joint.md`` names the types.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Final, Generic, NamedTuple, Self, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowscrew.geometry import dual_quaternion as dq
+from elbowscrew.geometry.twist import adjoint
+
+Float = NDArray[np.float64]
+Rows = NDArray[np.int64]
+M = TypeVar("M", bound="Mechanism")
+M_co = TypeVar("M_co", bound="Mechanism", covariant=True)
+
+_TRIES: Final = 10
+_LARGEST_FRAME_STEP: Final = 0.7
+_SETTLED: Final = 1e-4
+_SMALLEST_STEP: Final = 1e-7
+_ROBUST_ROUNDS: Final = 30
+_ROBUST_STEPS: Final = 2
+_BLOCK: Final = 4096
+_TINY: Final = np.finfo(np.float64).tiny
+# By the residual's degrees of freedom a frame: median of chi-square, and Tukey's constant with 95 % efficiency, from
+# the asymptotic variance of an M-estimate of location in so many dimensions (Maronna, Martin and Yohai 2006).
+_MEDIAN_SQUARE: Final = {3: 2.366, 4: 3.357, 5: 4.351, 6: 5.348}
+_TUKEY: Final = {3: 5.490, 4: 5.810, 5: 6.096, 6: 6.356}
+
+
+class Poses(NamedTuple):
+    """Relative poses with what their errors are weighed by.
+
+    Attributes
+    ----------
+    joint : ndarray, shape (F, 8)
+        Distal body in the proximal one, any signs.
+    whitener : ndarray, shape (F, 6, 6)
+        ``U`` with ``U^T U`` the inverse covariance of each pose's error in the distal body's frame.
+    """
+
+    joint: Float
+    whitener: Float
+
+    @classmethod
+    def of(cls, joint: Float, covariance: Float) -> Poses:
+        """Poses (F, 8) and the covariances (F, 6, 6) of their errors in the distal body's frame."""
+        inverse = np.linalg.inv(np.broadcast_to(covariance, (len(joint), 6, 6)))
+        return cls(joint, np.swapaxes(np.linalg.cholesky(inverse), -1, -2))
+
+    def at(self, rows: Rows | slice) -> Poses:
+        """Give the poses of some frames."""
+        return Poses(self.joint[rows], self.whitener[rows])
+
+    def thinned(self, most: int) -> tuple[Poses, Rows]:
+        """At most so many frames, evenly spread, and which they are."""
+        count = len(self.joint)
+        rows = np.linspace(0, count - 1, min(count, most)).round().astype(np.int64)
+        return self.at(rows), rows
+
+
+class Linear(NamedTuple):
+    """A mechanism near its present numbers, twists in the frame its residuals are written in.
+
+    Attributes
+    ----------
+    residual : ndarray, shape (F, 6)
+        From the model's pose to the measured one.
+    own : ndarray, shape (F, 6, k)
+        Derivatives of the model's pose by the frame's own numbers.
+    shared : ndarray, shape (F, 6, P)
+        The same by the shared numbers.
+    """
+
+    residual: Float
+    own: Float
+    shared: Float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Mechanism(ABC):
+    """A type of joint with its numbers.
+
+    Attributes
+    ----------
+    frames : ndarray, shape (F, ...)
+        The numbers that belong to one frame each.
+    """
+
+    frames: Float
+
+    @property
+    @abstractmethod
+    def residual_frame(self) -> Float:
+        """Pose (8,) in the distal body of the frame that residuals are written in."""
+
+    @abstractmethod
+    def linear(self, joint: Float) -> Linear:
+        """Residuals and derivatives at poses (F, 8), which `frames` must belong to."""
+
+    @abstractmethod
+    def moved(self, shared: Float, own: Float) -> Self:
+        """After a step of the shared numbers (P,) and of the frames' (F, k)."""
+
+    @abstractmethod
+    def placed(self, joint: Float) -> Self:
+        """With the same shared numbers on other poses (F, 8): the frames' own numbers in closed form."""
+
+    def on(self, rows: Rows) -> Self:
+        """Give the same joint on some of its frames."""
+        return replace(self, frames=self.frames[rows])
+
+
+class Fit(NamedTuple, Generic[M_co]):
+    """A mechanism at its most likely numbers.
+
+    Attributes
+    ----------
+    mechanism : Mechanism
+    square : ndarray, shape (F,)
+        Squared whitened distance of each frame, its own numbers at the optimum.
+    whitened : ndarray, shape (F, 6)
+        Whitened residual, projected off the frame's own numbers.
+    residual : ndarray, shape (F, 6)
+        The same as a twist in `Mechanism.residual_frame`.
+    weight : ndarray, shape (F,)
+        1, or less for outliers of a robust fit.
+    information : ndarray, shape (P, P)
+        Inverse of the covariance of the shared numbers under the stated noise.
+    own_covariance : ndarray, shape (F, k, k)
+        Of the frame's own numbers for given shared ones, under the stated noise.
+    """
+
+    mechanism: M_co
+    square: Float
+    whitened: Float
+    residual: Float
+    weight: Float
+    information: Float
+    own_covariance: Float
+
+    @property
+    def cost(self) -> float:
+        """Sum of the weighed squares."""
+        return float(self.weight @ self.square)
+
+    @property
+    def own_count(self) -> int:
+        """Numbers that each frame has of its own."""
+        return int(self.own_covariance.shape[1])
+
+    @property
+    def freedom(self) -> float:
+        """Degrees of freedom of the residuals."""
+        return float((6 - self.own_count) * self.weight.sum() - len(self.information))
+
+    @property
+    def variance(self) -> float:
+        """Whitened variance for each degree of freedom: 1 where the stated noise explains the residuals."""
+        return self.cost / max(self.freedom, 1.0)
+
+    @property
+    def residual_rotation(self) -> float:
+        """RMS rotation left, rad."""
+        return self._rms(slice(0, 3))
+
+    @property
+    def residual_translation(self) -> float:
+        """RMS translation left, m, at the origin of the residuals' frame."""
+        return self._rms(slice(3, 6))
+
+    def _rms(self, part: slice) -> float:
+        return float(np.sqrt(np.average(np.sum(self.residual[:, part] ** 2, axis=1), weights=self.weight)))
+
+
+class _Reduced(NamedTuple):
+    information: Float
+    gradient: Float
+    square: Float
+    whitened: Float
+    residual: Float
+    own_step: Float
+    own_by_shared: Float
+    own_covariance: Float
+
+
+def _reduced(mechanism: Mechanism, poses: Poses, weight: Float) -> _Reduced:
+    linear = mechanism.linear(poses.joint)
+    k = linear.own.shape[2]
+    whitener = poses.whitener @ adjoint(mechanism.residual_frame)
+    whole = whitener @ np.concatenate([linear.own, linear.residual[..., None], linear.shared], axis=2)
+    own, rest = whole[..., :k], whole[..., k:]
+    across = np.swapaxes(own, -1, -2)
+    square = across @ own
+    # Where two numbers of a frame do one and the same, as the angles of parallel axes in one line: no step, not NaN.
+    square = square + (1e-10 / max(k, 1)) * np.trace(square, axis1=1, axis2=2)[:, None, None] * np.eye(k)
+    covariance = np.linalg.inv(square)
+    mixed = covariance @ (across @ rest)
+    rest = rest - own @ mixed
+    residual, shared = rest[..., 0], rest[..., 1:]
+    weighed = (shared * weight[:, None, None]).reshape(-1, shared.shape[2])
+    return _Reduced(
+        information=weighed.T @ shared.reshape(-1, shared.shape[2]),
+        gradient=weighed.T @ residual.reshape(-1),
+        square=np.einsum("fi,fi->f", residual, residual),
+        whitened=residual,
+        residual=linear.residual - np.einsum("fik,fk->fi", linear.own, mixed[..., 0]),
+        own_step=mixed[..., 0],
+        own_by_shared=mixed[..., 1:],
+        own_covariance=covariance,
+    )
+
+
+def fit_mechanism(
+    mechanism: M,
+    poses: Poses,
+    *,
+    iterations: int = 40,
+    tolerance: float = 1e-10,
+    weight: Float | None = None,
+) -> Fit[M]:
+    """Maximize the likelihood from a start, by Levenberg and Marquardt with the frames' own numbers eliminated.
+
+    Parameters
+    ----------
+    mechanism : Mechanism
+        Start, its frames those of the poses.
+    poses : Poses
+    iterations : int
+    tolerance : float
+        Least relative gain that another iteration is made for.
+    weight : ndarray, shape (F,), optional
+        Of each frame; 1 by itself.
+    """
+    weight = np.ones(len(poses.joint)) if weight is None else weight
+    at, damping = _reduced(mechanism, poses, weight), 1e-6
+    cost = float(weight @ at.square)
+    for _ in range(iterations):
+        scale = np.sqrt(np.maximum(np.diag(at.information), _TINY))
+        scaled = at.information / np.outer(scale, scale)
+        unsettled = np.abs(at.own_step).max(initial=0.0)
+        for _ in range(_TRIES):
+            damped = scaled + damping * np.eye(len(scale))
+            step = np.linalg.lstsq(damped, at.gradient / scale, rcond=1e-13)[0] / scale
+            # A full step lowers the cost by gradient times step: below the tolerance there is nothing to try.
+            if unsettled < _SETTLED and at.gradient @ step <= tolerance * cost:
+                return _fitted(mechanism, at, weight)
+            own = np.clip(at.own_step - at.own_by_shared @ step, -_LARGEST_FRAME_STEP, _LARGEST_FRAME_STEP)
+            after = mechanism.moved(step, own)
+            new = _reduced(after, poses, weight)
+            new_cost = float(weight @ new.square)
+            if new_cost <= cost * (1.0 + 1e-12):
+                break
+            damping = 10.0 * max(damping, 1e-7)
+        else:
+            break
+        gain = cost - new_cost
+        mechanism, at, cost = after, new, new_cost
+        damping = max(0.1 * damping, 1e-10)
+        if gain <= tolerance * cost and unsettled < _SETTLED:
+            break
+    return _fitted(mechanism, at, weight)
+
+
+def _fitted(mechanism: M, at: _Reduced, weight: Float) -> Fit[M]:
+    return Fit(mechanism, at.square, at.whitened, at.residual, weight, at.information, at.own_covariance)
+
+
+def fit_robustly(fit: Fit[M], poses: Poses) -> Fit[M]:
+    """Go on from a fit by Tukey's biweight, after a start by weights 1/distance that forgets the outliers.
+
+    References
+    ----------
+    Maronna, Martin and Yohai 2006; the scale is the median distance.
+    """
+    freedom = 6 - fit.own_count
+    cost = np.inf
+    for k in range(_ROBUST_ROUNDS):
+        distance = np.sqrt(fit.square)
+        scale = float(np.median(distance)) / np.sqrt(_MEDIAN_SQUARE[freedom])
+        relative = distance / max(scale, _TINY)
+        if k < _ROBUST_ROUNDS // 3:
+            weight = 1.0 / np.maximum(relative, 1.0)
+        else:
+            weight = np.maximum(1.0 - (relative / _TUKEY[freedom]) ** 2, 0.0) ** 2
+        fit = fit_mechanism(fit.mechanism, poses, iterations=_ROBUST_STEPS, weight=weight)
+        if k > _ROBUST_ROUNDS // 3 and abs(fit.variance - cost) <= 1e-10 * cost:
+            break
+        cost = fit.variance
+    return fit
+
+
+def settled(mechanism: M, poses: Poses, *, rounds: int = 3) -> Fit[M]:
+    """Put a joint on poses: each frame's own numbers at their optimum, the shared ones as they are.
+
+    Frames are looked at in blocks, so that a long trial needs no more memory than a short one beside its results.
+    """
+    fits = []
+    start = mechanism.placed(poses.joint)
+    for first in range(0, len(poses.joint), _BLOCK):
+        rows = np.arange(first, min(first + _BLOCK, len(poses.joint)))
+        part, block, weight = start.on(rows), poses.at(rows), np.ones(rows.size)
+        at = _reduced(part, block, weight)
+        for _ in range(rounds if at.own_step.size else 0):
+            if np.abs(at.own_step).max() < _SMALLEST_STEP:
+                break
+            step = np.clip(at.own_step, -_LARGEST_FRAME_STEP, _LARGEST_FRAME_STEP)
+            part = part.moved(np.zeros(len(at.information)), step)
+            at = _reduced(part, block, weight)
+        fits.append(_fitted(part, at, weight))
+    join: Callable[[list[Float]], Float] = np.concatenate
+    return Fit(
+        mechanism=replace(fits[0].mechanism, frames=join([fit.mechanism.frames for fit in fits])),
+        square=join([fit.square for fit in fits]),
+        whitened=join([fit.whitened for fit in fits]),
+        residual=join([fit.residual for fit in fits]),
+        weight=join([fit.weight for fit in fits]),
+        information=np.sum([fit.information for fit in fits], axis=0),
+        own_covariance=join([fit.own_covariance for fit in fits]),
+    )
+
+
+def residual_twist(model: Float, joint: Float) -> Float:
+    """Twist (F, 6) that leads from the model's poses to the measured ones, in the model's frame."""
+    return 2.0 * dq.log(dq.canonical(dq.multiply(dq.conjugate(model), joint)))

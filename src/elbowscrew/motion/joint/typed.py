@@ -1,0 +1,247 @@
+"""The joint by its type: chosen on few frames, refined on many, its angles in all of them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowscrew.geometry import dual_quaternion as dq
+from elbowscrew.geometry.quaternion import rotation_matrix_from_quat
+from elbowscrew.geometry.sensitivity import confidence_radius
+from elbowscrew.model.joint_type import BallJoint, JointLine, JointType, Measure, SecondRotation, TwoAxes
+from elbowscrew.motion.joint.choice import Choice, choose_type, middle_range
+from elbowscrew.motion.joint.fitting import Fitted, shared_covariance
+from elbowscrew.motion.joint.likelihood import Fit, Mechanism, Poses, fit_mechanism, fit_robustly, settled
+from elbowscrew.motion.joint.lines import Z_LINE
+from elbowscrew.motion.joint.simple_types import Ball, OneAxis
+from elbowscrew.motion.joint.two_axes import TwoAxesMechanism, angle_sd, axes_geometry, geometry_covariance
+
+Float = NDArray[np.float64]
+
+_MOST_FRAMES: Final = 5000
+_PARALLEL: Final = np.radians(5.0)
+_SURE: Final = 3.0
+_LEAST_RANGE_IN_SD: Final = 12.0
+_LARGEST_AXIS_SD: Final = np.radians(15.0)
+_NORMAL_95: Final = 1.959964
+# Radius of the ball that holds 95 % of an isotropic error in space: root of the quantile of chi-square with 3.
+_BALL_95: Final = 2.795483
+
+
+def identify_joint(
+    joint: Float,
+    covariance: Float,
+    reference: Float,
+    *,
+    noise_known: bool,
+    robust: bool = False,
+    forced: Fitted | None = None,
+    left: bool = False,
+) -> JointType:
+    """Tell which joint moved so, and where its axes or its center are.
+
+    Parameters
+    ----------
+    joint : ndarray, shape (F, 8)
+        Measured poses of the distal body in the proximal one, any signs, in order of time.
+    covariance : ndarray, shape (F, 6, 6) or (6, 6)
+        Of each pose's error in the distal body's frame (`joint_covariance`).
+    reference : ndarray, shape (8,)
+        Pose that angles count from.
+    noise_known : bool
+        Whether the covariance is stated; else only its shape counts.
+    robust : bool
+        Weigh outliers down.
+    forced : str, optional
+        Take this type.
+    left : bool
+        Of a left side the second axis points away from the joint, so that pronation is positive.
+
+    Returns
+    -------
+    JointType
+        Chosen on 200 frames and refined on 5,000 at most, both evenly spread; angles are those of all frames, so that
+        time and memory grow with the frames as the result does.
+    """
+    poses = Poses.of(joint, covariance)
+    choice = choose_type(poses, noise_known=noise_known, robust=robust, forced=forced)
+    if choice.type in ("free", "undetermined"):
+        return _result(choice, None)
+    found = choice.fits[choice.type]
+    most, _ = poses.thinned(_MOST_FRAMES)
+    fit = fit_mechanism(found.mechanism.placed(most.joint), most)
+    fit = fit_robustly(fit, most) if robust else fit
+    mechanism = fit.mechanism
+    start = settled(mechanism, Poses(reference[None], most.whitener[:1]), rounds=5).mechanism
+    if isinstance(mechanism, TwoAxesMechanism):
+        at = _oriented(mechanism.zeroed(start.frames[0]), left=left)
+        written = fit_mechanism(at, most, iterations=0, weight=fit.weight)
+        two_axes = _two_axes(written, reference, noise_known=noise_known)
+        return _result(choice, settled(at, poses), two_axes=two_axes, scale=fit)
+    every: Fit[Mechanism] = settled(mechanism, poses)
+    if isinstance(mechanism, OneAxis):
+        angle = _near_zero(every.mechanism.frames - start.frames[0])
+        sense = 1.0 if angle.max() >= -angle.min() else -1.0
+        every = every._replace(mechanism=replace(every.mechanism, frames=sense * angle))
+        return _result(choice, every, second=_second_rotation(choice, reference, noise_known=noise_known), scale=fit)
+    if isinstance(mechanism, Ball):
+        turned = dq.multiply(every.mechanism.frames, dq.conjugate(start.frames[0]))
+        vector = 2.0 * dq.log(dq.canonical(turned))[:, :3]
+        R = rotation_matrix_from_quat(every.mechanism.frames[:, :4])
+        every = every._replace(
+            mechanism=replace(every.mechanism, frames=vector),
+            own_covariance=R @ every.own_covariance @ np.swapaxes(R, -1, -2),
+        )
+        return _result(choice, every, ball=_ball(fit, mechanism, noise_known=noise_known), scale=fit)
+    return _result(choice, every._replace(mechanism=replace(mechanism, frames=np.zeros((len(joint), 0)))))
+
+
+def _result(
+    choice: Choice,
+    every: Fit[Mechanism] | None,
+    *,
+    two_axes: TwoAxes | None = None,
+    ball: BallJoint | None = None,
+    second: SecondRotation | None = None,
+    scale: Fit[Mechanism] | None = None,
+) -> JointType:
+    empty = np.zeros((0, 0))
+    angle, deviation = empty, empty
+    if every is not None:
+        angle = every.mechanism.frames
+        if two_axes is not None or angle.shape[1] == 1:
+            angle = _near_zero(angle)
+        ratio = 1.0 if scale is None else max(scale.variance, 1.0)
+        deviation = np.sqrt(ratio * np.diagonal(every.own_covariance, axis1=1, axis2=2))
+    residual = np.zeros((0, 6)) if every is None else every.residual
+    return JointType(
+        type=choice.type,
+        status=choice.status,
+        reason=choice.reason,
+        candidates=choice.candidates,
+        two_axes=two_axes,
+        ball=ball,
+        second_rotation=second,
+        angle=angle,
+        angle_sd=deviation,
+        residual_rotation=np.linalg.norm(residual[:, :3], axis=1),
+        residual_translation=np.linalg.norm(residual[:, 3:], axis=1),
+    )
+
+
+def _near_zero(angle: Float) -> Float:
+    """Take off the whole turns that the frame nearest the reference pose has."""
+    if not len(angle):
+        return angle
+    turns = np.round(angle / (2.0 * np.pi))
+    nearest = np.argmin(np.sum(np.abs(angle - 2.0 * np.pi * turns), axis=1))
+    return np.asarray(angle - 2.0 * np.pi * turns[nearest])
+
+
+def _oriented(at: TwoAxesMechanism, *, left: bool) -> TwoAxesMechanism:
+    """Axis 1 with its largest excursion positive; axis 2 toward the joint from the distal body, of a left side away.
+
+    The origins are put on the feet of the common normal, where the places of both axes are of interest; of parallel
+    axes, which have none, and whose second is given the sense of its excursion, nearest the bodies' origins.
+    """
+    angle = _near_zero(at.frames)
+    senses = np.where(angle.max(axis=0) >= -angle.min(axis=0), 1.0, -1.0)
+    geometry = axes_geometry(at)
+    parallel = min(geometry.angle, np.pi - geometry.angle) < _PARALLEL
+    if not parallel:
+        senses[1] = (1.0 if geometry.foot2 >= 0.0 else -1.0) * (-1.0 if left else 1.0)
+    at = at.turned(float(senses[0]), float(senses[1]))
+    first, second = _to_origin(at.proximal), _to_origin(at.distal)
+    if parallel:
+        return at.slid(first, second)
+    geometry = axes_geometry(at)
+    return at.slid(first + geometry.foot1, second + geometry.foot2)
+
+
+def _to_origin(pose: Float) -> float:
+    """How far along the z axis of a pose the point nearest the body's origin is."""
+    return -float(dq.pose_from_dual_quat(pose)[1] @ dq.transform_lines(pose, Z_LINE)[:3])
+
+
+def _two_axes(fit: Fit[TwoAxesMechanism], reference: Float, *, noise_known: bool) -> TwoAxes:
+    at = fit.mechanism
+    covariance = shared_covariance(fit, noise_known=noise_known)
+    geometry = axes_geometry(at)
+    sd = np.sqrt(np.maximum(np.diag(geometry_covariance(at, covariance)), 0.0))
+    between = min(geometry.angle, np.pi - geometry.angle)
+    parallel = between < max(_PARALLEL, _SURE * sd[0])
+    lines = _lines(at, fit, reference, covariance)
+    return TwoAxes(
+        axis1=lines[0],
+        axis2=lines[1],
+        covariance=covariance,
+        angle_between=Measure(value=between, sd=float(sd[0])),
+        distance=None if parallel else Measure(value=geometry.distance, sd=float(sd[1])),
+        foot1=None if parallel else Measure(value=geometry.foot1, sd=float(sd[2])),
+        foot2=None if parallel else Measure(value=geometry.foot2, sd=float(sd[3])),
+        offset=Measure(value=geometry.offset, sd=float(sd[4])) if parallel else None,
+    )
+
+
+def _lines(
+    at: TwoAxesMechanism, fit: Fit[Mechanism], reference: Float, covariance: Float
+) -> tuple[JointLine, JointLine]:
+    deviation = angle_sd(fit)
+    poses = [
+        (at.proximal, dq.multiply(dq.conjugate(reference), at.proximal)),
+        (dq.multiply(reference, at.distal), at.distal),
+    ]
+    lines = []
+    for k, (proximal, distal) in enumerate(poses):
+        block = covariance[8 * k : 8 * k + 4, 8 * k : 8 * k + 4]
+        tilt_sd = float(np.sqrt(np.diag(block)[:2].max()))
+        reach = middle_range(at.frames[:, k])
+        lines.append(
+            JointLine(
+                direction_proximal=dq.transform_lines(proximal, Z_LINE)[:3],
+                point_proximal=dq.pose_from_dual_quat(proximal)[1],
+                direction_distal=dq.transform_lines(distal, Z_LINE)[:3],
+                point_distal=dq.pose_from_dual_quat(distal)[1],
+                covariance=block,
+                axis_cone=float(confidence_radius(block[:2, :2])),
+                point_radius=float(confidence_radius(block[2:, 2:])),
+                axis_sd=tilt_sd,
+                range=reach,
+                angle_sd=float(deviation[k]),
+                determined=bool(reach >= _LEAST_RANGE_IN_SD * deviation[k] and tilt_sd <= _LARGEST_AXIS_SD),
+            )
+        )
+    return lines[0], lines[1]
+
+
+def _second_rotation(choice: Choice, reference: Float, *, noise_known: bool) -> SecondRotation | None:
+    """What turns beside a hinge; None where it was not looked for, as the stated noise explains the hinge."""
+    if "two_axes" not in choice.fits:
+        return None
+    two = choice.fits["two_axes"]
+    if not isinstance(two.mechanism, TwoAxesMechanism):
+        return None
+    lines = _lines(two.mechanism, two, reference, shared_covariance(two, noise_known=noise_known))
+    smaller = min(lines, key=lambda line: line.range)
+    valid = any(candidate.valid for candidate in choice.candidates if candidate.type == "two_axes")
+    if valid and all(line.determined for line in lines):
+        return SecondRotation(range=smaller.range, axis=smaller)
+    left = next(c for c in choice.candidates if c.type == choice.type).residual_rotation
+    return SecondRotation(range=3.3 * left, axis=None)
+
+
+def _ball(fit: Fit[Mechanism], at: Ball, *, noise_known: bool) -> BallJoint:
+    covariance = shared_covariance(fit, noise_known=noise_known)
+    # Between that of one direction and that of three alike: exact at both ends.
+    values = np.linalg.eigvalsh(covariance[:3, :3]) if np.isfinite(covariance).all() else np.full(3, np.nan)
+    roundness = (values.sum() / values.max() - 1.0) / 2.0
+    factor = _NORMAL_95 + (_BALL_95 / np.sqrt(3.0) - _NORMAL_95) * roundness
+    return BallJoint(
+        center_proximal=at.proximal,
+        center_distal=at.distal,
+        covariance=covariance,
+        radius=float(factor * np.sqrt(values.sum())),
+    )
