@@ -263,7 +263,7 @@ def _vector(values: Iterable[float], decimals: int) -> str:
 def _joint_axis(motion: Mapping[str, Any]) -> str:
     axis = motion["joint_axis"]
     if axis is None:
-        return "none: the motion has no single axis"
+        return _joint_type(motion["joint_type"])
     model = axis["model"].replace("_", "-")
     direction, point = _vector(axis["direction"], 4), _vector(axis["point_mm"], 1)
     if axis["axis_cone95_deg"] is None:
@@ -273,6 +273,34 @@ def _joint_axis(motion: Mapping[str, Any]) -> str:
         f"{axis['point_radius95_mm']:.2g} mm ({model}, 95 %, for the clusters' frames, {axis['interval_method']}; "
         f"each degree that a cluster turns on its bone with the motion turns this axis by up to "
         f"{axis['sensitivity_deg_per_deg']:.2g} deg)"
+    )
+
+
+def _joint_type(found: Mapping[str, Any]) -> str:
+    if found["type"] == "two_axes":
+        axes = found["two_axes"]
+        told = "; ".join(_one_of_two(axes[f"axis{k}"], k) for k in (1, 2))
+        apart = f"{axes['angle_between_deg']:.1f} deg"
+        if axes["distance_mm"] is not None:
+            apart += f" and {abs(axes['distance_mm']):.1f} mm"
+        return f"two axes ({found['status']}): {told}; {apart} apart (intervals {found['interval_note']})"
+    if found["type"] == "ball":
+        ball = found["ball"]
+        return (
+            f"ball ({found['status']}): center ({_vector(ball['center_in_proximal_mm'], 1)}) mm in the proximal body "
+            f"within {ball['radius95_mm']:.2g} mm ({found['interval_note']})"
+        )
+    return f"none: the motion has no single axis ({found['type'].replace('_', ' ')}: {found['reason']})"
+
+
+def _one_of_two(axis: Mapping[str, Any], number: int) -> str:
+    body = ("proximal", "distal")[number - 1]
+    direction = _vector(axis[f"direction_in_{body}"], 4)
+    if not axis["determined"]:
+        return f"axis {number} undetermined, {axis['range_deg']:.0f} deg about it"
+    return (
+        f"axis {number} ({direction}) in the {body} body within {axis['cone95_deg']:.2g} deg, "
+        f"{axis['range_deg']:.0f} deg about it"
     )
 
 

@@ -14,6 +14,7 @@ from elbowscrew.model.anatomy import AnatomicalMotion
 from elbowscrew.model.axes import HelicalSteps, InstantaneousMotion
 from elbowscrew.model.brief import Brief
 from elbowscrew.model.joint_axis import JointAxis
+from elbowscrew.model.joint_type import JointType
 from elbowscrew.model.modeled import BodyPoints, InterpolatedMotion, Keyframes, PhaseLaw, Selection
 from elbowscrew.model.quality import BodyQuality
 from elbowscrew.model.recording import QualityWarning, Recording, RigidBody
@@ -175,6 +176,8 @@ class Analysis(Brief):
         What gives its angle a sense.
     mean_axis : MeanAxis
     joint_axis : JointAxis
+    joint_type : JointType or None
+        Which joint it is, where the motion has no single axis.
     instantaneous : InstantaneousMotion
     steps : HelicalSteps or None
         None if none were asked for.
@@ -212,6 +215,7 @@ class Analysis(Brief):
     sense: Sense
     mean_axis: MeanAxis
     joint_axis: JointAxis
+    joint_type: JointType | None
     instantaneous: InstantaneousMotion
     steps: HelicalSteps | None
     phases: MovementPhases

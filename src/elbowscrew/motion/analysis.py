@@ -19,7 +19,7 @@ from elbowscrew.motion.axes.measured import (
 )
 from elbowscrew.motion.interpolation.model_building import JointModel, build_model
 from elbowscrew.motion.interpolation.model_errors import model_errors
-from elbowscrew.motion.joint.measured import joint_axis_warnings, measured_joint_axis
+from elbowscrew.motion.joint.measured import joint_axis_warnings, measured_joint_axis, measured_joint_type
 from elbowscrew.motion.movements.measured import cut_warnings, measured_cuts
 from elbowscrew.motion.movements.phases import movement_phases
 from elbowscrew.motion.movements.repetitions import cycle_curves_of, repeatability_of, repetitions_of
@@ -74,11 +74,14 @@ def analyze(recording: Recording, settings: Settings | None = None, *, landmarks
     elapsed = measured.elapsed
     mean = measured_mean_axis(measured)
     joint_axis = measured_joint_axis(measured, mean, wanted)
+    joint_type = measured_joint_type(measured, joint_axis, robust=wanted.robust)
     instantaneous = measured_instantaneous_motion(measured, wanted)
     velocity, near = instantaneous.angular_velocity, pose_from_dual_quat(measured.change)[1]
     cuts = measured_cuts(measured, wanted)
     model = build_model(measured, cuts.movements, wanted)
-    warnings = measured.warnings + cut_warnings(cuts) + model.warnings + joint_axis_warnings(joint_axis, measured)
+    warnings = (
+        measured.warnings + cut_warnings(cuts) + model.warnings + joint_axis_warnings(joint_axis, joint_type, measured)
+    )
     listed_velocity = velocity if sense.signed else np.full_like(velocity, np.nan)
     repetitions = repetitions_of(cuts.cycles, screw, lines_one_way(measured), listed_velocity, elapsed)
     curves = cycle_curves_of(cuts.cycles, screw.angle, elapsed)
@@ -120,6 +123,7 @@ def analyze(recording: Recording, settings: Settings | None = None, *, landmarks
         sense=sense,
         mean_axis=mean,
         joint_axis=joint_axis,
+        joint_type=joint_type,
         instantaneous=instantaneous if sense.signed else without_sense(instantaneous),
         steps=measured_steps(measured, wanted),
         phases=movement_phases(cuts.movements.onset_s, cuts.movements.offset_s, elapsed),

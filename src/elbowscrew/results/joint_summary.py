@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat
 from elbowscrew.model import Analysis, AnatomicalMotion, FittedJoint, LineEstimate, PoseNoise, RigidBody
+from elbowscrew.results.joint_type_summary import joint_type_summary
 from elbowscrew.results.statistics import known, rms, statistic
 
 Float = NDArray[np.float64]
@@ -19,9 +20,10 @@ def joint_summary(analysis: Analysis) -> dict[str, Any]:
     axis = analysis.joint_axis
     return {
         "expressed_in": analysis.settings.express_in,
+        "joint_type": joint_type_summary(analysis),
         "single_axis": axis.single,
         "preferred": axis.preferred,
-        "unexplained_share": known(axis.unexplained),
+        "unexplained_share": known(axis.unexplained) if axis.unexplained <= 1.0 else None,
         "hinge": _fitted(axis.hinge),
         "screw_hinge": _fitted(axis.screw_hinge),
         "weighted_mean": _line(axis.weighted_mean),

@@ -21,6 +21,7 @@ from elbowscrew.motion.tracking.quality import body_quality, check_bodies, clock
 from elbowscrew.motion.tracking.selection import choose_bodies
 from elbowscrew.reading.options import ASK_FOR_MARKERS
 from elbowscrew.results.joint_summary import INTERVAL_METHODS
+from elbowscrew.results.joint_type_summary import joint_type_summary
 from elbowscrew.results.statistics import known, rms, statistic
 from elbowscrew.settings import Settings, options_from_settings
 
@@ -244,6 +245,7 @@ def _motion(analysis: Analysis) -> dict[str, Any]:
         "axis_dispersion_max_deg": statistic(np.nanmax, np.degrees(axis.deviation)),
         "axis_distance_rms_mm": statistic(rms, 1000.0 * axis.distance),
         "single_axis": analysis.joint_axis.single,
+        "joint_type": joint_type_summary(analysis),
         "joint_axis": _joint_axis(analysis.joint_axis),
     }
 

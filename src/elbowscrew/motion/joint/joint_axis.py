@@ -70,12 +70,7 @@ def estimate_joint_axis(
     skin : tuple of SkinMotion
         How the clusters are stated to move as a whole on their bones.
     """
-    rows = np.flatnonzero(joint.measured)
-    rows = rows[np.linspace(0, rows.size - 1, min(rows.size, _MOST_FRAMES)).astype(np.int64)]
-    poses = joint.dual_quat_proximal_distal[rows]
-    assumed = PoseNoise(covariance=_COMMON_NOISE, source="assumed", marker_noise=None)
-    proximal, distal = noise.known or (assumed if noise.proximal_moves else None, assumed)
-    covariance = noise_gain[rows, None, None] * joint_covariance(poses, proximal, distal)
+    rows, poses, covariance = fitted_frames(joint, noise, noise_gain)
     start = transform_lines(joint.reference, mean_line)
     near = pose_from_dual_quat(joint.reference)[1]
     fits = {screw: fit_joint(poses, covariance, start, near, screw=screw, robust=robust) for screw in (False, True)}
@@ -114,6 +109,16 @@ def estimate_joint_axis(
         unexplained=unexplained,
         noise={"proximal": noise.proximal, "distal": noise.distal},
     )
+
+
+def fitted_frames(joint: JointMotion, noise: JointNoise, noise_gain: Float) -> tuple[NDArray[np.int64], Float, Float]:
+    """Rows (F,) of the frames that a joint is fitted to, their poses (F, 8) and the covariances (F, 6, 6) of these."""
+    rows = np.flatnonzero(joint.measured)
+    rows = rows[np.linspace(0, rows.size - 1, min(rows.size, _MOST_FRAMES)).astype(np.int64)]
+    poses = joint.dual_quat_proximal_distal[rows]
+    assumed = PoseNoise(covariance=_COMMON_NOISE, source="assumed", marker_noise=None)
+    proximal, distal = noise.known or (assumed if noise.proximal_moves else None, assumed)
+    return rows, poses, noise_gain[rows, None, None] * joint_covariance(poses, proximal, distal)
 
 
 class BodyMarkers(NamedTuple):

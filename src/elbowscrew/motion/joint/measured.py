@@ -6,16 +6,27 @@ from typing import Final
 
 import numpy as np
 
+from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat
+from elbowscrew.joints import side_of
 from elbowscrew.model import JointAxis, MeanAxis, QualityWarning, RigidBody
+from elbowscrew.model.joint_type import JointType
 from elbowscrew.motion.joint.interval import SkinMotion
-from elbowscrew.motion.joint.joint_axis import BodyMarkers, distal_line, estimate_joint_axis
+from elbowscrew.motion.joint.joint_axis import BodyMarkers, distal_line, estimate_joint_axis, fitted_frames
 from elbowscrew.motion.joint.nonrigid import Segment
+from elbowscrew.motion.joint.typed import identify_joint
 from elbowscrew.motion.screws.measurement import Measurement
 from elbowscrew.motion.screws.pose_noise import STILL_STRETCH
 from elbowscrew.settings import Settings
 
 _LARGE_NOISE_RATIO: Final = 2.0
 _FEWEST_MARKERS: Final = 3
+_LEAST_SHIFT: Final = 1e-6
+_FOUND: Final = {
+    "two_axes": "the joint has two axes (joint.json)",
+    "ball": "the joint has a center (joint.json)",
+    "free": "no joint of rotations alone explains it",
+    "rigid": "the two bodies hardly move against each other",
+}
 
 
 def measured_joint_axis(measured: Measurement, mean: MeanAxis, settings: Settings) -> JointAxis:
@@ -30,6 +41,21 @@ def measured_joint_axis(measured: Measurement, mean: MeanAxis, settings: Setting
         robust=settings.robust,
         markers=_markers(measured),
         skin=_skin(measured, settings),
+    )
+
+
+def measured_joint_type(measured: Measurement, joint_axis: JointAxis, *, robust: bool) -> JointType | None:
+    """Tell which joint it is where the motion has no single axis; None where it has, or positions tell nothing."""
+    _, poses, covariance = fitted_frames(measured.joint, measured.noise, measured.noise_gain)
+    if joint_axis.single or not np.ptp(pose_from_dual_quat(poses)[1], axis=0).max() > _LEAST_SHIFT:
+        return None
+    return identify_joint(
+        poses,
+        covariance,
+        measured.joint.reference,
+        noise_known=measured.noise.known is not None,
+        robust=robust,
+        left=side_of(measured.distal.name) == "left",
     )
 
 
@@ -61,13 +87,18 @@ def _moving(measured: Measurement) -> list[tuple[Segment, RigidBody]]:
     return found
 
 
-def joint_axis_warnings(joint_axis: JointAxis, measured: Measurement) -> tuple[QualityWarning, ...]:
+def joint_axis_warnings(
+    joint_axis: JointAxis, joint_type: JointType | None, measured: Measurement
+) -> tuple[QualityWarning, ...]:
     """Say where there is no single axis, and what its error bars stand on."""
     warnings = []
     if not joint_axis.single:
+        left = joint_axis.unexplained
+        share = f"{100.0 * left:.0f} % of its rotation" if left < 1.0 else "more rotation than there is about it"
+        found = "" if joint_type is None else f"; {_FOUND.get(joint_type.type, 'what it is, is undetermined')}"
         message = (
-            f"the motion has no single axis: a hinge leaves {100.0 * joint_axis.unexplained:.0f} % of its rotation "
-            "unexplained, so that no joint axis is fitted, and the mean axis is but a mean"
+            f"the motion has no single axis: a hinge leaves {share} unexplained, so that no joint axis is fitted, and "
+            f"theta and the mean axis mix rotations{found}"
         )
         warnings.append(QualityWarning(code="no-single-axis", message=message))
     if measured.noise.known is None:
