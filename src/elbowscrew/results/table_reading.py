@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import csv
+from collections.abc import Iterator
 from itertools import islice
 from pathlib import Path
-from typing import Any, Final, TypeVar
+from typing import Any, Final, TextIO, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -78,11 +80,11 @@ def read_columns(
             header = stream.readline().rstrip("\n").split(",")
             places = [header.index(column.name + suffixes.get(column.quantity, "")) for column in table]
             blocks: list[list[NDArray[Any]]] = [[] for _ in table]
-            while lines := list(islice(stream, _BLOCK_LINES)):
+            while lines := _whole_lines(stream):
                 if not lines[-1].endswith("\n"):
                     msg = "its last line is cut"
                     raise ValueError(msg)
-                cells = list(zip(*(line[:-1].split(",") for line in lines), strict=True))
+                cells = list(zip(*_rows(lines), strict=True))
                 for block, place, column in zip(blocks, places, table, strict=True):
                     block.append(_values(cells[place], column.quantity))
                 if len(cells) != len(header):
@@ -91,7 +93,7 @@ def read_columns(
     except OSError as error:
         msg = f"{path}: cannot be read: {error.strerror or error}; analyze the trial again"
         raise ResultError(msg) from error
-    except (ValueError, IndexError) as error:
+    except (ValueError, IndexError, csv.Error) as error:
         msg = f"{path}: not the table that was written: {error}; analyze the trial again"
         raise ResultError(msg) from error
     return {
@@ -120,6 +122,21 @@ def read_result(
         As `read_columns`.
     """
     return kind(**attributes(read_columns(path, table, angle_unit, length_unit), table))
+
+
+def _whole_lines(stream: TextIO) -> list[str]:
+    """Next lines of a table, and those that a label with a line break in it goes on in."""
+    lines = list(islice(stream, _BLOCK_LINES))
+    while sum(line.count('"') for line in lines) % 2 and (more := stream.readline()):
+        lines.append(more)
+    return lines
+
+
+def _rows(lines: list[str]) -> Iterator[list[str]]:
+    """Cells of each row; the reader of CSV, some times slower, only where a label is quoted."""
+    if any('"' in line for line in lines):
+        return csv.reader(lines, strict=True)
+    return (line[:-1].split(",") for line in lines)
 
 
 def _values(cells: tuple[str, ...], quantity: Quantity) -> NDArray[Any]:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import csv
+import re
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 import orjson
@@ -16,6 +17,8 @@ from elbowscrew.model import Analysis
 from elbowscrew.motion.interpolation.rebuilding import keyframes_of
 
 _BLOCK_ROWS = 4096
+# What JSON would escape, what CSV quotes, and the word that JSON has for an empty cell.
+_NOT_PLAIN: Final = re.compile(r'[",\\\x00-\x1f]|null')
 
 
 def named_tables(analysis: Analysis) -> dict[str, dict[str, NDArray[Any]]]:
@@ -70,22 +73,48 @@ def _write_blocks(path: Path, blocks: Iterable[Mapping[str, NDArray[Any]]]) -> N
     with path.open("wb") as stream:
         for k, block in enumerate(blocks):
             if k == 0:
-                stream.write((",".join(block) + "\n").encode())
-            rows = list(zip(*(_cells(values) for values in block.values()), strict=True))
-            if rows:
-                stream.write(_lines(rows))
+                stream.write((",".join(map(_quoted, block)) + "\n").encode())
+            columns = [_cells(values) for values in block.values()]
+            words = [
+                cells for values, cells in zip(block.values(), columns, strict=True) if values.dtype.kind not in "fiub"
+            ]
+            if columns and columns[0]:
+                stream.write(_lines(columns) if all(map(_is_plain, words)) else _quoted_lines(columns))
 
 
-def _lines(rows: list[tuple[object, ...]]) -> bytes:
+def _lines(columns: list[list[Any]]) -> bytes:
     """Lines of CSV, by way of JSON: orjson writes the shortest text that reads back as the same number.
 
-    No word of the tables has a comma, a quote or "null" in it.
+    No word of the columns may need quotes, or be changed by taking out JSON's.
     """
-    text = orjson.dumps(rows)[2:-2].replace(b"],[", b"\n")
+    text = orjson.dumps(list(zip(*columns, strict=True)))[2:-2].replace(b"],[", b"\n")
     for word in (b"null", b'"'):
         if word in text:
             text = text.replace(word, b"")
     return text + b"\n"
+
+
+def _quoted_lines(columns: list[list[Any]]) -> bytes:
+    """Lines of CSV cell by cell: slower, the same digits, and words of any kind."""
+    return "".join(",".join(row) + "\n" for row in zip(*map(_texts, columns), strict=True)).encode()
+
+
+def _is_plain(cells: list[Any]) -> bool:
+    """Whether JSON writes the words of a column as CSV does, but for the quotes around each."""
+    return not any(isinstance(cell, str) and _NOT_PLAIN.search(cell) for cell in set(cells))
+
+
+def _texts(cells: list[Any]) -> list[str]:
+    """Each cell of a column as it stands in the file."""
+    return [_quoted(cell) if isinstance(cell, str) else _number(cell) for cell in cells]
+
+
+def _number(cell: object) -> str:
+    return "" if cell is None else orjson.dumps(cell).decode().replace("null", "")
+
+
+def _quoted(word: str) -> str:
+    return '"' + word.replace('"', '""') + '"' if any(mark in word for mark in ',"\r\n') else word
 
 
 def _cells(values: NDArray[Any]) -> list[Any]:
