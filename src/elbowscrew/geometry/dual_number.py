@@ -6,7 +6,8 @@ the parts are NaN or infinite as NumPy's own functions give them, without a warn
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,10 +17,16 @@ from elbowscrew.geometry._small_angle import divide as _divide
 Float = NDArray[np.float64]
 
 
-class DualNumber(NamedTuple):
+class _Parts(NamedTuple):
+    real: Float
+    dual: Float
+
+
+class DualNumber(_Parts):
     """A dual number ``real + eps dual``.
 
-    A tuple of arrays: ``+`` and ``*`` are the tuple's own, so use the functions of this module.
+    A tuple of its two parts, with the arithmetic of dual numbers in place of a tuple's own: ``+``, ``-``, ``*`` and
+    ``/`` take dual numbers, real numbers and real arrays, whose shapes broadcast; anything else is a TypeError.
 
     Attributes
     ----------
@@ -27,8 +34,40 @@ class DualNumber(NamedTuple):
         The two parts, of one shape.
     """
 
-    real: Float
-    dual: Float
+    __slots__ = ()
+
+    # NumPy leaves an array's operators to those below, and would otherwise take the two parts for an array's rows.
+    __array_ufunc__ = None
+
+    def __neg__(self) -> DualNumber:
+        return dual_number(-self.real, -self.dual)
+
+    def __add__(self, other: Operand) -> DualNumber:  # type: ignore[override]
+        return _combined(add, self, other)
+
+    def __radd__(self, other: Operand) -> DualNumber:
+        return _combined(add, other, self)
+
+    def __sub__(self, other: Operand) -> DualNumber:
+        return _combined(subtract, self, other)
+
+    def __rsub__(self, other: Operand) -> DualNumber:
+        return _combined(subtract, other, self)
+
+    def __mul__(self, other: Operand) -> DualNumber:  # type: ignore[override]
+        return _combined(multiply, self, other)
+
+    def __rmul__(self, other: Operand) -> DualNumber:  # type: ignore[override]
+        return _combined(multiply, other, self)
+
+    def __truediv__(self, other: Operand) -> DualNumber:
+        return _combined(divide, self, other)
+
+    def __rtruediv__(self, other: Operand) -> DualNumber:
+        return _combined(divide, other, self)
+
+
+Operand: TypeAlias = DualNumber | float | np.floating[Any] | np.integer[Any] | Float
 
 
 def dual_number(real: ArrayLike, dual: ArrayLike = 0.0) -> DualNumber:
@@ -56,6 +95,28 @@ def dual_number(real: ArrayLike, dual: ArrayLike = 0.0) -> DualNumber:
     """
     a, b = np.broadcast_arrays(np.asarray(real, dtype=np.float64), np.asarray(dual, dtype=np.float64))
     return DualNumber(np.array(a), np.array(b))
+
+
+def _combined(function: Callable[[DualNumber, DualNumber], DualNumber], left: object, right: object) -> DualNumber:
+    """Give an operator's result, or NotImplemented for an operand that is neither dual nor real."""
+    terms = [_as_dual(left), _as_dual(right)]
+    if terms[0] is not None and terms[1] is not None:
+        return function(terms[0], terms[1])
+    strange = left if terms[0] is None else right
+    if isinstance(strange, tuple) or hasattr(strange, "__index__"):
+        # After NotImplemented Python would join or repeat the tuples.
+        msg = f"a dual number does not combine with {type(strange).__name__}: {strange!r}"
+        raise TypeError(msg)
+    answer: DualNumber = NotImplemented  # so that another type's own operator is asked
+    return answer
+
+
+def _as_dual(operand: object) -> DualNumber | None:
+    if isinstance(operand, DualNumber):
+        return operand
+    if isinstance(operand, int | float | np.generic | np.ndarray) and np.asarray(operand).dtype.kind in "fiub":
+        return dual_number(np.asarray(operand, dtype=np.float64))
+    return None
 
 
 def add(left: DualNumber, right: DualNumber) -> DualNumber:
