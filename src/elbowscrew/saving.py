@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import os
 import tempfile
@@ -16,6 +15,7 @@ from elbowscrew.errors import ElbowscrewError, OutputError, UsageError
 from elbowscrew.model import Analysis, Comparison, Landmarks, RebuiltMotion, TrialsComparison
 from elbowscrew.motion.analysis import analyze
 from elbowscrew.reading.registry import read_recording
+from elbowscrew.reading.source import sha256_of
 from elbowscrew.report import write_trial_page
 from elbowscrew.results.exporting import check_exports, write_exports
 from elbowscrew.results.joint_summary import joint_summary
@@ -156,12 +156,7 @@ def read_summary(folder: str | os.PathLike[str]) -> dict[str, Any]:
 def digests(folder: Path) -> dict[str, str]:
     """SHA-256 of the files of a result folder, all but the summary that holds them and the report made from it."""
     names = (name for name in RESULT_FILES if name not in (SUMMARY, "report.html") and (folder / name).is_file())
-    return {name: _digest(folder / name) for name in names}
-
-
-def _digest(path: Path) -> str:
-    with path.open("rb") as stream:
-        return hashlib.file_digest(stream, "sha256").hexdigest()
+    return {name: sha256_of(folder / name) for name in names}
 
 
 def _write_json(path: Path, content: Mapping[str, Any]) -> dict[str, Any]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import io
 import json
 import subprocess
@@ -19,6 +18,7 @@ from elbowscrew.model import QualityWarning, Recording, RigidBody, Source, inval
 from elbowscrew.reading.clock import is_rate
 from elbowscrew.reading.growing import GrowingMarker
 from elbowscrew.reading.options import ASK_FOR_MARKERS, ReadOptions, stated_unit
+from elbowscrew.reading.source import sha256_of
 from elbowscrew.tables import METERS
 
 Float = NDArray[np.float64]
@@ -75,8 +75,6 @@ def read(path: Path, options: ReadOptions) -> Recording:
         msg = f"{path}: the file is cut: its header tells of {content.frames} frames, it has {count}; export it again"
         raise RecordingError(msg)
     frame = np.arange(content.first_frame, content.first_frame + count, dtype=np.int64)
-    with path.open("rb") as stream:
-        digest = hashlib.file_digest(stream, "sha256").hexdigest()
     return Recording(
         bodies=tuple(bodies),
         frame=frame,
@@ -85,7 +83,7 @@ def read(path: Path, options: ReadOptions) -> Recording:
         markers=markers,
         source=Source(
             path=str(path),
-            sha256=digest,
+            sha256=sha256_of(path),
             layout="C3D",
             length_unit=unit,
             rotation_type="matrix" if bodies else "",

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import csv
 import hashlib
+import threading
 from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
+from io import BufferedReader
 from pathlib import Path
 from typing import Final, TextIO
 
@@ -14,7 +17,7 @@ from elbowscrew.errors import RecordingError
 _HEAD_BYTES: Final = 65536
 _MAX_LINE: Final = 1 << 24
 _BLOCK_CHARACTERS: Final = 1 << 20
-csv.field_size_limit(_MAX_LINE)
+_LIMIT_LOCK: Final = threading.RLock()
 
 # Signatures of files that are taken for a CSV export by mistake.
 _NOT_TEXT: Final = {
@@ -58,7 +61,12 @@ class TextSource:
         csv.Error
             If the quotes of the line do not fit.
         """
-        row = next(csv.reader([line], delimiter=self.delimiter, strict=True), [])
+        reader = csv.reader([line], delimiter=self.delimiter, strict=True)
+        if len(line) < csv.field_size_limit():
+            row = next(reader, [])
+        else:
+            with longest_cell(_MAX_LINE):
+                row = next(reader, [])
         return [cell.strip() for cell in row]
 
     def lines(self) -> Iterator[str]:
@@ -119,6 +127,33 @@ class TextSource:
         return self.path.open(encoding="utf-8-sig", newline=None)
 
 
+@contextmanager
+def longest_cell(characters: int) -> Iterator[None]:
+    """Have `csv` read cells of up to so many characters, within the block only: the limit is that of the process."""
+    with _LIMIT_LOCK:
+        before = csv.field_size_limit(characters)
+        try:
+            yield
+        finally:
+            csv.field_size_limit(before)
+
+
+def sha256_of(path: Path) -> str:
+    """SHA-256 of a file, in hexadecimal digits.
+
+    Raises
+    ------
+    OSError
+        If it cannot be read.
+    """
+    with path.open("rb") as stream:
+        return _digest(stream)
+
+
+def _digest(stream: BufferedReader) -> str:
+    return hashlib.file_digest(stream, "sha256").hexdigest()
+
+
 def first_bytes(path: Path, count: int) -> bytes:
     """Read the first bytes of a file; none if it is no regular file or cannot be read, which `open_source` tells."""
     try:
@@ -145,7 +180,7 @@ def open_source(path: Path) -> TextSource:
         with path.open("rb") as stream:
             head = stream.read(_HEAD_BYTES)
             stream.seek(0)
-            digest = hashlib.file_digest(stream, "sha256").hexdigest()
+            digest = _digest(stream)
             last = b""
             if head:
                 stream.seek(-1, 2)

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from elbowscrew import tables
 from elbowscrew.errors import ResultError
+from elbowscrew.reading.source import longest_cell
 from elbowscrew.report.charts import min_max_rows
 from elbowscrew.results.read_back import UNREADABLE, check_version, is_result, read_summary
 from elbowscrew.results.table_reading import read_columns
@@ -198,9 +199,8 @@ def _is_number(text: str) -> bool:
 def _rows(path: Path) -> list[list[str]]:
     if not path.is_file():
         return []
-    csv.field_size_limit(_LONGEST_CELL)
     try:
-        with path.open(encoding="utf-8-sig", newline="") as stream:
+        with longest_cell(_LONGEST_CELL), path.open(encoding="utf-8-sig", newline="") as stream:
             return [row for row in csv.reader(stream) if row]
     except OSError as error:
         msg = f"{path}: cannot be read: {error.strerror or error}"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Mapping
 from typing import Any
 
@@ -10,6 +9,7 @@ from elbowscrew._version import __version__
 from elbowscrew.choices import FRAMES
 from elbowscrew.errors import OutputError
 from elbowscrew.joints import JOINT_NAMES, ends_called, joints_of
+from elbowscrew.reading.source import sha256_of
 from elbowscrew.results.summary import landmarks_summary, library_versions, settings_summary
 from elbowscrew.saving import digests, read_summary
 from elbowscrew.study.task import TrialTask
@@ -29,7 +29,7 @@ def is_current(task: TrialTask) -> bool:
             and summary.get("versions") == library_versions()
             and summary.get("settings") == _settings(task, summary)
             and summary.get("landmarks") == landmarks_summary(task.landmarks)
-            and source.get("sha256") == _sha256(task)
+            and source.get("sha256") == sha256_of(task.path)
             and summary.get("files") == digests(task.folder)
         )
     except (OSError, OutputError, AttributeError):
@@ -40,12 +40,7 @@ def _settings(task: TrialTask, summary: Mapping[str, Any]) -> dict[str, Any]:
     """Settings as the result would tell them: a segment's word is the frame that it is in the result's joint."""
     asked = settings_summary(task.settings)
     if task.settings.express_in not in FRAMES:
-        name = (summary.get("trial") or {}).get("joint")
+        name = ((summary.get("trial") or {}).get("joint") or {}).get("name")
         ends = ends_called(task.settings.express_in, joints_of(name if name in JOINT_NAMES else "elbow"))
         asked["express-in"] = ends.pop() if len(ends) == 1 else None  # not known: analyze again
     return asked
-
-
-def _sha256(task: TrialTask) -> str:
-    with task.path.open("rb") as stream:
-        return hashlib.file_digest(stream, "sha256").hexdigest()
