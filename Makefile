@@ -1,0 +1,29 @@
+.DEFAULT_GOAL := help
+BIN ?= .venv/bin
+
+.PHONY: help check test test-oldest docs bench
+
+help:  ## what there is
+	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*## /\t/'
+
+check:  ## lint, types, architecture contract
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+test:  ## all tests
+	$(BIN)/pytest -q -n 2
+
+test-oldest:  ## all tests at the oldest versions allowed, in an environment of their own
+	python3 -m venv .venv-oldest
+	.venv-oldest/bin/pip install --quiet --constraint constraints-floor.txt ".[test]"
+	.venv-oldest/bin/pytest -q -n 2
+
+docs:  ## tables of the documents made anew, links and names in them checked
+	$(BIN)/python docs/make_settings.py
+	$(BIN)/pytest -q tests/test_docs.py
+
+bench:  ## every stage beside what one would use instead
+	$(BIN)/pip install --quiet -e ".[bench]"
+	$(BIN)/python benchmarks/performance.py
