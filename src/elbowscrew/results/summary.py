@@ -27,7 +27,7 @@ from elbowscrew.settings import Settings, options_from_settings
 
 Float = NDArray[np.float64]
 
-_LIBRARIES: Final = ("numpy", "matplotlib", "pandas", "pydantic")
+_LIBRARIES: Final = ("numpy", "scipy", "matplotlib", "pandas", "pydantic")
 
 
 def summary_from_analysis(analysis: Analysis) -> dict[str, Any]:

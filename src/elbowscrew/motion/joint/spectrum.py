@@ -11,7 +11,6 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import dct
-from scipy.optimize import nnls
 from scipy.special import chdtrc
 
 from elbowscrew.motion.joint.influence import Influence
@@ -123,7 +122,7 @@ def residual_spectrum(influence: Influence, *, noise_known: bool = True) -> Resi
     expected = np.diag(number - 2.0 * leverage) + np.einsum("bpr,crp->bc", hat, hat)
     variance = influence.variance
     usual = 1.0 / np.maximum(power_sum, np.finfo(np.float64).tiny)
-    power = nnls(expected * usual[:, None], power_sum * usual)[0] if power_sum.any() else np.zeros(len(number))
+    power = _not_negative(expected * usual[:, None], power_sum * usual) if power_sum.any() else np.zeros(len(number))
     relative = np.maximum(power / variance, 1e-3) if variance > 0.0 else np.ones(len(number))
     statistic = float(freedom @ (relative - 1.0 - np.log(relative)))
     flat = len(number) < 2 or bool(chdtrc(len(number) - 1, statistic) > _SURELY_NOT_FLAT)
@@ -152,3 +151,13 @@ def _merged(information: Float, power: Float, number: Float, inverse: Float) -> 
         starts = np.flatnonzero(keep)
         information, power, number = (np.add.reduceat(values, starts) for values in (information, power, number))
     return information, power, number
+
+
+def _not_negative(matrix: Float, target: Float) -> Float:
+    """Least squares with no negative result; the library for it is loaded only where plain least squares gives one."""
+    plain, _, rank, _ = np.linalg.lstsq(matrix, target, rcond=None)
+    if rank == matrix.shape[1] and (plain >= 0.0).all():
+        return np.asarray(plain, dtype=np.float64)
+    from scipy.optimize import nnls
+
+    return np.asarray(nnls(matrix, target)[0], dtype=np.float64)
