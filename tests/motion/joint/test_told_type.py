@@ -1,0 +1,54 @@
+"""The joint's type as an analysis tells it: two axes and a center with truth, and a hinge that stays one."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from elbowscrew import Settings, analyze, read_recording, simulate_trial
+from elbowscrew.cli.render import analysis_table
+from elbowscrew.results.joint_summary import joint_summary
+from elbowscrew.results.summary import summary_from_analysis
+
+
+def degrees_off(found: list[float], truth: tuple[float, float, float]) -> float:
+    """Angle between two lines."""
+    n, m = np.array(found), np.array(truth) / np.linalg.norm(truth)
+    return float(np.degrees(np.arcsin(min(1.0, float(np.linalg.norm(np.cross(n, m)))))))
+
+
+def test_an_elbow_that_flexes_and_pronates_has_two_axes(
+    real_data: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    analysis = analyze(read_recording(real_data / "cases" / "two_axis_elbow.csv"), Settings(proximal="none"))
+    found = joint_summary(analysis)["joint_type"]
+    axes = found["two_axes"]
+    assert (found["type"], found["status"]) == ("two_axes", "determined")
+    assert degrees_off(axes["axis1"]["direction_in_proximal"], (0.98, 0.1, 0.17)) < 0.1
+    assert degrees_off(axes["axis2"]["direction_in_distal"], (0.1, -0.99, 0.05)) < 0.1
+    assert axes["angle_between_deg"] == pytest.approx(89.57, abs=0.1)
+    assert abs(axes["distance_mm"]) == pytest.approx(12.225, abs=0.1)
+    assert axes["angle_between_deg_low"] < 89.57 < axes["angle_between_deg_high"]
+    summary = summary_from_analysis(analysis)
+    assert summary["motion"]["joint_axis"] is None  # one axis would be 20 deg off
+    analysis_table(summary, tmp_path)
+    assert "two axes (determined)" in " ".join(capsys.readouterr().out.split())
+
+
+def test_a_hip_has_a_center(real_data: Path) -> None:
+    found = joint_summary(analyze(read_recording(real_data / "cases" / "hip_ball.csv")))["joint_type"]
+    assert found["type"] == "ball"
+    assert found["ball"]["center_in_proximal_mm"] == pytest.approx([30.0, -50.0, 80.0], abs=0.2)
+    assert found["ball"]["center_in_distal_mm"] == pytest.approx([0.0, 250.0, 0.0], abs=0.2)
+
+
+def test_a_hinge_keeps_its_axis_and_no_richer_type_is_tried() -> None:
+    analysis = analyze(simulate_trial(frames=120, inversion=60, seed=2).recording)
+    assert analysis.joint_type is None
+    found = joint_summary(analysis)["joint_type"]
+    assert found["type"] in ("hinge", "screw_hinge")
+    assert found["candidates"] == []
+    assert found["two_axes"] is None
+    assert found["ball"] is None
