@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from elbowscrew.settings import SETTINGS, Setting
+from elbowscrew.declaring import Setting
+from elbowscrew.settings import SETTINGS
 
 _HEAD = """\
 # Settings

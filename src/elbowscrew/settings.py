@@ -13,13 +13,10 @@ import itertools
 import math
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
-from types import NoneType
-from typing import TYPE_CHECKING, Annotated, Any, Final, Literal, get_args, get_origin
+from typing import TYPE_CHECKING, Any, Final, Literal
 
-from pydantic import BaseModel, BeforeValidator, Field, ValidationError, field_validator, model_validator
-from pydantic.fields import FieldInfo
+from pydantic import BaseModel, ValidationError, field_validator, model_validator
 
 from elbowscrew.choices import (
     FRAMES,
@@ -34,82 +31,24 @@ from elbowscrew.choices import (
     MethodName,
     RotationType,
 )
+from elbowscrew.declaring import (
+    BODIES,
+    FORMER_NAMES,
+    MODEL,
+    MOTION,
+    OUTPUT,
+    Angle,
+    Length,
+    attributes,
+    declared,
+    option_name,
+    setting,
+)
 from elbowscrew.errors import UsageError
 from elbowscrew.joints import JointName, ends_called, joints_of
 
-_UNIT_SUFFIXES: Final = ("_deg_s", "_rad_s", "_m_s", "_deg", "_mm", "_hz", "_s", "_percent")
-
 STILL: Final = "none"
 """The value of ``proximal`` that says: the file has no such body, it stands still."""
-
-_FORMER_NAMES: Final = {
-    "arm": "proximal",
-    "forearm": "distal",
-    "arm-markers": "proximal-markers",
-    "forearm-markers": "distal-markers",
-}
-"""Names that settings had for an elbow alone, still understood."""
-
-BODIES, MOTION, MODEL, OUTPUT = "Bodies and file", "Motion", "Model", "Output"
-"""What settings are about, and so the panels of the help."""
-
-
-def option_name(field: str) -> str:
-    """Give a field's name on the command line and in TOML: ``min_angle_deg`` is ``min-angle``."""
-    suffix = next((suffix for suffix in _UNIT_SUFFIXES if field.endswith(suffix)), "")
-    name = field.removesuffix(suffix).replace("_", "-")
-    return _FORMER_NAMES.get(name, name)
-
-
-def _setting(default: Any, text: str, about: str, *, metavar: str = "", shown: str = "", **bounds: Any) -> Any:
-    """Declare a setting.
-
-    Parameters
-    ----------
-    default : object
-    text : str
-        One sentence, for help and documents.
-    about : str
-        The panel it stands in.
-    metavar : str, optional
-        What stands for its value, where that is no choice.
-    shown : str, optional
-        What the help says of the default, where that is not the value itself.
-    **bounds
-        Of `pydantic.Field`.
-    """
-    return Field(
-        default, description=text, json_schema_extra={"about": about, "metavar": metavar, "shown": shown}, **bounds
-    )
-
-
-def _degrees(value: object) -> object:
-    """Take ``2deg`` and ``0.03rad`` for angles, too."""
-    if not isinstance(value, str):
-        return value
-    number, unit = value.strip().removesuffix("deg").removesuffix("rad"), value.strip()[-3:]
-    try:
-        return math.degrees(float(number)) if unit == "rad" else float(number)
-    except ValueError as error:
-        msg = f"expected degrees or an angle with its unit, as in 2deg, found {value!r}"
-        raise ValueError(msg) from error
-
-
-def _millimeters(value: object) -> object:
-    """Take ``2mm`` and ``0.002m`` for lengths, too."""
-    if not isinstance(value, str):
-        return value
-    text = value.strip()
-    unit = "mm" if text.endswith("mm") else "m" if text.endswith("m") else ""
-    try:
-        return float(text.removesuffix(unit)) * (1000.0 if unit == "m" else 1.0)
-    except ValueError as error:
-        msg = f"expected millimeters or a length with its unit, as in 2mm, found {value!r}"
-        raise ValueError(msg) from error
-
-
-_Angle = Annotated[float, BeforeValidator(_degrees)]
-_Length = Annotated[float, BeforeValidator(_millimeters)]
 
 
 class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defer_build=True):
@@ -119,122 +58,122 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
     An impossible value raises `UsageError` through `settings_from`, and pydantic's own error here.
     """
 
-    joint: JointName | None = _setting(None, "What the joint is called.", BODIES, shown="by the bodies' names")
-    proximal: str | None = _setting(
+    joint: JointName | None = setting(None, "What the joint is called.", BODIES, shown="by the bodies' names")
+    proximal: str | None = setting(
         None, "Proximal body: name or id; 'none' if it stands still.", BODIES, metavar="NAME", shown="by the names"
     )
-    distal: str | None = _setting(None, "Distal body: name or id.", BODIES, metavar="NAME", shown="by the names")
-    proximal_markers: tuple[str, ...] | None = _setting(
+    distal: str | None = setting(None, "Distal body: name or id.", BODIES, metavar="NAME", shown="by the names")
+    proximal_markers: tuple[str, ...] | None = setting(
         None, "Markers of the proximal body: names or patterns.", BODIES, metavar="NAMES", min_length=1
     )
-    distal_markers: tuple[str, ...] | None = _setting(
+    distal_markers: tuple[str, ...] | None = setting(
         None, "Markers of the distal body: names or patterns.", BODIES, metavar="NAMES", min_length=1
     )
-    pose_method: Literal["svd", "dual-qr"] = _setting("svd", "How poses are found from markers.", BODIES)
-    reference: int | None = _setting(
+    pose_method: Literal["svd", "dual-qr"] = setting("svd", "How poses are found from markers.", BODIES)
+    reference: int | None = setting(
         None, "Frame all displacements are counted from.", MOTION, metavar="FRAME", shown="first tracked frame"
     )
-    reference_window: int = _setting(
+    reference_window: int = setting(
         1, "Mean of so many frames from the reference on, as reference.", MOTION, metavar="N", ge=1
     )
-    express_in: Literal["distal", "proximal", "lab", "arm", "forearm"] | str = _setting(
+    express_in: Literal["distal", "proximal", "lab", "arm", "forearm"] | str = setting(
         "distal",
         "Frame the screw is written in: distal, proximal, lab, or a segment's own word.",
         MOTION,
         metavar="FRAME",
     )
-    max_gap_s: float = _setting(0.1, "Longest gap that is filled, in seconds.", MOTION, metavar="SECONDS", ge=0)
-    frozen: Literal["lost", "keep"] = _setting("lost", "What poses that repeat to the last digit are.", BODIES)
-    max_turn_deg_s: float = _setting(
+    max_gap_s: float = setting(0.1, "Longest gap that is filled, in seconds.", MOTION, metavar="SECONDS", ge=0)
+    frozen: Literal["lost", "keep"] = setting("lost", "What poses that repeat to the last digit are.", BODIES)
+    max_turn_deg_s: float = setting(
         3000.0, "Fastest rotation of a body, in degrees a second; more is a leap.", BODIES, metavar="DEG/S", gt=0
     )
-    max_speed_m_s: float = _setting(
+    max_speed_m_s: float = setting(
         15.0, "Fastest motion of a body, in meters a second; more is a leap.", BODIES, metavar="M/S", gt=0
     )
-    min_tracked_percent: float = _setting(
+    min_tracked_percent: float = setting(
         50.0, "Least share of frames tracked, in percent.", BODIES, metavar="PERCENT", ge=0, le=100
     )
-    lowpass_hz: float | Literal["auto"] | None = _setting(
+    lowpass_hz: float | Literal["auto"] | None = setting(
         None, "Cut-off of the filter of the poses, in hertz; auto for each body's own; none.", MOTION,
         metavar="HZ", shown="none",
     )  # fmt: skip
-    resample_hz: float | None = _setting(
+    resample_hz: float | None = setting(
         None, "Rate to resample the recording to, in hertz.", MOTION, metavar="HZ", shown="the file's", gt=0
     )
-    min_rate_rad_s: float = _setting(
+    min_rate_rad_s: float = setting(
         0.25,
         "Least angular velocity for an instantaneous axis, in radians a second.",
         MOTION,
         metavar="RAD/S",
         gt=0,
     )
-    min_angle_deg: float = _setting(10.0, "Least angle for an axis, in degrees.", MOTION, metavar="DEG", gt=0, lt=180)
-    axis_sd_deg: _Angle | None = _setting(
+    min_angle_deg: float = setting(10.0, "Least angle for an axis, in degrees.", MOTION, metavar="DEG", gt=0, lt=180)
+    axis_sd_deg: Angle | None = setting(
         None, "Give an axis where its direction is known this well, in place of --min-angle: 2deg.", MOTION,
         metavar="DEG", gt=0, lt=90,
     )  # fmt: skip
-    step_deg: float | None = _setting(
+    step_deg: float | None = setting(
         None, "Axes between successive poses so many degrees apart, too: steps.csv.", MOTION,
         metavar="DEG", gt=0, lt=180,
     )  # fmt: skip
-    marker_noise_mm: float | None = _setting(
+    marker_noise_mm: float | None = setting(
         None, "Noise of each coordinate of a marker, in millimeters.", MOTION,
         metavar="MM", shown="from the recording", gt=0, le=100,
     )  # fmt: skip
-    noise: Literal["auto", "residuals", "still", "error-column", "none"] = _setting(
+    noise: Literal["auto", "residuals", "still", "error-column", "none"] = setting(
         "auto", "Where the noise of the poses is known from.", MOTION
     )
-    signed: Literal["auto", "yes", "no"] = _setting(
+    signed: Literal["auto", "yes", "no"] = setting(
         "auto", "Give theta a sense: where one axis dominates the motion, always, or never.", MOTION
     )
-    skin_motion: tuple[float, ...] | None = _setting(
+    skin_motion: tuple[float, ...] | None = setting(
         None, "How far a cluster moves as a whole on its bone with the motion: mm, or mm and degrees.", MOTION,
         metavar="MM[,DEG]", shown="not stated", min_length=1, max_length=2,
     )  # fmt: skip
-    robust: bool = _setting(False, "Weigh outliers down in the joint's axis.", MOTION)
-    cycle_swing_deg: float | None = _setting(
+    robust: bool = setting(False, "Weigh outliers down in the joint's axis.", MOTION)
+    cycle_swing_deg: float | None = setting(
         None, "Least swing between the turns of a cycle, in degrees.", MOTION,
         metavar="DEG", shown="by noise and range", gt=0, lt=360,
     )  # fmt: skip
-    cycles: tuple[tuple[float, float], ...] | None = _setting(
+    cycles: tuple[tuple[float, float], ...] | None = setting(
         None, "File with the columns start_time_s and end_time_s of each cycle.", MOTION,
         metavar="FILE.csv", shown="found", min_length=1,
     )  # fmt: skip
-    no_cycles: bool = _setting(False, "Look for no cycles.", MOTION)
-    inversion: int | None = _setting(
+    no_cycles: bool = setting(False, "Look for no cycles.", MOTION)
+    inversion: int | None = setting(
         None, "Frame where the motion reverses.", MODEL, metavar="FRAME", shown="largest angle"
     )
-    keyframes: tuple[int, ...] | None = _setting(
+    keyframes: tuple[int, ...] | None = setting(
         None, "Frames the model passes through.", MODEL,
         metavar="F1,F2,...", shown="start, inversion, end", min_length=2,
     )  # fmt: skip
-    phases: Literal["movement", "whole"] = _setting(
+    phases: Literal["movement", "whole"] = setting(
         "movement", "Phases between the movement's rests, or of the whole recording.", MODEL
     )
-    tolerance_mm: _Length | None = _setting(
+    tolerance_mm: Length | None = setting(
         None, "Fewest keyframes that keep the RMS displacement below this length: 2mm.", MODEL,
         metavar="LENGTH", ge=1e-3, le=1e5,
     )  # fmt: skip
-    method: MethodName | None = _setting(None, "Interpolation of poses.", MODEL, shown="dlb, with a tolerance sclerp")
-    blend: BlendName = _setting("piecewise", "Phase by phase, or all poses at once.", MODEL)
-    law: LawName | None = _setting(
+    method: MethodName | None = setting(None, "Interpolation of poses.", MODEL, shown="dlb, with a tolerance sclerp")
+    blend: BlendName = setting("piecewise", "Phase by phase, or all poses at once.", MODEL)
+    law: LawName | None = setting(
         None, "Law of motion in each phase.", MODEL, shown="cycloidal, with a tolerance linear"
     )
-    law_peak: float | None = _setting(
+    law_peak: float | None = setting(
         None, "Time of the law's highest velocity, as a share of the phase.", MODEL,
         metavar="SHARE", shown="0.5", ge=0.05, le=0.95,
     )  # fmt: skip
-    knots: KnotName = _setting("law", "Parameter of the keyframes.", MODEL)
-    radius_mm: float | None = _setting(
+    knots: KnotName = setting("law", "Parameter of the keyframes.", MODEL)
+    radius_mm: float | None = setting(
         None, "Radius of gyration of the distal body's points, for the RMS displacement.", MODEL,
         metavar="MM", shown="of its markers, else 50", gt=0, le=1e5,
     )  # fmt: skip
-    angle_unit: AngleUnit = _setting("deg", "Unit of angles in tables and figures.", OUTPUT)
-    length_unit: LengthUnit = _setting("mm", "Unit of lengths in tables and figures.", OUTPUT)
-    figure_format: tuple[FigureFormat, ...] = _setting(("png",), "Formats of the figures.", OUTPUT, min_length=1)
-    export: tuple[ExportName, ...] = _setting((), "Tables in the formats of other programs, too.", OUTPUT, shown="none")
-    units: FileUnit | None = _setting(None, "Unit of length of a file that states none.", BODIES)
-    rotation: RotationType | None = _setting(None, "Rotation type of a file that states none.", BODIES)
+    angle_unit: AngleUnit = setting("deg", "Unit of angles in tables and figures.", OUTPUT)
+    length_unit: LengthUnit = setting("mm", "Unit of lengths in tables and figures.", OUTPUT)
+    figure_format: tuple[FigureFormat, ...] = setting(("png",), "Formats of the figures.", OUTPUT, min_length=1)
+    export: tuple[ExportName, ...] = setting((), "Tables in the formats of other programs, too.", OUTPUT, shown="none")
+    units: FileUnit | None = setting(None, "Unit of length of a file that states none.", BODIES)
+    rotation: RotationType | None = setting(None, "Rotation type of a file that states none.", BODIES)
 
     # An elbow's own words for the two bodies, as they were before: taken and given, but not stored.
     if TYPE_CHECKING:
@@ -274,7 +213,7 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
         """Take what an elbow's two bodies were called before for proximal and distal."""
         if not isinstance(values, Mapping):
             return values
-        former = {name.replace("-", "_"): now.replace("-", "_") for name, now in _FORMER_NAMES.items()}
+        former = {name.replace("-", "_"): now.replace("-", "_") for name, now in FORMER_NAMES.items()}
         named = {former.get(str(name), name): value for name, value in values.items()}
         if len(named) < len(values):
             msg = f"one setting stands twice under two names; keep one of {', '.join(map(str, values))}"
@@ -391,93 +330,15 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
         return self
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Setting:
-    """What is declared of a setting, as options and documents want it.
-
-    Attributes
-    ----------
-    field, option : str
-        Its name in `Settings`, and on the command line and in files.
-    former : tuple of str
-        Names the option had before.
-    kind : type
-        A `Literal`, `bool`, `int` or `float`, or `str` where it takes more than that; of a list, that of its parts.
-    several : bool
-        It is a list.
-    choices : tuple of str
-        What it may be, where that is a choice.
-    bounds : tuple of str
-        As ``>= 0``.
-    default : str
-        As the help shows it; empty where there is none.
-    text, about, metavar : str
-    """
-
-    field: str
-    option: str
-    former: tuple[str, ...]
-    kind: Any
-    several: bool
-    choices: tuple[str, ...]
-    bounds: tuple[str, ...]
-    default: str
-    text: str
-    about: str
-    metavar: str
-
-
-def _declared(field: str, info: FieldInfo) -> Setting:
-    extra: Any = info.json_schema_extra
-    kinds = [kind for kind in get_args(info.annotation) or (info.annotation,) if kind is not NoneType]
-    kind = info.annotation if get_origin(info.annotation) in (Literal, tuple) else kinds[0] if len(kinds) == 1 else str
-    several = get_origin(kind) is tuple and get_origin(get_args(kind)[0]) is not tuple  # the latter come from a file
-    kind = get_args(kind)[0] if several else kind
-    choices = get_args(kind) if get_origin(kind) is Literal else ()
-    bounds = {"ge": ">=", "gt": ">", "le": "<=", "lt": "<"}
-    value = info.default
-    return Setting(
-        field=field,
-        option=option_name(field),
-        former=tuple(name for name, now in _FORMER_NAMES.items() if now == option_name(field)),
-        kind=kind if choices or kind in (bool, int, float) else str,
-        several=several,
-        choices=choices,
-        bounds=tuple(
-            f"{sign} {getattr(one, name):g}"
-            for one in info.metadata
-            for name, sign in bounds.items()
-            if hasattr(one, name)
-        ),
-        default=extra["shown"]
-        or ("" if value is None else ",".join(value) if several else f"{value:g}" if kind is float else str(value)),
-        text=str(info.description),
-        about=extra["about"],
-        metavar=extra["metavar"] or f"<{'|'.join(choices)}>",
-    )
-
-
-SETTINGS: Final = tuple(_declared(field, info) for field, info in Settings.model_fields.items())
+SETTINGS: Final = tuple(declared(field, info) for field, info in Settings.model_fields.items())
 """Every setting."""
 
-LISTS: Final = tuple(setting.option for setting in SETTINGS if setting.several)
+Settings.__doc__ = f"{(Settings.__doc__ or '').rstrip()}{attributes(SETTINGS)}"
+
+LISTS: Final = tuple(one.option for one in SETTINGS if one.several)
 """Options of settings of which there may be several."""
 
-_FIELDS: Final = {setting.option: setting.field for setting in SETTINGS}
-
-
-def _attribute(setting: Setting) -> str:
-    kind = "{" + ", ".join(map(repr, setting.choices)) + "}" if setting.choices else setting.kind.__name__
-    optional = " or None" if Settings.model_fields[setting.field].default is None else ""
-    named = f"{setting.field} : {'tuple of ' if setting.several else ''}{kind}{optional}"
-    return f"{named}\n    {setting.text}" + (f" Default: {setting.default}." if setting.default else "")
-
-
-Settings.__doc__ = (
-    f"{(Settings.__doc__ or '').rstrip()}\n\n    Attributes\n    ----------\n    "
-    + "\n".join(map(_attribute, SETTINGS)).replace("\n", "\n    ")
-    + "\n    "
-)
+_FIELDS: Final = {one.option: one.field for one in SETTINGS}
 
 
 def settings_from(config: Path | None = None, options: Mapping[str, Any] | None = None) -> Settings:

@@ -12,7 +12,7 @@ import typer
 from elbowscrew.cli import options
 
 if TYPE_CHECKING:
-    from elbowscrew.settings import Setting
+    from elbowscrew.declaring import Setting
 
 OUTPUT = "Output"
 

@@ -10,9 +10,10 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Final
 
+from elbowscrew.declaring import option_name
 from elbowscrew.errors import UsageError
 from elbowscrew.reading.source import first_bytes
-from elbowscrew.settings import LISTS, Settings, option_name, settings_from
+from elbowscrew.settings import LISTS, Settings, settings_from
 from elbowscrew.study.trial import Trial
 from elbowscrew.tables import STUDY_COLUMNS, study_header
 
