@@ -44,6 +44,19 @@ def test_a_hip_has_a_center(real_data: Path) -> None:
     assert found["ball"]["center_in_distal_mm"] == pytest.approx([0.0, 250.0, 0.0], abs=0.2)
 
 
+def test_pronation_while_flexing_is_no_single_axis(real_data: Path) -> None:
+    """140 deg of flexion with 60 deg of pronation: a hinge is 20 deg off and leaves 12 deg."""
+    markers = ("UA0", "UA1", "UA2", "UA3", "FA0", "FA1", "FA2", "FA3")
+    recording = read_recording(real_data / "cases" / "pronation60.csv", markers=markers)
+    analysis = analyze(recording, Settings(proximal_markers=markers[:4], distal_markers=markers[4:]))
+    found = joint_summary(analysis)["joint_type"]
+    assert found["type"] == "two_axes"
+    assert found["two_axes"]["axis1"]["range_deg"] == pytest.approx(140.0, abs=5.0)
+    assert found["two_axes"]["axis2"]["range_deg"] == pytest.approx(60.0, abs=5.0)
+    assert analysis.joint_axis.best is None
+    assert "no-single-axis" in {warning.code for warning in analysis.warnings}
+
+
 def test_a_hinge_keeps_its_axis_and_no_richer_type_is_tried() -> None:
     analysis = analyze(simulate_trial(frames=120, inversion=60, seed=2).recording)
     assert analysis.joint_type is None

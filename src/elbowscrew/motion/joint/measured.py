@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -21,6 +22,9 @@ from elbowscrew.settings import Settings
 _LARGE_NOISE_RATIO: Final = 2.0
 _FEWEST_MARKERS: Final = 3
 _LEAST_SHIFT: Final = 1e-6
+# One axis leaves much where it is more than this of the rotation, and 10 deg from end to end (3.3 standard deviations).
+_MUCH_SHARE: Final = 0.2
+_MUCH_ROTATION: Final = float(np.radians(3.0))
 _FOUND: Final = {
     "two_axes": "the joint has two axes (joint.json)",
     "ball": "the joint has a center (joint.json)",
@@ -45,9 +49,12 @@ def measured_joint_axis(measured: Measurement, mean: MeanAxis, settings: Setting
 
 
 def measured_joint_type(measured: Measurement, joint_axis: JointAxis, *, robust: bool) -> JointType | None:
-    """Tell which joint it is where the motion has no single axis; None where it has, or positions tell nothing."""
+    """Tell which joint it is where one axis leaves much; None where it does not, or positions tell nothing."""
+    best = joint_axis.best
+    if best is not None and (joint_axis.unexplained <= _MUCH_SHARE or best.residual_rotation <= _MUCH_ROTATION):
+        return None
     _, poses, covariance = fitted_frames(measured.joint, measured.noise, measured.noise_gain)
-    if joint_axis.single or not np.ptp(pose_from_dual_quat(poses)[1], axis=0).max() > _LEAST_SHIFT:
+    if not np.ptp(pose_from_dual_quat(poses)[1], axis=0).max() > _LEAST_SHIFT:
         return None
     return identify_joint(
         poses,
@@ -57,6 +64,13 @@ def measured_joint_type(measured: Measurement, joint_axis: JointAxis, *, robust:
         robust=robust,
         left=side_of(measured.distal.name) == "left",
     )
+
+
+def axis_of_type(joint_axis: JointAxis, joint_type: JointType | None) -> JointAxis:
+    """Leave out the fit of one axis where the joint was found to have more than one."""
+    if joint_type is None or joint_type.type not in ("two_axes", "ball", "free"):
+        return joint_axis
+    return replace(joint_axis, single=False, hinge=None, screw_hinge=None)
 
 
 def _markers(measured: Measurement) -> tuple[BodyMarkers, ...]:
