@@ -1,9 +1,10 @@
 """How often the intervals of a hinge hold the truth, under every kind of marker noise.
 
-    python benchmarks/intervals.py [--quick] [TRIALS]
+    python benchmarks/intervals.py [--quick] [--rms] [TRIALS]
 
 Prints a table in Markdown: share of trials whose 95 % interval holds the true line, direction and place in the proximal
 and in the distal body; mean radius over the 95th percentile of the error; and how often a pitch is told.
+With ``--rms`` the markers tell no more than their RMS in each frame, as in `analyze`; else their non-rigid coordinates.
 """
 
 from __future__ import annotations
@@ -35,14 +36,15 @@ TURN, SHIFT = np.radians(2.0), 2e-3
 
 def main() -> None:
     """Print one row for each hinge and each kind of noise."""
-    words = [word for word in sys.argv[1:] if word != "--quick"]
+    words = [word for word in sys.argv[1:] if not word.startswith("--")]
     quick = "--quick" in sys.argv
     trials = int(words[0]) if words else 20 if quick else 300
     print("| top deg | cycles | markers | proximal | noise | direction | place | sharpness | pitch |")
     print("| --- | --- | --- | --- | --- | --- | --- | --- | --- |")
     for number, hinge in enumerate(HINGES[:3] if quick else HINGES):
         for name, (noise, stated) in kinds(hinge).items():
-            found = coverage(hinge, noise, trials, seed=number, skin=stated, pitch=True)
+            alone = "--rms" in sys.argv
+            found = coverage(hinge, noise, trials, seed=number, skin=stated, pitch=True, rms_alone=alone)
             held, sharp = found.held, found.sharpness
             print(
                 f"| {hinge.top_deg:g} | {hinge.cycles} | {hinge.markers} | {'still' if hinge.still else 'moves'} "

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -118,8 +118,25 @@ def interval_of(case: Seen, influence: Influence, skin: tuple[SkinMotion, ...] =
     return joint_interval(influence, case.clusters, skin=skin)
 
 
+def with_rms_alone(case: Seen) -> Seen:
+    """What an analysis keeps of the markers: their RMS in each frame."""
+    kept = tuple(
+        replace(one, nonrigid=None, rms=np.sqrt(np.sum(one.nonrigid**2, axis=1) / len(one.shape)))
+        for one in case.clusters
+        if one.nonrigid is not None
+    )
+    return case._replace(clusters=kept)
+
+
 def coverage(
-    hinge: Hinge, noise: Noise, trials: int, *, seed: int, skin: tuple[SkinMotion, ...] = (), pitch: bool = False
+    hinge: Hinge,
+    noise: Noise,
+    trials: int,
+    *,
+    seed: int,
+    skin: tuple[SkinMotion, ...] = (),
+    pitch: bool = False,
+    rms_alone: bool = False,
 ) -> Coverage:
     """Errors and 95 % radii of a hinge's line in both bodies, and how often a pitch is told that is not there."""
     rng = np.random.default_rng(seed)
@@ -127,6 +144,7 @@ def coverage(
     error, radius, pitched = [], [], 0
     for _ in range(trials):
         case = seen(hinge, noise(hinge, rng))
+        case = with_rms_alone(case) if rms_alone else case
         fit, influence = fitted(case)
         interval = interval_of(case, influence, skin)
         error.append([*line_errors(fit.proximal, truth[0]), *line_errors(fit.distal, truth[1])])

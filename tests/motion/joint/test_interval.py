@@ -195,6 +195,13 @@ def test_radii_do_not_depend_on_the_frames_of_the_bodies() -> None:
         assert same.decided_by(rows) == interval.decided_by(rows)
 
 
+def test_with_the_rms_of_the_markers_alone_the_interval_survives_skin_over_eight_cycles() -> None:
+    """What `analyze` keeps of the markers; a formula for white noise covers a tenth here."""
+    found = coverage(Hinge(top_deg=60.0, cycles=8), skin(5e-3), 30, seed=904, rms_alone=True)
+    assert (found.held >= 0.85).all()
+    assert (found.sharpness <= 2.0).all()
+
+
 def test_nonrigid_coordinates_are_what_no_pose_explains() -> None:
     rng = np.random.default_rng(11)
     shape = Hinge().shapes[1]
