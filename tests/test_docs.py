@@ -15,18 +15,30 @@ from elbowscrew import __version__
 from elbowscrew.cli.app import app
 from elbowscrew.tables import FAILURE_COLUMNS, INTERPOLATION_COLUMNS, SCREW_COLUMNS, study_header
 
-LINK = re.compile(r"!?\[[^\]]*\]\(([^)#]+)")
+LINK = re.compile(r"!?\[[^\]]*\]\(([^)#]*)(?:#([^)]+))?\)")
+HEADING = re.compile(r"^#+ (.+)$", re.M)
 
 
 def documents(root: Path) -> list[Path]:
-    return [root / "README.md", root / "CHANGELOG.md", *sorted((root / "docs").rglob("*.md"))]
+    pages = [root / name for name in ("README.md", "CHANGELOG.md", "CONTRIBUTING.md", "benchmarks/README.md")]
+    return [*pages, *sorted((root / "docs").rglob("*.md"))]
 
 
 def test_links_lead_somewhere(root: Path) -> None:
     for document in documents(root):
-        for target in LINK.findall(document.read_text(encoding="utf-8")):
-            if not target.startswith("http"):
-                assert (document.parent / target).exists(), f"{document.name}: {target}"
+        for target, section in LINK.findall(document.read_text(encoding="utf-8")):
+            if target.startswith("http"):
+                continue
+            page = document.parent / target if target else document
+            assert page.exists(), f"{document.name}: {target}"
+            if section:
+                assert section in sections(page), f"{document.name}: {target}#{section}"
+
+
+def sections(page: Path) -> set[str]:
+    """What a page's headings are called in links: small letters, hyphens for blanks, no other punctuation."""
+    headings = HEADING.findall(page.read_text(encoding="utf-8"))
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
 
 
 def test_the_readme_names_every_command(root: Path) -> None:
