@@ -12,11 +12,10 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.motion.movements.cuts import Cuts, cut
 
-Float = NDArray[np.float64]
 Random = np.random.Generator
 
 

@@ -15,7 +15,6 @@ from collections import Counter
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "support"))
 
@@ -26,8 +25,6 @@ from elbowscrew.motion.joint.choice import choose_type
 from elbowscrew.motion.joint.fitting import fit_type
 from elbowscrew.motion.joint.likelihood import Poses, fit_mechanism
 from elbowscrew.motion.joint.starts import find_two_axes
-
-Float = NDArray[np.float64]
 
 FRAMES = 200
 NOISES = ((0.1, 2e-4), (0.5, 1e-3))

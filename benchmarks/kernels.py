@@ -15,15 +15,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import pytransform3d.trajectories
-from numpy.typing import NDArray
 from rows import Row, alternate, clean_environment, faster, share, table
 from scipy.spatial.transform import RigidTransform
 
 from elbowscrew import geometry
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry import quaternion
+from elbowscrew.geometry.arrays import Float
 
-Float = NDArray[np.float64]
 Task = Callable[[], Any]
 
 pt: Any = pytransform3d.trajectories  # it has types in parts only

@@ -13,15 +13,13 @@ import time
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "support"))
 
 from sense_motions import KINDS, SenseMotion, made, rotation, share_wrong
 
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.motion.screws.sense import sense_of
-
-Float = NDArray[np.float64]
 
 WRONG_SHARE = 0.002
 

@@ -12,14 +12,12 @@ import tempfile
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 from rows import SCRIPT, Row, Run, clean_environment, faster, run, share, table
 from scipy.optimize import curve_fit
 
 from elbowscrew import save_simulation, simulate_trial
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.simulate import Simulation
-
-Float = NDArray[np.float64]
 
 YARDSTICKS = Path(__file__).with_name("yardsticks")
 DRAWN, SCRIPTED = "pandas read and pyplot figures", "the pandas script"

@@ -6,13 +6,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from elbowscrew import Recording, RigidBody, Settings, analyze, read_recording
 from elbowscrew.errors import RecordingError, SettingError
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_quaternion import conjugate, transform_points
-
-Float = NDArray[np.float64]
 
 HINGES = [
     # file, arm, forearm, range deg, dispersion deg, median slide mm, its 5 and 95 % mm

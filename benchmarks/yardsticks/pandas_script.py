@@ -18,7 +18,7 @@ from pyplot_figures import Drawn, draw_all
 from scipy.signal import butter, filtfilt, find_peaks
 from scipy.spatial.transform import RigidTransform, Rotation
 
-Float = NDArray[np.float64]
+from elbowscrew.geometry.arrays import Float
 
 HEADER_LINES = 7
 LEAST_ANGLE = np.radians(10.0)

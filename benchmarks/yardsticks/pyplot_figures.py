@@ -16,7 +16,7 @@ from matplotlib.colors import Normalize
 from matplotlib.patches import Circle
 from numpy.typing import NDArray
 
-Float = NDArray[np.float64]
+from elbowscrew.geometry.arrays import Float
 
 MM = 1.0 / 25.4
 AXES_SHOWN = 60

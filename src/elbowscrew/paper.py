@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from elbowscrew.geometry import (
     dib,
@@ -22,8 +21,7 @@ from elbowscrew.geometry import (
     sdlb,
 )
 from elbowscrew.geometry import dual_quaternion as dq
-
-Float = NDArray[np.float64]
+from elbowscrew.geometry.arrays import Float
 
 EARLY_STOP: Final = "the paper's loop stopped early"
 _EARLY_STOP_TOLERANCE: Final = 2.0000001e-6

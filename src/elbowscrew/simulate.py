@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from elbowscrew.errors import UsageError
 from elbowscrew.geometry import dual_quat_from_screw, line_through, point_nearest_origin, pose_from_points, quaternion
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_quaternion import (
     conjugate,
     dual_quat_from_pose,
@@ -22,8 +23,6 @@ from elbowscrew.joints import JOINT_NAMES, JointName, joints_of
 from elbowscrew.model import Recording, RigidBody, TrackingLoss
 from elbowscrew.motion.interpolation.laws import cycloidal
 from elbowscrew.motion.screws.relative import IDENTITY
-
-Float = NDArray[np.float64]
 
 # An adult's arm: the line through the elbow in the arm's frame, tilted as the trochlea is; the segments' markers.
 _JOINT_POINT: Final = np.array([0.004, -0.132, 0.011])

@@ -16,8 +16,8 @@ from elbowscrew import geometry as g
 from elbowscrew.geometry import _blocks
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry import quaternion as qn
+from elbowscrew.geometry.arrays import Float
 
-Float = NDArray[np.float64]
 LONG = 2 * _blocks.BLOCK + 3
 MIB = 2**20
 KNOTS = np.array([0.0, 0.3, 0.55, 0.8, 1.0])

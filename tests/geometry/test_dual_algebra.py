@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 from poses import SHAPES, poses, random_poses
 from scipy.linalg import expm
 from scipy.optimize import minimize
@@ -29,9 +28,9 @@ from elbowscrew.geometry import (
 )
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry import quaternion as qn
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_number import DualNumber
 
-Float = NDArray[np.float64]
 reals = st.floats(-3, 3)
 
 

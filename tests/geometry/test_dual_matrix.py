@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 from poses import random_poses
 
 from elbowscrew.geometry import dual_matrix, dual_matrix_from_dual_quat
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_matrix import DualMatrix
 
-Float = NDArray[np.float64]
 SHAPES = [(1000, 3, 3), (1000, 5, 3), (1000, 3, 5), (1000, 1, 1), (3, 1, 2, 4, 4), (0, 3, 3), (3, 3)]
 
 

@@ -7,7 +7,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
-from numpy.typing import NDArray
 from poses import poses, random_poses
 
 from elbowscrew.geometry import (
@@ -23,8 +22,7 @@ from elbowscrew.geometry import (
     sdlb,
 )
 from elbowscrew.geometry import dual_quaternion as dq
-
-Float = NDArray[np.float64]
+from elbowscrew.geometry.arrays import Float
 
 
 @given(poses(), poses())

@@ -7,7 +7,6 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
-from numpy.typing import NDArray
 from poses import SHAPES, poses, random_poses, vectors
 
 from elbowscrew.geometry import (
@@ -17,8 +16,8 @@ from elbowscrew.geometry import (
     screw_from_dual_quat,
 )
 from elbowscrew.geometry import dual_quaternion as dq
+from elbowscrew.geometry.arrays import Float
 
-Float = NDArray[np.float64]
 ONE = np.array([1.0, 0, 0, 0, 0, 0, 0, 0])
 
 

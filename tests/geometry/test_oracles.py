@@ -5,14 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import pytransform3d.transformations as pt
-from numpy.typing import NDArray
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry import quaternion as qn
 from elbowscrew.geometry import sclerp, screw_from_dual_quat
+from elbowscrew.geometry.arrays import Float
 
-Float = NDArray[np.float64]
 ANGLES = (1e-300, 1e-12, 1e-7, 1e-3, 0.5, 2.0, np.pi - 1e-7, np.pi - 1e-12, np.pi)
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from elbowscrew.geometry import (
     dlb,
@@ -16,8 +15,7 @@ from elbowscrew.geometry import (
     sdlb,
 )
 from elbowscrew.geometry import dual_quaternion as dq
-
-Float = NDArray[np.float64]
+from elbowscrew.geometry.arrays import Float
 
 QUARTER_TURN = [np.cos(np.pi / 4), 0.0, 0.0, np.sin(np.pi / 4)]
 

@@ -6,14 +6,12 @@ from typing import Any
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 from poses import SHAPES, random_poses
 from scipy.spatial.transform import Rotation
 
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry import fit_poses, fit_poses_dual_qr
 
-Float = NDArray[np.float64]
 BODY = np.array([[0.04, 0, 0.01], [-0.03, 0.05, 0], [0, -0.04, 0.01], [0.01, 0.02, -0.06], [0.02, -0.03, 0.05]])
 
 

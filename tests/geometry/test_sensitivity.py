@@ -6,14 +6,12 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 from poses import SHAPES, poses, random_poses
 
 from elbowscrew.geometry import dual_quat_from_screw, screw_from_dual_quat
 from elbowscrew.geometry import dual_quaternion as dq
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.sensitivity import confidence_radius, screw_sensitivity
-
-Float = NDArray[np.float64]
 
 
 @given(poses(), st.integers(0, 5))

@@ -7,14 +7,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 from poses import SHAPES, random_poses
 
 from elbowscrew import geometry as g
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry import dual_vector, general, quaternion, twist
+from elbowscrew.geometry.arrays import Float
 
-Float = NDArray[np.float64]
 KNOTS = np.array([0.0, 0.3, 1.0])
 MARKERS = np.array([[0.04, 0, 0.01], [-0.03, 0.05, 0], [0, -0.04, 0.01], [0.01, 0.02, -0.06]])
 

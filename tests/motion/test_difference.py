@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry import line_through
 from elbowscrew.geometry import quaternion as qn
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.motion.difference import (
     angle_between,
     direction_between,
@@ -20,7 +20,6 @@ from elbowscrew.motion.difference import (
     rms_displacement,
 )
 
-Float = NDArray[np.float64]
 SEEDS = st.integers(0, 1_000_000)
 
 

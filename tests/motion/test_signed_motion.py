@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 from sense_motions import conjugate, product, rotation, smooth, strokes, unit
 
 from elbowscrew import Analysis, ComparisonPlan, Recording, RigidBody, Settings, analyze, compare
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_quaternion import dual_quat_from_pose
 from elbowscrew.motion.interpolation.rebuilding import interpolate, keyframes_of
 from elbowscrew.results.summary import summary_from_analysis
-
-Float = NDArray[np.float64]
 
 AXIS = unit(np.array([1.0, 0.2, -0.1]))
 ACROSS = unit(np.cross(AXIS, [0.0, 0.0, 1.0]))

@@ -9,14 +9,13 @@ from typing import Any
 import numpy as np
 import pytest
 from motive_files import bodies_of, write_columns
-from numpy.typing import NDArray
 from oracles import KnownTrial, known_trial, quaternion_xyzw
 
 from elbowscrew import read_recording, save_simulation, simulate_trial
 from elbowscrew.errors import RecordingError, SettingError, UsageError
 from elbowscrew.geometry import dual_quaternion as dq
+from elbowscrew.geometry.arrays import Float
 
-Float = NDArray[np.float64]
 TRIAL = known_trial(95.0, frames=40, inversion=20, seed=3)
 
 VARIANTS: dict[str, dict[str, Any]] = {

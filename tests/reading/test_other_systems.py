@@ -9,16 +9,15 @@ from typing import Any
 import ezc3d
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 from oracles import known_trial, quaternion_xyzw
 
 from elbowscrew import Settings, analyze, read_recording, simulate_trial
 from elbowscrew.cli import main
 from elbowscrew.errors import RecordingError, SettingError
 from elbowscrew.geometry import dual_quaternion as dq
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.reading.clock import rate_of
 
-Float = NDArray[np.float64]
 TRIAL = known_trial(110.0, frames=80, inversion=40, seed=21)
 CLUSTER = np.array([[0.04, 0, 0.01], [-0.03, 0.05, 0], [0, -0.04, 0.01], [0.01, 0.02, -0.06]])
 

@@ -7,12 +7,12 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.signal import butter, sosfiltfilt
 from trials import ARM, FOREARM, LINE, START, joint_poses
 
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry import pose_from_points
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import PoseNoise
 from elbowscrew.motion.joint.influence import Influence, influence_of_fit
 from elbowscrew.motion.joint.interval import SURE, ClusterMotion, JointInterval, SkinMotion, joint_interval
@@ -21,7 +21,6 @@ from elbowscrew.motion.joint.nonrigid import nonrigid_coordinates
 from elbowscrew.motion.screws.pose_noise import covariance_from_markers
 from elbowscrew.motion.screws.uncertainty import joint_covariance
 
-Float = NDArray[np.float64]
 Noise = Callable[["Hinge", np.random.Generator], tuple[Float, Float]]
 
 RATE_HZ = 100.0

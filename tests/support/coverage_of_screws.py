@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from trials import ARM, FOREARM, LINE, START, joint_poses, noisy_joint, pose_covariance
 
 from elbowscrew.geometry import dual_quaternion as dq
@@ -11,7 +10,6 @@ from elbowscrew.geometry import screw_from_dual_quat
 from elbowscrew.model import PoseNoise
 from elbowscrew.motion.screws.uncertainty import errors_from_covariance, joint_covariance
 
-Float = NDArray[np.float64]
 _NORMAL = 1.959964
 IDENTITY = np.array([1.0, 0, 0, 0, 0, 0, 0, 0])
 

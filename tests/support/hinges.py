@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from trials import ARM, FOREARM, LINE, START, joint_poses, noisy_joint, pose_covariance
 
 from elbowscrew.geometry import dual_quaternion as dq
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import PoseNoise
 from elbowscrew.motion.axes.mean_axis import mean_axis_of
 from elbowscrew.motion.joint.joint_fit import fit_joint, sara_lines
@@ -14,7 +14,6 @@ from elbowscrew.motion.screws.helical import helical_series
 from elbowscrew.motion.screws.sense import sense_of
 from elbowscrew.motion.screws.uncertainty import joint_covariance
 
-Float = NDArray[np.float64]
 FRAMES = 450
 OUTLIERS = np.array([0.3] * 3 + [0.05] * 3)
 _Z = np.array([0.0, 0.0, 1.0, 0.0, 0.0, 0.0])

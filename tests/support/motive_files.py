@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from oracles import KnownTrial, quaternion_xyzw
 from scipy.spatial.transform import Rotation
 
-Float = NDArray[np.float64]
+from elbowscrew.geometry.arrays import Float
+
 SCALES = {"Meters": 1.0, "Centimeters": 100.0, "Millimeters": 1000.0}
 
 

@@ -5,15 +5,13 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from elbowscrew.geometry import dual_quat_from_screw
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry import quaternion as qn
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import PoseNoise
 from elbowscrew.motion.screws.uncertainty import joint_covariance
-
-Float = NDArray[np.float64]
 
 
 class MovingJoint(NamedTuple):

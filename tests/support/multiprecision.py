@@ -11,12 +11,11 @@ from typing import Any
 
 import mpmath
 import numpy as np
-from numpy.typing import NDArray
 
 from elbowscrew.geometry import dual_quat_from_screw, sclerp, screw_from_dual_quat
 from elbowscrew.geometry import dual_quaternion as dq
+from elbowscrew.geometry.arrays import Float
 
-Float = NDArray[np.float64]
 Number = Any  # mpmath has no types
 
 DIGITS = 700  # twice the exponent of 1e-300, and fifty beside

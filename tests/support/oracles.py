@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-Float = NDArray[np.float64]
+from elbowscrew.geometry.arrays import Float
 
 
 def rodrigues(axis: Float, angle: Float) -> Float:

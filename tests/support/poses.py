@@ -7,12 +7,11 @@ from typing import Any
 import numpy as np
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
-from numpy.typing import NDArray
 
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry import quaternion as qn
+from elbowscrew.geometry.arrays import Float
 
-Float = NDArray[np.float64]
 SHAPES: tuple[tuple[int, ...], ...] = ((), (1,), (3, 1, 2), (0,))
 
 vectors = arrays(np.float64, 3, elements=st.floats(-3.0, 3.0))

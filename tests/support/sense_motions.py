@@ -8,7 +8,8 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-Float = NDArray[np.float64]
+from elbowscrew.geometry.arrays import Float
+
 Random = np.random.Generator
 
 RATE_HZ: Final = 100.0

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from elbowscrew.geometry import dual_quat_from_screw, line_through, pose_from_points
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry import quaternion as qn
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.motion.screws.pose_noise import covariance_from_markers
-
-Float = NDArray[np.float64]
 
 SIGMA = 2e-4
 LINE = line_through([0.004, -0.132, 0.011], [0.986, 0.104, -0.131])

@@ -12,9 +12,9 @@ from collections.abc import Callable, Iterable
 from typing import Final
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Float = NDArray[np.float64]
+from elbowscrew.geometry.arrays import Float
 
 # From 8,192 to 32,768 frames alike. The least of them keeps a linear map of 4 x 8 below the size from which on
 # OpenBLAS takes threads, which would stand in the way of those who run one process on each core.

@@ -10,7 +10,6 @@ from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from elbowscrew.geometry._small_angle import (
     cosine_and_sine,
@@ -19,8 +18,8 @@ from elbowscrew.geometry._small_angle import (
     row_length,
     sinc_slope,
 )
+from elbowscrew.geometry.arrays import Float
 
-Float = NDArray[np.float64]
 Rows = Sequence[Float] | Float
 
 

@@ -6,9 +6,8 @@ from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
-Float = NDArray[np.float64]
+from elbowscrew.geometry.arrays import Float
 
 # Below this angle (rad) the closed form of `sinc_slope` cancels and the series is used; nine terms leave 2e-18 there.
 _SERIES_BELOW: Final = 1.0

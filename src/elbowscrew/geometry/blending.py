@@ -14,8 +14,7 @@ from elbowscrew.geometry import _rows, dual_quaternion
 from elbowscrew.geometry._blocks import in_blocks, is_single
 from elbowscrew.geometry._small_angle import VANISHING_NORM, length, row_length
 from elbowscrew.geometry._ways import WayRound, check_way, choose_signs
-
-Float = NDArray[np.float64]
+from elbowscrew.geometry.arrays import Float
 
 
 def lagrange_weights(fraction: ArrayLike, knots: ArrayLike) -> NDArray[np.float64]:

@@ -5,11 +5,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from elbowscrew.geometry._small_angle import VANISHING_NORM, divide, length
-
-Float = NDArray[np.float64]
+from elbowscrew.geometry.arrays import Float
 
 
 class DualMatrix(NamedTuple):

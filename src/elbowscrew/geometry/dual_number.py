@@ -10,11 +10,10 @@ from collections.abc import Callable
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from elbowscrew.geometry._small_angle import divide as _divide
-
-Float = NDArray[np.float64]
+from elbowscrew.geometry.arrays import Float
 
 
 class _Parts(NamedTuple):

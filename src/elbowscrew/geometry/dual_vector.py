@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from elbowscrew.geometry._small_angle import divide, length
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_number import DualNumber, dual_number
-
-Float = NDArray[np.float64]
 
 
 def dot(left: ArrayLike, right: ArrayLike) -> DualNumber:

@@ -7,12 +7,11 @@ in place of real ones (P 44, 46, 48).
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from elbowscrew.geometry import dual_number, dual_quaternion
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_number import DualNumber
-
-Float = NDArray[np.float64]
 
 
 def scale(dual_quat: ArrayLike, factor: DualNumber) -> Float:

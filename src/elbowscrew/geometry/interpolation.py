@@ -22,8 +22,7 @@ from elbowscrew.geometry._small_angle import (
     row_length,
 )
 from elbowscrew.geometry._ways import WayRound, check_way, choose_signs
-
-Float = NDArray[np.float64]
+from elbowscrew.geometry.arrays import Float
 
 
 def sclerp(start: ArrayLike, end: ArrayLike, fraction: ArrayLike, *, way: WayRound = "shortest") -> NDArray[np.float64]:

@@ -5,15 +5,14 @@ from __future__ import annotations
 from typing import Final, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from elbowscrew.geometry import dual_matrix
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_matrix import DualMatrix
 from elbowscrew.geometry.dual_quaternion import dual_quat_from_pose, transform_points
 from elbowscrew.geometry.quaternion import quat_from_rotation_matrix
 from elbowscrew.geometry.screw import dual_quat_from_dual_matrix
-
-Float = NDArray[np.float64]
 
 # Markers this much closer to a line (or to a plane) than long give no pose: their spread across it is noise.
 _FLATNESS: Final = 0.02

@@ -6,12 +6,11 @@ from functools import lru_cache
 from typing import Final, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from elbowscrew.geometry._small_angle import divide
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.screw import screw_from_dual_quat
-
-Float = NDArray[np.float64]
 
 _RATIOS: Final = 129
 _SECTORS: Final = 720

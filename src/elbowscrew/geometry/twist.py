@@ -5,12 +5,11 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from elbowscrew.geometry import dual_quaternion, quaternion
 from elbowscrew.geometry._small_angle import divide, length
-
-Float = NDArray[np.float64]
+from elbowscrew.geometry.arrays import Float
 
 
 class InstantaneousScrew(NamedTuple):

@@ -10,12 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowscrew import tables
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.model.brief import Brief
 
 if TYPE_CHECKING:
     import pandas as pd
 
-Float = NDArray[np.float64]
 
 Side = Literal["right", "left"]
 LandmarkFrame = Literal["proximal", "distal", "lab"]

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowscrew import tables
+from elbowscrew.geometry.arrays import Float, Index
 from elbowscrew.model.brief import Brief
 from elbowscrew.model.modeled import ModelPhases, PhaseLaw, Selection
 
@@ -20,8 +21,6 @@ if TYPE_CHECKING:
     from elbowscrew.model.recording import QualityWarning, Recording
     from elbowscrew.settings import Settings
 
-Float = NDArray[np.float64]
-Index = NDArray[np.int64]
 MaskedIndex = np.ma.MaskedArray[Any, np.dtype[np.int64]]
 Label = NDArray[np.str_]
 

@@ -5,12 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-import numpy as np
-from numpy.typing import NDArray
-
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.model.brief import Brief
-
-Float = NDArray[np.float64]
 
 JointTypeName = Literal["rigid", "hinge", "screw_hinge", "two_axes", "ball", "free", "undetermined"]
 

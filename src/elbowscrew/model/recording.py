@@ -13,11 +13,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from elbowscrew.geometry import dual_quaternion, quaternion
+from elbowscrew.geometry.arrays import Bool, Float
 from elbowscrew.model.brief import Brief
-
-Float = NDArray[np.float64]
-Bool = NDArray[np.bool_]
-
 
 # Exports print six decimals, so that a norm is off by 1e-6; a digit or a cell gone wrong shows above this.
 _NORM_TOLERANCE: Final = 5e-3

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowscrew import tables
+from elbowscrew.geometry.arrays import Bool, Float
 from elbowscrew.joints import Joint
 from elbowscrew.model.anatomy import AnatomicalMotion
 from elbowscrew.model.axes import HelicalSteps, InstantaneousMotion
@@ -25,9 +26,6 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from elbowscrew.settings import Settings
-
-Float = NDArray[np.float64]
-Bool = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)

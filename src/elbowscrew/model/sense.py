@@ -5,12 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Final
 
-import numpy as np
-from numpy.typing import NDArray
-
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.model.brief import Brief
-
-Float = NDArray[np.float64]
 
 # Between these, another reference pose may decide otherwise.
 _DOUBTFUL_RATIO: Final = (0.15, 0.25)

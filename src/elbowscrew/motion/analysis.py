@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat
 from elbowscrew.model import Analysis, InterpolatedMotion, Landmarks, QualityWarning, Recording
@@ -25,8 +24,6 @@ from elbowscrew.motion.movements.phases import movement_phases
 from elbowscrew.motion.movements.repetitions import cycle_curves_of, repeatability_of, repetitions_of
 from elbowscrew.motion.screws.measurement import Measurement, measure
 from elbowscrew.settings import Settings
-
-Float = NDArray[np.float64]
 
 
 def analyze(recording: Recording, settings: Settings | None = None, *, landmarks: Landmarks | None = None) -> Analysis:

@@ -5,16 +5,14 @@ from __future__ import annotations
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from elbowscrew.geometry import _rows
 from elbowscrew.geometry._blocks import in_blocks
 from elbowscrew.geometry._small_angle import divide, length, row_length
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat
 from elbowscrew.geometry.quaternion import rotation_matrix_from_quat
 from elbowscrew.model import BodyPoints
-
-Float = NDArray[np.float64]
 
 DEFAULT_RADIUS: Final = 0.05
 """Radius of gyration (m) of the points of a body whose markers are not known."""

@@ -11,11 +11,10 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter, StrMethodFormatter
 from numpy.typing import NDArray
 
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import ComparedModels, ComparedOverTrials, Comparison, Selection, TrialsComparison
 from elbowscrew.plots import style
 from elbowscrew.tables import LengthUnit, length_in
-
-Float = NDArray[np.float64]
 
 _WIDTH_MM: Final = 170.0
 _BETWEEN_TWO: Final = {"dlb": "blend", "sclerp": "screw", "sdlb": "blend", "dib": "screw", "catmull-rom": "screw"}

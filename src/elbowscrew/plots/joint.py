@@ -10,15 +10,13 @@ from matplotlib.collections import LineCollection
 from matplotlib.patches import Circle
 from mpl_toolkits.mplot3d.art3d import Line3DCollection
 from mpl_toolkits.mplot3d.axes3d import Axes3D
-from numpy.typing import NDArray
 
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.plots.axis import color_scale, equal_aspect, plot_path
 from elbowscrew.plots.style import CONFIDENCE, SPREAD
 from elbowscrew.tables import angle_in, length_in
 from elbowscrew.view.scene import Bundle, Region, bodies_in_space, directions_across, joint_bundle
 from elbowscrew.view.shown import Shown
-
-Float = NDArray[np.float64]
 
 _AROUND: Final = 24
 _ALONG_IN_SPACE: Final = 13

@@ -8,14 +8,12 @@ from typing import Final, NamedTuple
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.plots import style
 from elbowscrew.plots.figures import WIDTH_MM
 from elbowscrew.tables import AngleUnit, angle_in
 from elbowscrew.view.shown import Shown
-
-Float = NDArray[np.float64]
 
 PERCENT: Final[Float] = np.linspace(0.0, 100.0, 101)
 LEAST_TRIALS: Final = 2

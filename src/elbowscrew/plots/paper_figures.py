@@ -8,14 +8,12 @@ from typing import Any, Final
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.plots import series, style
 from elbowscrew.plots.figures import NARROW_MM, WIDTH_MM, MakeFigure
 from elbowscrew.tables import angle_in
 from elbowscrew.view.shown import Shown
-
-Float = NDArray[np.float64]
 
 # Okabe and Ito's colors with line styles of their own, so that they are apart in grey as well.
 _COMPONENTS: Final[tuple[dict[str, Any], ...]] = (

@@ -7,15 +7,13 @@ from typing import Any, Final
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
-from numpy.typing import NDArray
 
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.motion.movements.phases import runs_of
 from elbowscrew.plots import style
 from elbowscrew.tables import angle_in, length_in
 from elbowscrew.view.decimation import drawn_band, drawn_rows
 from elbowscrew.view.shown import Shown
-
-Float = NDArray[np.float64]
 
 _NORMAL_95: Final = 1.959964
 _PIECE: Final = 500

@@ -11,17 +11,15 @@ from pathlib import Path
 from typing import Any, Final, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from elbowscrew.errors import NoBodiesError, RecordingError
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import QualityWarning, Recording, RigidBody, Source, invalid_warning, out_of_reach
 from elbowscrew.reading.clock import is_rate
 from elbowscrew.reading.growing import GrowingMarker
 from elbowscrew.reading.options import ASK_FOR_MARKERS, ReadOptions, stated_unit
 from elbowscrew.reading.source import sha256_of
 from elbowscrew.tables import METERS
-
-Float = NDArray[np.float64]
 
 ENDINGS: Final = (".c3d",)
 _LONGEST_OPENING_S: Final = 600

@@ -9,12 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowscrew.errors import RecordingError
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import QualityWarning
 from elbowscrew.model.clock import time_resolution
 from elbowscrew.reading.cells import parse_number
 from elbowscrew.reading.source import TextSource
-
-Float = NDArray[np.float64]
 
 LATEST_TIME_S: Final = 1e10
 LAST_FRAME: Final = 2**53

@@ -9,10 +9,9 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import QualityWarning
 from elbowscrew.reading.growing import Growing
-
-Float = NDArray[np.float64]
 
 _OFF_M: Final = 0.005
 _MOST_ROWS: Final = 65536

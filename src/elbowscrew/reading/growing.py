@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import (
     Marker,
     QualityWarning,
@@ -16,8 +17,6 @@ from elbowscrew.model import (
     invalid_warning,
     out_of_reach,
 )
-
-Float = NDArray[np.float64]
 
 
 class Growing:

@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from elbowscrew.geometry import quaternion
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_quaternion import conjugate, transform_points
 from elbowscrew.model import QualityWarning, RigidBody, invalid_marker_warning, out_of_reach
 from elbowscrew.reading.cells import read_blocks
@@ -17,8 +17,6 @@ from elbowscrew.reading.cluster_shapes import OddShapes
 from elbowscrew.reading.growing import Growing, GrowingBody
 from elbowscrew.reading.motive_header import BodyColumns, Header
 from elbowscrew.reading.source import TextSource
-
-Float = NDArray[np.float64]
 
 _MIRRORED_VERSION: Final = "1.1"
 _SAMPLE_ROWS: Final = 1024

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from elbowscrew.errors import RecordingError, SettingError
 from elbowscrew.geometry import quaternion
@@ -19,8 +18,6 @@ from elbowscrew.reading.motive_header import BodyColumns, Header, body_columns, 
 from elbowscrew.reading.options import ReadOptions, stated_unit
 from elbowscrew.reading.source import TextSource
 from elbowscrew.tables import METERS
-
-Float = NDArray[np.float64]
 
 _KNOWN_VERSIONS: Final = ("1.1", "1.2", "1.21", "1.22", "1.23", "1.24", "1.25")
 

@@ -11,7 +11,6 @@ import re
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from elbowscrew.errors import NoBodiesError, RecordingError
 from elbowscrew.model import Recording, Source
@@ -21,8 +20,6 @@ from elbowscrew.reading.growing import Growing, GrowingBody, GrowingMarker
 from elbowscrew.reading.options import ASK_FOR_MARKERS, ReadOptions
 from elbowscrew.reading.source import TextSource
 from elbowscrew.tables import METERS
-
-Float = NDArray[np.float64]
 
 _COLUMN: Final = re.compile(r"(?P<name>.+)_(?:(?P<euler>e[0-3])|(?P<axis>[xyz])_(?P<unit>m|cm|mm))")
 _POSE: Final = ("e0", "e1", "e2", "e3", "x", "y", "z")

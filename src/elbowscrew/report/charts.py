@@ -11,9 +11,8 @@ import numpy as np
 from markupsafe import Markup
 from numpy.typing import NDArray
 
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.motion.movements.phases import runs_of
-
-Float = NDArray[np.float64]
 
 WIDTH: Final = 900.0
 _LEFT, _RIGHT, _TOP, _BOTTOM = 62.0, 16.0, 10.0, 46.0

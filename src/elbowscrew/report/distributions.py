@@ -8,11 +8,9 @@ from typing import Final
 
 import numpy as np
 from markupsafe import Markup
-from numpy.typing import NDArray
 
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.report.charts import picture, range_of, tick_text, ticks_between
-
-Float = NDArray[np.float64]
 
 LIMIT: Final = 3.5
 LEAST: Final = 5

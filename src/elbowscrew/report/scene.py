@@ -5,13 +5,11 @@ from __future__ import annotations
 from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.report.charts import COLORS
 from elbowscrew.view.finished import FinishedTrial
 from elbowscrew.view.scene import Region, bodies_in_space, directions_across, joint_bundle, thinned
-
-Float = NDArray[np.float64]
 
 MOST_FRAMES: Final = 900
 """Frames that are played; of longer trials every so many."""

@@ -10,17 +10,15 @@ from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from elbowscrew import tables
 from elbowscrew.errors import ResultError
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.reading.source import longest_cell
 from elbowscrew.report.charts import min_max_rows
 from elbowscrew.results.read_back import UNREADABLE, check_version, is_result, read_summary
 from elbowscrew.results.table_reading import read_columns
 from elbowscrew.settings import settings_from_options
-
-Float = NDArray[np.float64]
 
 CONDITION: Final = "condition"
 _ALWAYS: Final = ("subject", CONDITION)

@@ -9,14 +9,12 @@ from urllib.parse import quote
 
 import numpy as np
 from markupsafe import Markup
-from numpy.typing import NDArray
 
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.report.charts import min_max_rows, path_of
 from elbowscrew.report.distributions import LEAST, LIMIT, modified_z, strip_chart
 from elbowscrew.report.pages import UNSHOWABLE, render, unshowable, write_page
 from elbowscrew.report.study import CONDITION, Failure, Study, StudyTrial, read_study
-
-Float = NDArray[np.float64]
 
 _THUMB: Final = (132.0, 34.0)
 _THUMB_BUCKETS: Final = 40

@@ -9,6 +9,7 @@ import numpy as np
 from markupsafe import Markup
 from numpy.typing import NDArray
 
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.motion.movements.phases import runs_of
 from elbowscrew.report.charts import (
     COLORS,
@@ -24,8 +25,6 @@ from elbowscrew.report.charts import (
 from elbowscrew.report.scene import WIDEST
 from elbowscrew.view.finished import FinishedTrial
 from elbowscrew.view.scene import Bundle, directions_across, joint_bundle
-
-Float = NDArray[np.float64]
 
 _NORMAL_95: Final = 1.959964
 _ASPECT: Final = (0.5 * WIDTH - 78.0) / (0.42 * WIDTH - 56.0)  # of the inner part of a panel of the axes

@@ -5,14 +5,12 @@ from __future__ import annotations
 from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat
 from elbowscrew.model import Analysis, AnatomicalMotion, FittedJoint, LineEstimate, PoseNoise, RigidBody
 from elbowscrew.results.joint_type_summary import joint_type_summary
 from elbowscrew.results.statistics import known, rms, statistic
-
-Float = NDArray[np.float64]
 
 
 def joint_summary(analysis: Analysis) -> dict[str, Any]:

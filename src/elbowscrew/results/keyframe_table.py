@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowscrew.errors import RecordingError, SettingError
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_quaternion import continuous_signs, dual_quat_from_pose, normalize
 from elbowscrew.geometry.quaternion import norm
 from elbowscrew.model import KeyframeSet, PhaseLaw
@@ -18,8 +19,6 @@ from elbowscrew.motion.interpolation.keyframes import phase_time_share
 from elbowscrew.motion.interpolation.laws import LAWS, named_law
 from elbowscrew.motion.interpolation.modeling import METHODS
 from elbowscrew.tables import METERS
-
-Float = NDArray[np.float64]
 
 _POSE: Final = ("e0", "e1", "e2", "e3", "d_x", "d_y", "d_z")
 _UNIT_TOLERANCE: Final = 5e-3

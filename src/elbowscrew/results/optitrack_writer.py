@@ -6,13 +6,11 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat, transform_points
 from elbowscrew.model import Recording, RigidBody
 from elbowscrew.tables import METERS
-
-Float = NDArray[np.float64]
 
 _UNIT_TITLES = {"m": "Meters", "cm": "Centimeters", "mm": "Millimeters"}
 

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from elbowscrew import tables
 from elbowscrew._version import __version__
 from elbowscrew.errors import ResultError
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_quaternion import dual_quat_from_pose
 from elbowscrew.joints import Joint, joint_called
 from elbowscrew.model import (
@@ -37,7 +38,6 @@ from elbowscrew.view.finished import (
     FinishedTrial,
 )
 
-Float = NDArray[np.float64]
 Columns = dict[str, NDArray[Any]]
 
 UNREADABLE = (KeyError, TypeError, ValueError, IndexError, AttributeError)

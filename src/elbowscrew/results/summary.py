@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from elbowscrew._version import __version__
 from elbowscrew.errors import SettingError
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.joints import side_between
 from elbowscrew.model import Analysis, BodyQuality, JointAxis, Landmarks, QualityWarning, Recording, Selection, Spread
 from elbowscrew.model.anatomy import LANDMARKS
@@ -24,8 +25,6 @@ from elbowscrew.results.joint_summary import INTERVAL_METHODS
 from elbowscrew.results.joint_type_summary import joint_type_summary
 from elbowscrew.results.statistics import known, rms, statistic
 from elbowscrew.settings import Settings, options_from_settings
-
-Float = NDArray[np.float64]
 
 _LIBRARIES: Final = ("numpy", "scipy", "matplotlib", "pandas", "pydantic")
 

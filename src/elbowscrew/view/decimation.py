@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-Float = NDArray[np.float64]
+from elbowscrew.geometry.arrays import Float
 
 # As many as a figure's full width has dots in print (170 mm at 300 dpi): no peak is lost and no line moves.
 _BUCKETS: Final = 2000

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
-import numpy as np
 from numpy.typing import NDArray
 
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.joints import Joint
 from elbowscrew.model.brief import Brief
 from elbowscrew.model.modeled import InterpolatedMotion, Keyframes
@@ -18,8 +18,6 @@ from elbowscrew.model.results import ScrewMotion
 
 if TYPE_CHECKING:
     from elbowscrew.settings import Settings
-
-Float = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -7,11 +7,10 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_quaternion import conjugate, multiply, pose_from_dual_quat, transform_points
 from elbowscrew.geometry.quaternion import rotate
 from elbowscrew.view.shown import Shown
-
-Float = NDArray[np.float64]
 
 _MOST_AXES: Final = 60
 _STEEPEST: Final = 1.4

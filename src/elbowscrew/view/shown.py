@@ -5,9 +5,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Literal, Protocol
 
-import numpy as np
-from numpy.typing import NDArray
-
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.joints import Joint
 from elbowscrew.model.modeled import InterpolatedMotion, Keyframes
 from elbowscrew.model.repetitions import MovementPhases, Repetitions
@@ -15,8 +13,6 @@ from elbowscrew.model.results import ScrewMotion
 
 if TYPE_CHECKING:
     from elbowscrew.settings import Settings
-
-Float = NDArray[np.float64]
 
 
 class ShownLine(Protocol):

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 from oracles import rodrigues
 from poses import random_poses, vectors
 from scipy.spatial.transform import Rotation
@@ -19,6 +18,7 @@ from elbowscrew.errors import SettingError
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry import line_through
 from elbowscrew.geometry import quaternion as qn
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import JointMotion, Marker, QualityWarning
 from elbowscrew.model.anatomy import AnatomicalMotion, Landmark, LandmarkFrame, Landmarks, Side
 from elbowscrew.motion.anatomy.anatomy import (
@@ -32,7 +32,6 @@ from elbowscrew.motion.anatomy.anatomy import (
 )
 from elbowscrew.motion.screws.relative import joint_from_bodies
 
-Float = NDArray[np.float64]
 SIDES: tuple[Side, ...] = ("right", "left")
 NAMES = ("EL", "EM", "US", "RS", "GH")
 ON_ARM = ("EL", "EM", "GH")

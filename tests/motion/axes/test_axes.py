@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 from trials import LINE, START, joint_poses
 
 from elbowscrew import Recording, RigidBody, Settings, analyze, simulate_trial
@@ -12,8 +11,6 @@ from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry import line_through
 from elbowscrew.model import HelicalSteps
 from elbowscrew.motion.axes.instantaneous import instantaneous_motion
-
-Float = NDArray[np.float64]
 
 
 def steps_of(step_deg: float, *, noise_mm: float = 0.0, seed: int = 0) -> HelicalSteps:

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
 import elbowscrew.motion.interpolation.keyframe_selection as selection_module
 from elbowscrew import Settings, analyze, simulate_trial
@@ -17,12 +16,12 @@ from elbowscrew.errors import SettingError, UsageError
 from elbowscrew.geometry import dual_quat_from_screw, sclerp, sdlb
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry import quaternion as qn
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.motion.difference import points_from_markers
 from elbowscrew.motion.interpolation.keyframe_selection import select_keyframes
 from elbowscrew.motion.interpolation.segment_errors import BASES, PoseTrack, displacement_along, squares_along
 from elbowscrew.settings import settings_from
 
-Float = NDArray[np.float64]
 MARKERS = np.array([[38, 12, 31], [-41, 27, 8], [9, -44, -28], [-6, 5, -47], [60, 3, 10]]) * 1e-3
 POINTS = points_from_markers(MARKERS)
 BETWEEN: dict[str, Any] = {"sclerp": sclerp, "sdlb": sdlb}

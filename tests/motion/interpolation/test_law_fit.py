@@ -6,19 +6,18 @@ from typing import Any
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from elbowscrew import Settings, analyze, simulate_trial
 from elbowscrew.errors import SettingError, UsageError
 from elbowscrew.geometry import dual_quat_from_screw, line_through
 from elbowscrew.geometry import dual_quaternion as dq
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import ModelPhases
 from elbowscrew.motion.difference import points_from_radius
 from elbowscrew.motion.interpolation.law_fit import FittedLaw, laws_of
 from elbowscrew.motion.interpolation.laws import LAWS, asymmetric
 from elbowscrew.settings import settings_from
 
-Float = NDArray[np.float64]
 COUNT = 121
 TAU = np.linspace(0.0, 1.0, COUNT)
 LINE = line_through([0.1, -0.2, 0.05], [0.2, 0.9, -0.3])

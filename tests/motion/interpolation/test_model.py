@@ -6,17 +6,16 @@ from typing import Any
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from elbowscrew import Analysis, Recording, RigidBody, Settings, analyze
 from elbowscrew.errors import SettingError
 from elbowscrew.geometry import dual_quat_from_screw, line_through
 from elbowscrew.geometry import dual_quaternion as dq
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import TrackingLoss
 from elbowscrew.motion.interpolation.laws import LAWS
 from elbowscrew.motion.interpolation.modeling import METHODS
 
-Float = NDArray[np.float64]
 FRAMES, TURN = 101, 40
 LINE = line_through([0.1, -0.2, 0.05], [0.2, 0.9, -0.3])
 

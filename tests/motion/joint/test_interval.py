@@ -22,7 +22,6 @@ from cluster_noise import (
     wander,
     white,
 )
-from numpy.typing import NDArray
 from scipy.stats import binom, t
 from trials import LINE, START, joint_poses
 
@@ -45,7 +44,6 @@ from elbowscrew.motion.joint.tails import Mixture
 from elbowscrew.motion.screws.pose_noise import covariance_from_markers
 from elbowscrew.motion.screws.uncertainty import joint_covariance
 
-Float = NDArray[np.float64]
 TRIALS = 40
 
 

@@ -7,18 +7,17 @@ from typing import Any
 import numpy as np
 import pytest
 from hinges import hinge_errors
-from numpy.typing import NDArray
 from trials import ARM, FOREARM, LINE, START, joint_poses, noisy_joint, pose_covariance
 
 from elbowscrew import Recording, RigidBody, Settings, analyze, simulate_trial
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry import line_through
 from elbowscrew.geometry import quaternion as qn
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import PoseNoise
 from elbowscrew.motion.joint.joint_fit import fit_joint, sara_lines
 from elbowscrew.motion.screws.uncertainty import joint_covariance
 
-Float = NDArray[np.float64]
 NEAR = dq.pose_from_dual_quat(START)[1]
 NOISE = [PoseNoise(covariance=pose_covariance(m), source="known", marker_noise=None) for m in (ARM, FOREARM)]
 Z = np.array([0.0, 0.0, 1.0, 0.0, 0.0, 0.0])

@@ -8,11 +8,11 @@ import moving_joints as mj
 import numpy as np
 import pandas as pd
 import pytest
-from numpy.typing import NDArray
 
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry import pose_from_points
 from elbowscrew.geometry import quaternion as qn
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.twist import adjoint
 from elbowscrew.model import PoseNoise
 from elbowscrew.motion.joint.choice import choose_type
@@ -27,7 +27,6 @@ from elbowscrew.motion.joint.two_axes import TwoAxesMechanism, axes_geometry, ge
 from elbowscrew.motion.joint.typed import identify_joint
 from elbowscrew.motion.screws.uncertainty import joint_covariance
 
-Float = NDArray[np.float64]
 ROTATION_DEG, PLACE = 0.1, 2e-4
 ALL: tuple[Fitted, ...] = ("rigid", "hinge", "screw_hinge", "two_axes", "ball")
 

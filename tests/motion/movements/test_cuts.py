@@ -5,7 +5,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from elbowscrew.motion.movements import feet
 from elbowscrew.motion.movements.cuts import Cuts, cut
@@ -15,7 +14,6 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "benchmarks"))
 
 from cycles import NOISES, SET_UPS, Motion, Trial, battery, coverage, likeness
 
-Float = NDArray[np.float64]
 RATE = 100.0
 
 

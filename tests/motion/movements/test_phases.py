@@ -8,14 +8,13 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 from scipy.signal import find_peaks
 
 from elbowscrew import Settings, analyze, read_recording, simulate_trial
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.motion.movements.cuts import Cuts, cut
 from elbowscrew.motion.movements.phases import movement_phases, turning_points
 
-Float = NDArray[np.float64]
 RATE = 100.0
 TIME = np.arange(3000) / RATE
 

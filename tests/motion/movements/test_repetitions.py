@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 from scipy.signal import find_peaks
 
 from elbowscrew import Analysis, Recording, RigidBody, Settings, analyze, read_recording, simulate_trial
@@ -18,7 +17,6 @@ from elbowscrew.motion.movements.cuts import cut
 from elbowscrew.motion.movements.phases import turning_points
 from elbowscrew.motion.movements.repetitions import intraclass_correlation, multiple_correlation
 
-Float = NDArray[np.float64]
 FRAMES, TURN, COUNT, REST = 300, 120, 5, 150
 
 

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from elbowscrew.geometry import dual_quat_from_screw, line_through
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_quaternion import continuous_signs
 from elbowscrew.motion.axes.mean_axis import mean_axis_of
 from elbowscrew.motion.screws.helical import HelicalSeries, helical_series
 from elbowscrew.motion.screws.sense import sense_of
 
-Float = NDArray[np.float64]
 LINE = line_through([0.2, -0.1, 0.3], [1.0, 2.0, 2.0])
 MIN_ANGLE = np.radians(10.0)
 

@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 from oracles import ComplexDualQuaternion, KnownTrial, known_trial, quaternion_xyzw, relative_motion
 
 from elbowscrew import Analysis, Settings, analyze, read_recording
-
-Float = NDArray[np.float64]
+from elbowscrew.geometry.arrays import Float
 
 TRIALS: dict[str, dict[str, Any]] = {
     "95 deg, m": {"top": 95.0, "unit": "Meters"},

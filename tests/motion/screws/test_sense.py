@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 from sense_motions import KINDS, conjugate, made, noisy, product, rotation, share_wrong, smooth, strokes, unit
 
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import Sense
 from elbowscrew.motion.screws.sense import angle_beside, modeled_angle, rotation_noise, sense_of
 from elbowscrew.motion.screws.sense_doubts import sense_warnings
-
-Float = NDArray[np.float64]
 
 AXIS = unit(np.array([1.0, 2.0, -2.0]))
 ACROSS = unit(np.array([2.0, -2.0, -1.0]))

@@ -7,18 +7,16 @@ from typing import Any
 import numpy as np
 import pytest
 from coverage_of_screws import coverage
-from numpy.typing import NDArray
 from trials import ARM, FOREARM, SIGMA
 
 from elbowscrew import Analysis, RigidBody, Settings, analyze, simulate_trial
 from elbowscrew.errors import AnalysisError, SettingError, UsageError
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry import pose_from_points
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.motion.screws.pose_noise import covariance_from_markers, pose_noise
 from elbowscrew.settings import settings_from
 from elbowscrew.simulate import SimulatedTrial
-
-Float = NDArray[np.float64]
 
 
 @pytest.mark.parametrize("proximal_moves", [False, True])

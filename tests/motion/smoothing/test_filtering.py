@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 from poses import random_poses
 from scipy import signal, special
 
@@ -16,6 +15,7 @@ from elbowscrew.errors import SettingError
 from elbowscrew.geometry import dual_quat_from_screw
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry import quaternion as qn
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.motion.difference import angle_between, origin_distance, points_from_radius, rms_displacement
 from elbowscrew.motion.smoothing.filtering import (
     FEWEST_FRAMES,
@@ -24,8 +24,6 @@ from elbowscrew.motion.smoothing.filtering import (
     noise_gain,
 )
 from elbowscrew.motion.tracking.clock import elapsed_time
-
-Float = NDArray[np.float64]
 
 RATE = 100.0
 DIRECTION = np.array([0.6, 0.0, 0.8])

@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 from poses import random_poses
 from scipy.spatial.transform import Rotation, Slerp
 
@@ -15,12 +14,11 @@ from elbowscrew import Recording, RigidBody, analyze, simulate_trial
 from elbowscrew.errors import RecordingError, SettingError
 from elbowscrew.geometry import dual_quat_from_screw
 from elbowscrew.geometry import dual_quaternion as dq
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import Marker, TrackingLoss
 from elbowscrew.motion.difference import angle_between, origin_distance
 from elbowscrew.motion.smoothing.resampling import resample_recording
 from elbowscrew.motion.tracking.clock import elapsed_time
-
-Float = NDArray[np.float64]
 
 DIRECTION = np.array([0.6, 0.0, 0.8])
 MOMENT = np.cross([0.1, 0.2, -0.3], DIRECTION)

@@ -15,13 +15,12 @@ from elbowscrew.errors import AnalysisError, RecordingError
 from elbowscrew.geometry import dual_quat_from_screw, sclerp
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry import quaternion as qn
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import TrackingLoss
 from elbowscrew.motion.smoothing.gaps import fill_gaps
 from elbowscrew.motion.tracking.clock import elapsed_time
 from elbowscrew.motion.tracking.leaps import check_tracking
 from elbowscrew.motion.tracking.quality import body_quality, check_bodies, clock_quality, clock_warnings
-
-Float = NDArray[np.float64]
 
 
 def body(pose: Float, name: str = "b") -> RigidBody:

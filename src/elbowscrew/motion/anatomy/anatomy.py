@@ -10,12 +10,13 @@ from __future__ import annotations
 from typing import Final, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from elbowscrew.choices import ExpressIn
 from elbowscrew.errors import SettingError
 from elbowscrew.geometry import line_through
 from elbowscrew.geometry._small_angle import divide, length
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_quaternion import (
     conjugate,
     dual_quat_from_pose,
@@ -29,8 +30,6 @@ from elbowscrew.model import JointMotion, LineEstimate, QualityWarning, Recordin
 from elbowscrew.model.anatomy import AnatomicalMotion, Landmarks, Side
 from elbowscrew.motion.anatomy.landmarks import landmark_places
 from elbowscrew.motion.screws.relative import frame_change
-
-Float = NDArray[np.float64]
 
 # Noise of flexion and pronation grows as 1/cos(carrying): here 11.5 times, as that of an axis at 10 deg of rotation.
 _GIMBAL_LOCK: Final = np.radians(5.0)

@@ -5,15 +5,13 @@ from __future__ import annotations
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from elbowscrew.errors import SettingError
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_quaternion import conjugate, multiply, transform_points
 from elbowscrew.model import JointMotion, Marker, QualityWarning, Recording, RigidBody
 from elbowscrew.model.anatomy import Landmark, Landmarks
 from elbowscrew.motion.screws.relative import IDENTITY
-
-Float = NDArray[np.float64]
 
 _LARGEST_RMS: Final = 0.020
 _BODY_OF: Final = {"EL": "proximal", "EM": "proximal", "GH": "proximal", "US": "distal", "RS": "distal"}

@@ -7,11 +7,10 @@ from numpy.typing import NDArray
 
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry import screw_from_dual_quat
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.twist import adjoint
 from elbowscrew.model import HelicalSteps, JointMotion, PoseNoise
 from elbowscrew.motion.screws.uncertainty import errors_from_covariance, joint_covariance, no_errors
-
-Float = NDArray[np.float64]
 
 
 def helical_steps(

@@ -9,11 +9,10 @@ from numpy.typing import NDArray
 
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry import point_nearest_origin
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.twist import instantaneous_screw
 from elbowscrew.model import InstantaneousMotion
 from elbowscrew.motion.smoothing.smoothing import inside
-
-Float = NDArray[np.float64]
 
 _BLOCK: Final = 16384
 

@@ -5,12 +5,10 @@ from __future__ import annotations
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from elbowscrew.geometry._small_angle import divide, length
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import MeanAxis
-
-Float = NDArray[np.float64]
 
 _MOST_COMPARED: Final = 1000
 _STEP: Final = float(np.radians(1.0))

@@ -6,9 +6,9 @@ from dataclasses import replace
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from elbowscrew.errors import SettingError
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_quaternion import conjugate, multiply, pose_from_dual_quat
 from elbowscrew.model import HelicalSteps, InstantaneousMotion, MeanAxis
 from elbowscrew.motion.axes.helical_steps import helical_steps
@@ -18,8 +18,6 @@ from elbowscrew.motion.screws.measurement import Measurement
 from elbowscrew.motion.screws.relative import IDENTITY, expressed
 from elbowscrew.motion.smoothing.smoothing import Smoothing
 from elbowscrew.settings import Settings
-
-Float = NDArray[np.float64]
 
 # What the field filters at: the cut-off of recordings too short for residual analysis, lower where the rate asks it.
 _TWIST_HZ: Final = 6.0

@@ -33,9 +33,6 @@ from elbowscrew.motion.movements.measured import measured_cuts
 from elbowscrew.motion.screws.measurement import Measurement, measure
 from elbowscrew.settings import Settings
 
-Float = NDArray[np.float64]
-Bool = NDArray[np.bool_]
-
 _TIMED: Final = 3
 _LONG_ENOUGH_S: Final = 0.003
 _DEFAULT_TOLERANCE: Final = 2e-3

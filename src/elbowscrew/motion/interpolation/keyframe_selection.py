@@ -6,15 +6,11 @@ import itertools
 from typing import Final, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from elbowscrew.errors import SettingError
+from elbowscrew.geometry.arrays import Bool, Float, Index
 from elbowscrew.model import BodyPoints, Selection
 from elbowscrew.motion.interpolation.segment_errors import BASES, PoseTrack, displacement_along, squares_along
-
-Float = NDArray[np.float64]
-Index = NDArray[np.int64]
-Bool = NDArray[np.bool_]
 
 # Up to so many frames every pair of them is looked at, and so the best set of each size is known.
 MOST_FRAMES_COMPLETE: Final = 600

@@ -7,17 +7,14 @@ from dataclasses import dataclass
 from typing import Final, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from elbowscrew.choices import BLEND_NAMES, CLOSED_LAWS, KEYFRAME_SOURCES, KNOT_NAMES, METHOD_NAMES
 from elbowscrew.errors import SettingError, UsageError
+from elbowscrew.geometry.arrays import Bool, Float
 from elbowscrew.model import ModelPhases
 from elbowscrew.motion.axes.measured import smoothed_displacement, twist_smoothing
 from elbowscrew.motion.screws.measurement import Measurement
 from elbowscrew.settings import Settings
-
-Float = NDArray[np.float64]
-Bool = NDArray[np.bool_]
 
 _LAWS: Final = (*CLOSED_LAWS, "best", "empirical")  # in the order that tables have had
 _MOST_PER_PHASE: Final = 20

@@ -12,13 +12,11 @@ from numpy.typing import NDArray
 from elbowscrew.choices import KNOT_NAMES, functions_named
 from elbowscrew.errors import SettingError
 from elbowscrew.geometry._small_angle import length
+from elbowscrew.geometry.arrays import Float, Index
 from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat
 from elbowscrew.model import Keyframes, ModelPhases
 from elbowscrew.motion.difference import angle_between
 from elbowscrew.motion.tracking.clock import row_of_frame
-
-Float = NDArray[np.float64]
-Index = NDArray[np.int64]
 
 
 def rows_of_frames(

@@ -12,11 +12,11 @@ from elbowscrew.errors import SettingError
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry import sclerp
 from elbowscrew.geometry._small_angle import length
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import BodyPoints, ModelPhases, PhaseLaw
 from elbowscrew.motion.difference import rms_displacement
 from elbowscrew.motion.interpolation.laws import LAWS, Law, asymmetric, named_law
 
-Float = NDArray[np.float64]
 LawFunction = Callable[[Float], Float]
 
 _PEAKS: Final = (0.1, 0.9)

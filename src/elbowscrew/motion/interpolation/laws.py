@@ -7,12 +7,12 @@ from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.polynomial import Polynomial
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from elbowscrew.choices import CLOSED_LAWS, functions_named
 from elbowscrew.errors import SettingError
+from elbowscrew.geometry.arrays import Float
 
-Float = NDArray[np.float64]
 _Function = Callable[[Float], Float]
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowscrew.errors import AnalysisError
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import (
     BodyPoints,
     Keyframes,
@@ -26,8 +27,6 @@ from elbowscrew.motion.interpolation.modeling import METHODS, ModeledPoses, mode
 from elbowscrew.motion.movements.cuts import Movements
 from elbowscrew.motion.screws.measurement import Measurement
 from elbowscrew.settings import Settings
-
-Float = NDArray[np.float64]
 
 
 class JointModel(NamedTuple):

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat
 from elbowscrew.model import BodyPoints
 from elbowscrew.motion.difference import (
@@ -22,8 +22,6 @@ from elbowscrew.motion.screws.measurement import Measurement
 from elbowscrew.motion.screws.relative import expressed
 from elbowscrew.motion.screws.sense import modeled_angle
 from elbowscrew.settings import Settings
-
-Float = NDArray[np.float64]
 
 
 class ModelErrors(NamedTuple):

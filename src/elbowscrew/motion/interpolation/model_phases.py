@@ -8,13 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowscrew.errors import AnalysisError, SettingError
+from elbowscrew.geometry.arrays import Float, Index
 from elbowscrew.model import ModelPhases
 from elbowscrew.motion.movements.cuts import Movements
 from elbowscrew.motion.movements.phases import nearest_rows
 from elbowscrew.motion.tracking.clock import row_of_frame
-
-Float = NDArray[np.float64]
-Index = NDArray[np.int64]
 
 # A rest beside a movement lasts this long, and this share of the movement; a shorter one is the movement's own ease.
 _SHORTEST_REST_S: Final = 0.1

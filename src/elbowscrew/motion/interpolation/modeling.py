@@ -6,15 +6,14 @@ from collections.abc import Callable, Sequence
 from typing import Any, Final, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from elbowscrew.choices import METHOD_NAMES, functions_named
 from elbowscrew.errors import SettingError
 from elbowscrew.geometry import catmull_rom, dib, dlb, lagrange_weights, sclerp, sdlb
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import Keyframes
 from elbowscrew.motion.interpolation.keyframes import phase_time
 
-Float = NDArray[np.float64]
 Method = Callable[[Float, Float, Float], Float]
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowscrew.errors import SettingError
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat
 from elbowscrew.model import Analysis, Keyframes, KeyframeSet, ModelPhases, RebuiltMotion
 from elbowscrew.motion.interpolation.laws import named_law
@@ -16,8 +17,6 @@ from elbowscrew.motion.screws.frames import frame_called
 from elbowscrew.motion.screws.helical import helical_series
 from elbowscrew.motion.screws.relative import expressed
 from elbowscrew.motion.screws.sense import sense_of
-
-Float = NDArray[np.float64]
 
 _MIN_ANGLE: Final = float(np.radians(10.0))
 

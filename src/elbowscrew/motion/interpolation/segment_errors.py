@@ -16,14 +16,13 @@ from collections.abc import Callable
 from typing import Any, Final, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from elbowscrew.geometry import dual_quaternion as dq
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.quaternion import rotation_matrix_from_quat
 from elbowscrew.model import BodyPoints
 from elbowscrew.motion.difference import point_coordinates, spokes
 
-Float = NDArray[np.float64]
 _Basis = Callable[[Float, Float], tuple[Float, Float, Float]]
 
 # Below this the square of an angle is no number, and the turn none.

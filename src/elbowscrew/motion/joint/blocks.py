@@ -5,12 +5,9 @@ from __future__ import annotations
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from elbowscrew.motion.joint.influence import Influence
 from elbowscrew.motion.joint.tails import Mixture
-
-Float = NDArray[np.float64]
 
 BLOCKS: Final = 8
 

@@ -11,15 +11,13 @@ from dataclasses import dataclass
 from typing import Final, Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.model.joint_type import JointTypeName, TypeCandidate
 from elbowscrew.motion.joint.fitting import Fitted, fit_type, shared_covariance
 from elbowscrew.motion.joint.likelihood import Fit, Mechanism, Poses, fit_mechanism, settled
 from elbowscrew.motion.joint.simple_types import OneAxis
 from elbowscrew.motion.joint.two_axes import angle_sd, is_phantom
-
-Float = NDArray[np.float64]
 
 _FRAMES: Final = 200
 _FOLDS: Final = 5

@@ -5,15 +5,14 @@ from __future__ import annotations
 from typing import Final, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.motion.joint.joint_fit import _integrated_autocorrelation
 from elbowscrew.motion.joint.likelihood import Fit, Mechanism, Poses, fit_mechanism, fit_robustly
 from elbowscrew.motion.joint.simple_types import Ball, OneAxis, Rigid
 from elbowscrew.motion.joint.starts import find_two_axes
 from elbowscrew.motion.joint.two_axes import is_phantom
 
-Float = NDArray[np.float64]
 Fitted = Literal["rigid", "hinge", "screw_hinge", "two_axes", "ball"]
 
 _ITERATIONS: Final = 25

@@ -5,13 +5,11 @@ from __future__ import annotations
 from typing import Final, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from elbowscrew.geometry import dual_quaternion as dq
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.twist import adjoint
 from elbowscrew.motion.joint.joint_fit import LineFit, linear_model
-
-Float = NDArray[np.float64]
 
 _LEAST_INFORMATION: Final = 1e-13
 

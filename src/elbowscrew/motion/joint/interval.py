@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from typing import Final, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.sensitivity import confidence_radius
 from elbowscrew.motion.joint.blocks import block_jackknife
 from elbowscrew.motion.joint.influence import Influence
@@ -20,7 +20,6 @@ from elbowscrew.motion.joint.nonrigid import Segment, nonrigid_covariance, resid
 from elbowscrew.motion.joint.spectrum import ResidualSpectrum, residual_spectrum
 from elbowscrew.motion.joint.tails import Mixture
 
-Float = NDArray[np.float64]
 Method = Literal["A", "B", "J"]
 
 LEVEL: Final = 0.95

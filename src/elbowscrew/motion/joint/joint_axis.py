@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from elbowscrew.choices import ExpressIn
 from elbowscrew.geometry import point_nearest_origin
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_quaternion import conjugate, multiply, pose_from_dual_quat, transform_lines
 from elbowscrew.geometry.sensitivity import confidence_radius
 from elbowscrew.model import FittedJoint, JointAxis, JointMotion, LineEstimate, PoseNoise
@@ -26,8 +27,6 @@ from elbowscrew.motion.joint.joint_fit import LineFit, fit_joint, sara_lines
 from elbowscrew.motion.joint.nonrigid import Segment
 from elbowscrew.motion.screws.pose_noise import JointNoise
 from elbowscrew.motion.screws.uncertainty import joint_covariance
-
-Float = NDArray[np.float64]
 
 _MOST_FRAMES: Final = 20_000
 _LARGEST_UNEXPLAINED: Final = 0.25

@@ -11,14 +11,12 @@ from __future__ import annotations
 from typing import Final, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry._small_angle import length
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.quaternion import quat_from_rotation_matrix, rotation_matrix_from_quat
 from elbowscrew.geometry.twist import adjoint
-
-Float = NDArray[np.float64]
 
 _ITERATIONS: Final = 30
 _SMALL_STEP: Final = 1e-10

@@ -14,13 +14,11 @@ from dataclasses import dataclass, replace
 from typing import Final, Generic, NamedTuple, Self, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from elbowscrew.geometry import dual_quaternion as dq
+from elbowscrew.geometry.arrays import Float, Index
 from elbowscrew.geometry.twist import adjoint
 
-Float = NDArray[np.float64]
-Rows = NDArray[np.int64]
 M = TypeVar("M", bound="Mechanism")
 M_co = TypeVar("M_co", bound="Mechanism", covariant=True)
 
@@ -58,11 +56,11 @@ class Poses(NamedTuple):
         inverse = np.linalg.inv(np.broadcast_to(covariance, (len(joint), 6, 6)))
         return cls(joint, np.swapaxes(np.linalg.cholesky(inverse), -1, -2))
 
-    def at(self, rows: Rows | slice) -> Poses:
+    def at(self, rows: Index | slice) -> Poses:
         """Give the poses of some frames."""
         return Poses(self.joint[rows], self.whitener[rows])
 
-    def thinned(self, most: int) -> tuple[Poses, Rows]:
+    def thinned(self, most: int) -> tuple[Poses, Index]:
         """At most so many frames, evenly spread, and which they are."""
         count = len(self.joint)
         rows = np.linspace(0, count - 1, min(count, most)).round().astype(np.int64)
@@ -116,7 +114,7 @@ class Mechanism(ABC):
     def placed(self, joint: Float) -> Self:
         """With the same shared numbers on other poses (F, 8): the frames' own numbers in closed form."""
 
-    def on(self, rows: Rows) -> Self:
+    def on(self, rows: Index) -> Self:
         """Give the same joint on some of its frames."""
         return replace(self, frames=self.frames[rows])
 

@@ -5,13 +5,11 @@ from __future__ import annotations
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry._small_angle import length
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.quaternion import quat_from_rotation_matrix, rotation_matrix_from_quat
-
-Float = NDArray[np.float64]
 
 _LEAST_EIGENVALUE: Final = 1e-6
 

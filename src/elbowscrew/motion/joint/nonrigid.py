@@ -10,15 +10,14 @@ from __future__ import annotations
 from typing import Final, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import multigammaln
 
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.motion.joint.influence import Influence
 from elbowscrew.motion.joint.spectrum import band_starts, band_sums, cosine_transform
 from elbowscrew.motion.joint.tails import Mixture
 from elbowscrew.motion.screws.pose_noise import covariance_from_markers
 
-Float = NDArray[np.float64]
 Segment = Literal["proximal", "distal"]
 
 # Degrees of freedom that the stationary model may be worth beside the nu that are measured.

@@ -5,12 +5,10 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.twist import adjoint
 from elbowscrew.motion.joint.likelihood import Fit, Mechanism, Poses
-
-Float = NDArray[np.float64]
 
 
 class Pieces(NamedTuple):

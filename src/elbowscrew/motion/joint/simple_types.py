@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 from typing import Final, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
 from elbowscrew.geometry import dual_quaternion as dq
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.quaternion import rotation_matrix_from_quat
 from elbowscrew.geometry.twist import adjoint
 from elbowscrew.motion.joint.likelihood import Linear, Mechanism, residual_twist
@@ -21,8 +21,6 @@ from elbowscrew.motion.joint.lines import (
     mean_rotation_pair,
     nearest_points,
 )
-
-Float = NDArray[np.float64]
 
 _IDENTITY: Final = np.array([1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])
 

@@ -9,15 +9,12 @@ from __future__ import annotations
 from typing import Final, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.fft import dct
 from scipy.special import chdtrc
 
+from elbowscrew.geometry.arrays import Float, Index
 from elbowscrew.motion.joint.influence import Influence
 from elbowscrew.motion.joint.tails import Mixture
-
-Float = NDArray[np.float64]
-Int = NDArray[np.int64]
 
 _BAND_RATIO: Final = 1.6
 _PAST_THE_MOTION: Final = 1.25
@@ -32,7 +29,7 @@ def cosine_transform(series: Float) -> Float:
     return np.asarray(dct(series, axis=0, norm="ortho"), dtype=np.float64)
 
 
-def band_starts(angle: Float) -> Int:
+def band_starts(angle: Float) -> Index:
     """First index of each band of a cosine transform of as many frames as there are angles.
 
     Parameters
@@ -53,7 +50,7 @@ def band_starts(angle: Float) -> Int:
     return np.unique(np.concatenate([[0], starts[starts < count]]))
 
 
-def band_sums(values: Float, starts: Int) -> Float:
+def band_sums(values: Float, starts: Index) -> Float:
     """Sum over the frequencies of each band, along the first axis."""
     return np.add.reduceat(values, starts, axis=0)
 

@@ -11,18 +11,16 @@ from __future__ import annotations
 from typing import Final, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry._small_angle import length
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.quaternion import rotation_matrix_from_quat
 from elbowscrew.geometry.twist import adjoint
 from elbowscrew.motion.joint.likelihood import Fit, Poses, fit_mechanism
 from elbowscrew.motion.joint.lines import Z_LINE, about_z, angle_about_z, least_solution, line_pose, mean_rotation_pair
 from elbowscrew.motion.joint.simple_types import OneAxis
 from elbowscrew.motion.joint.two_axes import TwoAxesMechanism, is_phantom
-
-Float = NDArray[np.float64]
 
 _GRID: Final = 150
 _ALTERNATIONS: Final = 12

@@ -5,10 +5,9 @@ from __future__ import annotations
 from typing import Final, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import fdtrc, fdtri
 
-Float = NDArray[np.float64]
+from elbowscrew.geometry.arrays import Float
 
 _BISECTIONS: Final = 40
 _MANY: Final = 1e6  # degrees of freedom from which on a t is a normal distribution

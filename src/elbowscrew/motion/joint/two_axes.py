@@ -15,11 +15,10 @@ from numpy.typing import NDArray
 
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry._small_angle import length
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.twist import adjoint
 from elbowscrew.motion.joint.likelihood import Fit, Linear, Mechanism, residual_twist
 from elbowscrew.motion.joint.lines import LINE_STEPS, Z_LINE, about_z, angle_about_z, line_twist
-
-Float = NDArray[np.float64]
 
 _LENGTH: Final = 0.1  # m that weigh as a radian where rotations and shifts are compared
 _LARGEST_ANGLE_SD: Final = np.radians(8.0)

@@ -6,9 +6,9 @@ from dataclasses import replace
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from elbowscrew.geometry import dual_quaternion as dq
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.quaternion import rotation_matrix_from_quat
 from elbowscrew.geometry.sensitivity import confidence_radius
 from elbowscrew.model.joint_type import BallJoint, JointLine, JointType, Measure, SecondRotation, TwoAxes
@@ -18,8 +18,6 @@ from elbowscrew.motion.joint.likelihood import Fit, Mechanism, Poses, fit_mechan
 from elbowscrew.motion.joint.lines import Z_LINE
 from elbowscrew.motion.joint.simple_types import Ball, OneAxis
 from elbowscrew.motion.joint.two_axes import TwoAxesMechanism, angle_sd, axes_geometry, geometry_covariance
-
-Float = NDArray[np.float64]
 
 _MOST_FRAMES: Final = 5000
 _PARALLEL: Final = np.radians(5.0)

@@ -5,15 +5,13 @@ from __future__ import annotations
 from typing import Final, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from elbowscrew.geometry import dual_quaternion as dq
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.twist import adjoint
 from elbowscrew.motion.joint.influence import Influence, with_columns
 from elbowscrew.motion.joint.interval import SURE, ClusterMotion, JointInterval, SkinMotion, joint_interval
 from elbowscrew.motion.joint.joint_fit import LineFit
-
-Float = NDArray[np.float64]
 
 _GRID: Final = 400
 _TILT_SHIFT: Final = (0, 1, 3, 4)

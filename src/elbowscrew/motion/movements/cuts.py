@@ -8,6 +8,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowscrew.geometry.arrays import Bool, Float, Index
 from elbowscrew.motion.movements.feet import (
     LAW_SD,
     LOW_SHARE,
@@ -23,9 +24,6 @@ from elbowscrew.motion.movements.feet import (
 from elbowscrew.motion.movements.rests import IN_DOUBT_SD, SHORTEST_REST_S, Strokes, strokes_of
 from elbowscrew.motion.movements.swings import Swings, fast_content, noise_of, swings_of
 
-Float = NDArray[np.float64]
-Index = NDArray[np.int64]
-Bool = NDArray[np.bool_]
 Reasons = tuple[str, ...]
 
 REASONS: Final[dict[str, str]] = {

@@ -5,10 +5,8 @@ from __future__ import annotations
 from typing import Final, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-Float = NDArray[np.float64]
-Index = NDArray[np.int64]
+from elbowscrew.geometry.arrays import Float, Index
 
 # The foot is told from the height of 10 % of the rise, or from five times the noise, but from 30 % at most.
 LOW_SHARE: Final = 0.1

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from elbowscrew.errors import SettingError
 from elbowscrew.geometry import quaternion
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_quaternion import conjugate, multiply
 from elbowscrew.model import QualityWarning
 from elbowscrew.motion.movements.cuts import REASONS, Cuts, Cycles, Reasons, cut, no_cycles
@@ -16,8 +16,6 @@ from elbowscrew.motion.movements.swings import swings_of
 from elbowscrew.motion.screws.measurement import Measurement
 from elbowscrew.motion.screws.sense import sense_of
 from elbowscrew.settings import Settings
-
-Float = NDArray[np.float64]
 
 
 def measured_cuts(measured: Measurement, settings: Settings) -> Cuts:

@@ -5,10 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowscrew.geometry.arrays import Bool, Float
 from elbowscrew.model import MovementPhases
-
-Float = NDArray[np.float64]
-Bool = NDArray[np.bool_]
 
 
 def movement_phases(onset_s: Float, offset_s: Float, elapsed: Float) -> MovementPhases:

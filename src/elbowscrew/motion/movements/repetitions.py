@@ -5,15 +5,13 @@ from __future__ import annotations
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from elbowscrew.geometry._small_angle import divide, length
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import CycleCurves, Repeatability, Repetitions, ScrewMotion
 from elbowscrew.motion.axes.mean_axis import mean_line_of
 from elbowscrew.motion.movements.cuts import Cycles
 from elbowscrew.motion.movements.phases import nearest_rows
-
-Float = NDArray[np.float64]
 
 _POINTS: Final = 101
 

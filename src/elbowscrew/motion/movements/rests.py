@@ -5,15 +5,11 @@ from __future__ import annotations
 from typing import Final, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from elbowscrew.geometry.arrays import Bool, Float, Index
 from elbowscrew.motion.movements.feet import LAW_SD, LOW_SHARE, Feet, feet_of, pooled, pooled_feet
 from elbowscrew.motion.movements.phases import runs_of
 from elbowscrew.motion.movements.swings import Swings
-
-Float = NDArray[np.float64]
-Index = NDArray[np.int64]
-Bool = NDArray[np.bool_]
 
 SHORTEST_REST_S: Final = 0.25
 """A stop that lasts less is none."""

@@ -6,13 +6,10 @@ import heapq
 from typing import Final, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from elbowscrew.geometry.arrays import Float, Index
 from elbowscrew.motion.movements.phases import turning_points
 from elbowscrew.motion.smoothing.filtering import _designed_tangent, _fast_length, noise_gain
-
-Float = NDArray[np.float64]
-Index = NDArray[np.int64]
 
 # Third differences of white noise have the variance 1 + 9 + 9 + 1; the median of |x| is 1/1.4826 of its sd.
 _THIRD_DIFFERENCE: Final = 20.0

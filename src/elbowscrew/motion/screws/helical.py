@@ -5,12 +5,10 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from elbowscrew.geometry import point_nearest_origin, screw_from_dual_quat
 from elbowscrew.geometry._small_angle import length
-
-Float = NDArray[np.float64]
+from elbowscrew.geometry.arrays import Float
 
 
 class HelicalSeries(NamedTuple):

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from elbowscrew.choices import ExpressIn
 from elbowscrew.errors import AnalysisError, SettingError
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat
 from elbowscrew.joints import Joint
 from elbowscrew.model import BodyQuality, JointMotion, QualityWarning, Recording, RigidBody, ScrewMotion, Sense
@@ -32,8 +33,6 @@ from elbowscrew.motion.smoothing.smoothing import Smoothing
 from elbowscrew.motion.tracking.bodies import tracked_bodies
 from elbowscrew.motion.tracking.clock import elapsed_time, row_of_frame
 from elbowscrew.settings import Settings
-
-Float = NDArray[np.float64]
 
 
 class Unfiltered(NamedTuple):

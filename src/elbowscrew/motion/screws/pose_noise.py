@@ -5,14 +5,12 @@ from __future__ import annotations
 from typing import Final, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_quaternion import align_signs, conjugate, log, multiply, normalize
 from elbowscrew.model import PoseNoise, RigidBody
 from elbowscrew.motion.difference import DEFAULT_RADIUS
 from elbowscrew.settings import Settings
-
-Float = NDArray[np.float64]
 
 # A mean distance in space is this much less than the RMS one, for a normal error.
 _MEAN_TO_RMS: Final = float(np.sqrt(8.0 / (3.0 * np.pi)))

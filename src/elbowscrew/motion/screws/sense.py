@@ -10,14 +10,10 @@ from __future__ import annotations
 from typing import Final, Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from elbowscrew.geometry._small_angle import length, row_length
+from elbowscrew.geometry.arrays import Bool, Float, Index
 from elbowscrew.model import Sense
-
-Float = NDArray[np.float64]
-Bool = NDArray[np.bool_]
-Rows = NDArray[np.intp]
 
 SignedChoice = Literal["auto", "yes", "no"]
 
@@ -230,7 +226,7 @@ def _dominant(vector: Float, noise: float) -> tuple[Float, float]:
     return directions[:, 2], ratio
 
 
-def _whole_turns(psi: Float, good: Bool, rows: Rows, time_s: Float) -> tuple[Float, bool, Rows]:
+def _whole_turns(psi: Float, good: Bool, rows: Index, time_s: Float) -> tuple[Float, bool, Index]:
     """Whole turns of each known row, whether they were counted along time, and the rows before gaps they hang on."""
     chosen = np.flatnonzero(good)
     if chosen.size < 2:
@@ -265,7 +261,7 @@ def _free_cut(psi: Float, step: Float, adjacent: Bool) -> float | None:
     return max(cuts)[1] if cuts else None
 
 
-def _turns_along_time(psi: Float, step: Float, span: Rows, time_s: Float) -> tuple[Float, Rows]:
+def _turns_along_time(psi: Float, step: Float, span: Index, time_s: Float) -> tuple[Float, Index]:
     """Unwrap the twist, over gaps by the mean of the slopes at their two sides.
 
     Returns
@@ -362,7 +358,7 @@ def _larger_excursion(angle: Float) -> tuple[float, bool]:
     return (1.0 if first > 0.0 else -1.0), True
 
 
-def _beyond_geodesic(angle: Float, quat: Float, rows: Rows) -> Float:
+def _beyond_geodesic(angle: Float, quat: Float, rows: Index) -> Float:
     """How far theta moves beyond the rotation between rows that are adjacent; 0 between those that are not."""
     if rows.size < 2:
         return np.zeros(0)
@@ -379,7 +375,7 @@ def _wrapped(angle: Float) -> Float:
     return wrapped
 
 
-def _spread(values: Float, rows: Rows, count: int) -> Float:
+def _spread(values: Float, rows: Index, count: int) -> Float:
     """Values of the known rows among all of them."""
     found = np.full(count, np.nan)
     found[rows] = values

@@ -7,13 +7,12 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_quaternion import conjugate, multiply
 from elbowscrew.geometry.sensitivity import confidence_radius, screw_sensitivity
 from elbowscrew.geometry.twist import adjoint
 from elbowscrew.model import JointMotion, PoseNoise
 from elbowscrew.motion.screws.relative import IDENTITY
-
-Float = NDArray[np.float64]
 
 _BLOCK: Final = 1024  # a block of covariances fits the cache, and no product in it is large enough for threads
 # Below so many standard deviations an angle is that of the noise's own rotation, whose sense nobody knows.

@@ -8,11 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowscrew.errors import SettingError
+from elbowscrew.geometry.arrays import Float, Index
 from elbowscrew.geometry.dual_quaternion import conjugate, continuous_signs, multiply, normalize
 from elbowscrew.motion.difference import points_from_radius, rms_displacement
-
-Float = NDArray[np.float64]
-Index = NDArray[np.intp]
 
 # Two passes of a 2nd-order Butterworth filter are at -3 dB where one is at -3/2 dB: (f/f_design)^4 = sqrt(2) - 1.
 _TWO_PASSES: Final = float((np.sqrt(2.0) - 1.0) ** 0.25)

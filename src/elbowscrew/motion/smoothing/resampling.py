@@ -6,17 +6,13 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from elbowscrew.errors import SettingError
 from elbowscrew.geometry import sclerp
+from elbowscrew.geometry.arrays import Bool, Float, Index
 from elbowscrew.geometry.dual_quaternion import align_signs
 from elbowscrew.model import QualityWarning, Recording, RigidBody, TrackingLoss
 from elbowscrew.motion.tracking.clock import elapsed_time
-
-Float = NDArray[np.float64]
-Bool = NDArray[np.bool_]
-Index = NDArray[np.intp]
 
 _MOST_FRAMES: Final = 10_000_000
 _LONGEST_STEP_FRAMES: Final = 1.5

@@ -9,14 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowscrew.errors import SettingError
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_quaternion import continuous_signs
 from elbowscrew.model import RigidBody
 from elbowscrew.motion.difference import DEFAULT_RADIUS
 from elbowscrew.motion.smoothing.filtering import automatic_cutoff, lowpass_poses, noise_gain
 from elbowscrew.motion.smoothing.gaps import fill_gaps
 from elbowscrew.settings import Settings
-
-Float = NDArray[np.float64]
 
 _STEP_TOLERANCE: Final = 0.5
 _RATE_STEPS: Final = 16

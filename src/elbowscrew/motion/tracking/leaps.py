@@ -7,18 +7,14 @@ from dataclasses import dataclass, replace
 from typing import Final, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from elbowscrew.geometry import quaternion, sclerp
 from elbowscrew.geometry._small_angle import length
+from elbowscrew.geometry.arrays import Bool, Float, Index
 from elbowscrew.geometry.dual_quaternion import align_signs
 from elbowscrew.model import QualityWarning, Recording, RigidBody, TrackingLoss
 from elbowscrew.motion.difference import angle_between, origin_distance
 from elbowscrew.settings import Settings
-
-Float = NDArray[np.float64]
-Bool = NDArray[np.bool_]
-Index = NDArray[np.intp]
 
 # An exact identity this far from where its neighbors put the body is what is written for a body that is not solved.
 _SENTINEL_TURN: Final = np.radians(2.0)

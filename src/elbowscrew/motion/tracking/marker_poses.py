@@ -6,14 +6,12 @@ from collections.abc import Callable
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from elbowscrew.errors import SettingError
 from elbowscrew.geometry import FittedPose, fit_poses, fit_poses_dual_qr
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_quaternion import conjugate, transform_points
 from elbowscrew.model import Recording, RigidBody, TrackingLoss, marker_matches
-
-Float = NDArray[np.float64]
 
 _REFINEMENTS: Final = 2
 

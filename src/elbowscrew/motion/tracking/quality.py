@@ -8,13 +8,12 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import BodyQuality, ClockQuality, QualityWarning, Recording, RigidBody, Spread
 from elbowscrew.motion.difference import angle_between, origin_distance
 from elbowscrew.motion.tracking.clock import allowed_offset, elapsed_time
 from elbowscrew.motion.tracking.leaps import CheckedBody, check_swaps, check_tracking, frames_warning
 from elbowscrew.settings import Settings
-
-Float = NDArray[np.float64]
 
 _LARGE_RESIDUAL_M: Final = 0.005
 _FAR_PIVOT_M: Final = 0.02
