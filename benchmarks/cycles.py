@@ -14,7 +14,8 @@ from typing import NamedTuple
 import numpy as np
 
 from elbowscrew.geometry.arrays import Float
-from elbowscrew.motion.movements.cuts import Cuts, cut
+from elbowscrew.motion.movements.boundaries import Cuts
+from elbowscrew.motion.movements.cuts import cut
 
 Random = np.random.Generator
 

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from elbowscrew.motion.movements import feet
-from elbowscrew.motion.movements.cuts import Cuts, cut
+from elbowscrew.motion.movements.boundaries import Cuts
+from elbowscrew.motion.movements.cuts import cut
 from elbowscrew.motion.movements.swings import _by_local_rule, _prominences, lowpass_series, noise_of
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "benchmarks"))
@@ -103,7 +104,7 @@ def test_a_stop_on_the_way_parts_movements_and_is_no_turn() -> None:
     moves = found.movements
     assert moves.onset_s == pytest.approx([0.6, 2.0, 3.5], abs=0.03)
     assert moves.offset_s == pytest.approx([1.2, 2.6, 4.4], abs=0.03)
-    assert moves.turns.tolist() == [False, True]
+    assert moves.reverses.tolist() == [False, True]
     assert moves.outward.tolist() == [True, True, False]
     assert found.cycles.times_s == pytest.approx(np.array([[0.6, 3.05, 4.4]]), abs=0.03)
 

@@ -12,7 +12,8 @@ from scipy.signal import find_peaks
 
 from elbowscrew import Settings, analyze, read_recording, simulate_trial
 from elbowscrew.geometry.arrays import Float
-from elbowscrew.motion.movements.cuts import Cuts, cut
+from elbowscrew.motion.movements.boundaries import Cuts
+from elbowscrew.motion.movements.cuts import cut
 from elbowscrew.motion.movements.phases import movement_phases, turning_points
 
 RATE = 100.0

@@ -24,7 +24,7 @@ from elbowscrew.motion.interpolation.keyframes import keyframes_at, phase_time, 
 from elbowscrew.motion.interpolation.law_fit import FittedLaw, laws_of
 from elbowscrew.motion.interpolation.model_phases import model_phases, one_phase, phases_of_keyframes
 from elbowscrew.motion.interpolation.modeling import METHODS, ModeledPoses, model_motion
-from elbowscrew.motion.movements.cuts import Movements
+from elbowscrew.motion.movements.boundaries import Movements
 from elbowscrew.motion.screws.measurement import Measurement
 from elbowscrew.settings import Settings
 

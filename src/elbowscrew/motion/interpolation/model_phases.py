@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from elbowscrew.errors import AnalysisError, SettingError
 from elbowscrew.geometry.arrays import Float, Index
 from elbowscrew.model import ModelPhases
-from elbowscrew.motion.movements.cuts import Movements
+from elbowscrew.motion.movements.boundaries import Movements
 from elbowscrew.motion.movements.phases import nearest_rows
 from elbowscrew.motion.tracking.clock import row_of_frame
 
@@ -60,7 +60,7 @@ def model_phases(
     middle = 0.5 * (end[:-1] + begin[1:])
     given = None if inversion is None else _inversion_row(angle, frame, known, inversion)
     if choice == "whole" or not begin.size:
-        turns = _known_rows(middle[movements.turns], elapsed, known)
+        turns = _known_rows(middle[movements.reverses], elapsed, known)
         if given is not None:
             turn = np.array([given])
         elif turns.size:

@@ -91,11 +91,11 @@ def feet_of(
         inner = int(half) if low < top else int(np.ceil(half))
         foot = crossing(smooth, inner, low, base + share * rise)
         outer = int(np.ceil(half)) if low < top else int(half)
-        brow = crossing(smooth, outer, top, peak - share * rise, rising=True)
+        shoulder = crossing(smooth, outer, top, peak - share * rise, rising=True)
         scale = foot_scale(share)
-        variances = [(noise / max(slope_at(smooth, place), _LEAST_SLOPE)) ** 2 for place in (half, foot, brow)]
+        variances = [(noise / max(slope_at(smooth, at), _LEAST_SLOPE)) ** 2 for at in (half, foot, shoulder)]
         low_kappa, low_gain = unsmoothed(scale * abs(half - foot), cutoff)
-        top_kappa, top_gain = unsmoothed(scale * abs(brow - half), cutoff)
+        top_kappa, top_gain = unsmoothed(scale * abs(shoulder - half), cutoff)
         found[k] = (
             half,
             low_kappa,
@@ -147,10 +147,10 @@ def crossing(series: Float, start: int, stop: int, level: float, *, rising: bool
     return float(start + step * (k - 1 + (part[k - 1] - level) / (part[k - 1] - part[k])))
 
 
-def slope_at(series: Float, place: float) -> float:
+def slope_at(series: Float, sample: float) -> float:
     """Slope of a series at a fractional sample, over one sample about it, without its sign."""
-    high = _at(series, place + 0.5)
-    return abs(high - _at(series, place - 0.5))
+    high = _at(series, sample + 0.5)
+    return abs(high - _at(series, sample - 0.5))
 
 
 def pooled(values: Float, variance: float) -> Float:
@@ -183,6 +183,6 @@ def pooled_feet(kappa: Float, variance: Float) -> Float:
     return pooled(kappa, float(np.median(variance)) + (KIN_SD * float(np.median(kappa))) ** 2)
 
 
-def _at(series: Float, place: float) -> float:
-    k = min(max(int(place), 0), series.size - 2)
-    return float(series[k] + (place - k) * (series[k + 1] - series[k]))
+def _at(series: Float, sample: float) -> float:
+    k = min(max(int(sample), 0), series.size - 2)
+    return float(series[k] + (sample - k) * (series[k + 1] - series[k]))

@@ -11,7 +11,8 @@ from elbowscrew.geometry import quaternion
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_quaternion import conjugate, multiply
 from elbowscrew.model import QualityWarning
-from elbowscrew.motion.movements.cuts import REASONS, Cuts, Cycles, Reasons, cut, no_cycles
+from elbowscrew.motion.movements.boundaries import REASONS, Cuts, Cycles, Reasons, no_cycles
+from elbowscrew.motion.movements.cuts import cut
 from elbowscrew.motion.movements.swings import swings_of
 from elbowscrew.motion.screws.measurement import Measurement
 from elbowscrew.motion.screws.sense import sense_of
@@ -100,7 +101,7 @@ def cut_warnings(cuts: Cuts) -> tuple[QualityWarning, ...]:
                 found.setdefault(code, []).append(f"{kind} of movement {k}")
     if not found:
         return ()
-    parts = [f"{_listed(places)}: {REASONS[code]}" for code, places in found.items()]
+    parts = [f"{_listed(boundaries)}: {REASONS[code]}" for code, boundaries in found.items()]
     message = (
         f"where the motion is cut is uncertain. {'; '.join(parts)} (--cycle-swing sets the least swing, --cycles gives "
         "the times)"
@@ -108,9 +109,9 @@ def cut_warnings(cuts: Cuts) -> tuple[QualityWarning, ...]:
     return (QualityWarning(code="uncertain-cuts", message=message),)
 
 
-def _listed(places: list[str]) -> str:
-    shown = ", ".join(places[:6])
-    return shown if len(places) <= 6 else f"{shown} and {len(places) - 6} more"
+def _listed(boundaries: list[str]) -> str:
+    shown = ", ".join(boundaries[:6])
+    return shown if len(boundaries) <= 6 else f"{shown} and {len(boundaries) - 6} more"
 
 
 def _given(times: Float, first: float, twist: Float, elapsed: Float) -> Cycles:

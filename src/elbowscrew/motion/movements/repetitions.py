@@ -10,7 +10,7 @@ from elbowscrew.geometry._small_angle import divide, length
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import CycleCurves, Repeatability, Repetitions, ScrewMotion
 from elbowscrew.motion.axes.mean_axis import mean_line_of
-from elbowscrew.motion.movements.cuts import Cycles
+from elbowscrew.motion.movements.boundaries import Cycles
 from elbowscrew.motion.movements.phases import nearest_rows
 
 _POINTS: Final = 101
@@ -80,11 +80,11 @@ def cycle_curves_of(cycles: Cycles, angle: Float, elapsed: Float) -> CycleCurves
     """
     count, time = cycles.start_s.size, elapsed - elapsed[0]
     percent = np.linspace(0.0, 100.0, _POINTS)
-    places = cycles.start_s[:, None] + 0.01 * percent * (cycles.end_s - cycles.start_s)[:, None]
+    seconds = cycles.start_s[:, None] + 0.01 * percent * (cycles.end_s - cycles.start_s)[:, None]
     return CycleCurves(
         cycle=np.repeat(np.arange(1, count + 1), _POINTS),
         percent=np.tile(percent, count),
-        angle=_between_frames(places.ravel(), angle, time),
+        angle=_between_frames(seconds.ravel(), angle, time),
     )
 
 
@@ -117,7 +117,7 @@ def repeatability_of(curves: CycleCurves, repetitions: Repetitions, near: Float)
         icc=intraclass_correlation(whole.T),
         cmc=multiple_correlation(whole),
         axis_sd=_spread(repetitions.axis_deviation),
-        point_sd=_place_spread(axes, repetitions.axis_point, near),
+        point_sd=_point_spread(axes, repetitions.axis_point, near),
         top_sd=float(np.std(repetitions.top_angle, ddof=1)) if len(angles) > 1 else float("nan"),
     )
 
@@ -205,15 +205,15 @@ def _spread(values: Float) -> float:
     return float(np.sqrt(np.sum(known**2) / (known.size - 1))) if known.size > 1 else float("nan")
 
 
-def _place_spread(directions: Float, points: Float, near: Float) -> float:
+def _point_spread(directions: Float, points: Float, near: Float) -> float:
     """Standard deviation of where the axes pierce the plane across their mean at the point nearest the body."""
     known = np.isfinite(directions[:, 0])
     if known.sum() < 2:
         return float("nan")
     n, p = directions[known], points[known]
     middle = _mean_direction(n)
-    place = p + divide((near - p) @ middle, n @ middle)[:, None] * n
-    return _spread(length(place - place.mean(axis=0)))
+    pierced = p + divide((near - p) @ middle, n @ middle)[:, None] * n
+    return _spread(length(pierced - pierced.mean(axis=0)))
 
 
 def _largest(values: Float) -> float:

@@ -25,26 +25,26 @@ class Strokes(NamedTuple):
 
     Attributes
     ----------
-    places : ndarray of int64, shape (K + 1,)
+    bounds : ndarray of int64, shape (K + 1,)
         Turns and stops between which the strokes lie.
     begin, end : ndarray
         Feet of the stroke; where two strokes overlap there, both at the turn between them.
     begin_sd, end_sd : ndarray
     outward : ndarray of bool
         Whether the rotation increases.
-    turns : ndarray of bool, shape (K - 1,)
+    reverses : ndarray of bool, shape (K - 1,)
         Whether the motion turns back between a stroke and the next, or only stops.
     rest_s, rest_sd_s : ndarray, shape (K - 1,)
         Time between a stroke's foot and the next one's, seconds; negative where they overlap.
     """
 
-    places: Index
+    bounds: Index
     begin: Float
     end: Float
     begin_sd: Float
     end_sd: Float
     outward: Bool
-    turns: Bool
+    reverses: Bool
     rest_s: Float
     rest_sd_s: Float
 
@@ -71,12 +71,12 @@ def strokes_of(swings: Swings) -> Strokes:
 
     The local rule has no part in this: a hesitation that is no cycle is movement all the same.
     """
-    places, values = _with_stops(swings)
-    count = max(places.size - 1, 0)
+    bounds, values = _with_stops(swings)
+    count = max(bounds.size - 1, 0)
     outward = np.diff(values) > 0.0
     if count:
         values = _pooled_levels(values, outward, swings)
-    lows, tops = np.where(outward, [places[:-1], places[1:]], [places[1:], places[:-1]])
+    lows, tops = np.where(outward, [bounds[:-1], bounds[1:]], [bounds[1:], bounds[:-1]])
     low_values, top_values = np.where(outward, [values[:-1], values[1:]], [values[1:], values[:-1]])
     feet = feet_of(swings.smooth, lows, tops, low_values, top_values, swings.smooth_noise, swings.cutoff)
     before, after, before_var, after_var = _in_time(feet, outward)
@@ -90,13 +90,13 @@ def strokes_of(swings: Swings) -> Strokes:
     middle = feet.half[:-1] + gap * after[:-1] / np.maximum(need, 1e-12)
     end[:-1][over] = begin[1:][over] = middle[over]
     return Strokes(
-        places=places,
+        bounds=bounds,
         begin=np.clip(begin, 0.0, swings.smooth.size - 1.0),
         end=np.clip(end, 0.0, swings.smooth.size - 1.0),
         begin_sd=begin_sd,
         end_sd=end_sd,
         outward=outward,
-        turns=outward[1:] != outward[:-1],
+        reverses=outward[1:] != outward[:-1],
         rest_s=rest_s,
         rest_sd_s=rest_sd_s,
     )
@@ -128,23 +128,23 @@ def _pooled_levels(values: Float, outward: Bool, swings: Swings) -> Float:
 
 def _with_stops(swings: Swings) -> tuple[Index, Float]:
     """Turning points and the stops between them: samples and values, shape (K + 1,) each."""
-    smooth, turns = swings.smooth, swings.all_turns
-    if turns.size < 2:
+    smooth, reversals = swings.smooth, swings.all_reversals
+    if reversals.size < 2:
         return np.empty(0, dtype=np.int64), np.empty(0)
     speed = np.abs(np.gradient(smooth))
-    places, values = [int(turns[0])], [float(smooth[turns[0]])]
-    for first, last in zip(turns[:-1].tolist(), turns[1:].tolist(), strict=True):
+    samples, values = [int(reversals[0])], [float(smooth[reversals[0]])]
+    for first, last in zip(reversals[:-1].tolist(), reversals[1:].tolist(), strict=True):
         for begin, end in _slow_parts(smooth[first : last + 1], speed[first : last + 1]):
             level = float(np.median(smooth[first + begin : first + end + 1]))
             # A joint that is held rests wherever that is; a short stop counts only well inside the stroke.
             held = end - begin >= SHORTEST_REST_S * swings.rate_hz
             least = min(swings.least, max(_LEAST_HELD, _SURE * swings.smooth_noise)) if held else swings.least
             if min(abs(level - values[-1]), abs(float(smooth[last]) - level)) >= least:
-                places.append(first + (begin + end) // 2)
+                samples.append(first + (begin + end) // 2)
                 values.append(level)
-        places.append(last)
+        samples.append(last)
         values.append(float(smooth[last]))
-    return np.array(places, dtype=np.int64), np.array(values)
+    return np.array(samples, dtype=np.int64), np.array(values)
 
 
 def _slow_parts(part: Float, speed: Float) -> list[tuple[int, int]]:

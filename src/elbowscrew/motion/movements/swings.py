@@ -54,7 +54,7 @@ class Swings(NamedTuple):
         Least swing between two turning points, radians.
     smooth : ndarray, shape (N,)
         The filtered rotation, radians.
-    all_turns, turns : ndarray of int64, shape (T,)
+    all_reversals, reversals : ndarray of int64, shape (T,)
         Samples of the turning points by the least swing, the ends of the recording among them; and of those that are
         left by the local rule.
     doubtful : dict of int to str
@@ -62,7 +62,7 @@ class Swings(NamedTuple):
     close_removed : ndarray of int64
         Turning points that the local rule took out by little.
     fast_rad : float
-        Peak to peak of what the filter took out and a 12 Hz one would keep, in the third largest place, radians.
+        Peak to peak of what the filter took out and a 12 Hz one would keep, the third largest, radians.
     """
 
     rate_hz: float
@@ -71,8 +71,8 @@ class Swings(NamedTuple):
     smooth_noise: float
     least: float
     smooth: Float
-    all_turns: Index
-    turns: Index
+    all_reversals: Index
+    reversals: Index
     doubtful: dict[int, str]
     close_removed: Index
     fast_rad: float
@@ -127,8 +127,8 @@ def swings_of(twist: Float, rate_hz: float, noise: float | None = None, least_sw
         smooth_noise=smooth_noise,
         least=least,
         smooth=smooth,
-        all_turns=every,
-        turns=kept,
+        all_reversals=every,
+        reversals=kept,
         doubtful=doubtful,
         close_removed=close,
         fast_rad=_left_out(level, smooth, rate_hz, cutoff_hz),
@@ -175,9 +175,9 @@ def lowpass_series(series: Float, rate_hz: float, cutoff_hz: float) -> Float:
 def _cutoff(twist: Float, rate_hz: float, sigma: float) -> float:
     """Four times the frequency below which 80 % of the energy about the straight line lies, from 2 to 12 Hz."""
     count = twist.size
-    place = np.linspace(-1.0, 1.0, count)
+    position = np.linspace(-1.0, 1.0, count)
     centered = twist - twist.mean()
-    centered = centered - place * (place @ centered) / (place @ place)
+    centered = centered - position * (position @ centered) / (position @ position)
     length = _fast_length(2 * count)
     energy = np.cumsum(np.maximum(np.abs(np.fft.rfft(centered, length)) ** 2 - sigma**2 * count, 0.0))
     rhythm = float(np.searchsorted(energy, _ENERGY_SHARE * energy[-1])) * rate_hz / length if energy[-1] > 0.0 else 0.0
@@ -192,8 +192,8 @@ def _end_level(series: Float, reach: int) -> float:
     values = series[1 : count + 1]
     if count <= 3:
         return float(values.mean())
-    place = np.arange(1, count + 1) - 0.5 * (count + 1)
-    return float(values.mean() - 0.5 * (count + 1) * (place @ values) / (place @ place))
+    position = np.arange(1, count + 1) - 0.5 * (count + 1)
+    return float(values.mean() - 0.5 * (count + 1) * (position @ values) / (position @ position))
 
 
 def _left_out(level: Float, smooth: Float, rate_hz: float, cutoff_hz: float) -> float:
@@ -228,19 +228,19 @@ def _prominences(values: Float) -> tuple[Float, Float]:
     return inner, ratio
 
 
-def _by_local_rule(turns: Index, values: Float) -> tuple[Index, Index]:
+def _by_local_rule(reversals: Index, values: Float) -> tuple[Index, Index]:
     """Take out the smallest swing again and again while it is small beside its neighbors; also what went by little.
 
     Turns are a doubly linked list here, and swings that are small beside their neighbors a heap: taking one out
     changes the standing of the few swings near it only, so that all takes linear time but for the heap's logarithm.
     """
-    count = turns.size
+    count = reversals.size
     if count <= 3:
-        return turns, np.empty(0, dtype=np.int64)
+        return reversals, np.empty(0, dtype=np.int64)
     _, ratio = _prominences(values)
     first_bad = np.flatnonzero(np.minimum(ratio[1:-2], ratio[2:-1]) < LOCAL_SHARE) + 1
     if not first_bad.size:
-        return turns, np.empty(0, dtype=np.int64)
+        return reversals, np.empty(0, dtype=np.int64)
     chain = _Chain(values.tolist())
     heap = [(chain.swing(k), k) for k in first_bad.tolist()]
     heapq.heapify(heap)
@@ -257,7 +257,7 @@ def _by_local_rule(turns: Index, values: Float) -> tuple[Index, Index]:
         for near in chain.take_out(k):
             if chain.share(near) < LOCAL_SHARE:
                 heapq.heappush(heap, (chain.swing(near), near))
-    return turns[np.array(chain.alive)], turns[np.array(sorted(close), dtype=np.int64)]
+    return reversals[np.array(chain.alive)], reversals[np.array(sorted(close), dtype=np.int64)]
 
 
 class _Chain:
@@ -300,13 +300,13 @@ class _Chain:
         return self._prominence(k) / least if least > 0.0 else np.inf
 
     def share(self, k: int) -> float:
-        """Smaller ratio of the two turns of a swing; inf where one of them is an end of the recording."""
+        """Smaller ratio of the two reversals of a swing; inf where one of them is an end of the recording."""
         if self._is_end(k) or self._is_end(self.after[k]):
             return np.inf
         return min(self._ratio(k), self._ratio(self.after[k]))
 
     def take_out(self, k: int) -> list[int]:
-        """Take a swing out, both turns of it; return the swings near it."""
+        """Take a swing out, both reversals of it; return the swings near it."""
         other = self.after[k]
         left, right = self.before[k], self.after[other]
         self.alive[k] = self.alive[other] = False
@@ -325,12 +325,12 @@ class _Chain:
         return near
 
 
-def _doubts(turns: Index, values: Float, least: float) -> dict[int, str]:
-    """Why turns are in doubt: a swing hardly over the threshold, or small beside its neighbors."""
-    if turns.size < 3:
+def _doubts(reversals: Index, values: Float, least: float) -> dict[int, str]:
+    """Why reversals are in doubt: a swing hardly over the threshold, or small beside its neighbors."""
+    if reversals.size < 3:
         return {}
     swing = np.abs(np.diff(values))
     _, ratio = _prominences(values)
-    doubts = {int(turn): "small-swing" for turn in turns[1:-1][np.minimum(swing[:-1], swing[1:]) < _NEAR_SWING * least]}
-    doubts |= {int(turn): "small-beside-neighbors" for turn in turns[ratio < (1.0 + _NEAR) * LOCAL_SHARE]}
+    doubts = {int(at): "small-swing" for at in reversals[1:-1][np.minimum(swing[:-1], swing[1:]) < _NEAR_SWING * least]}
+    doubts |= {int(at): "small-beside-neighbors" for at in reversals[ratio < (1.0 + _NEAR) * LOCAL_SHARE]}
     return doubts
