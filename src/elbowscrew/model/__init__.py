@@ -3,7 +3,7 @@
 from elbowscrew.model.anatomy import AnatomicalMotion, Landmark, Landmarks
 from elbowscrew.model.axes import HelicalSteps, InstantaneousMotion
 from elbowscrew.model.comparison import ComparedModels, ComparedOverTrials, Comparison, TrialsComparison
-from elbowscrew.model.joint_axis import FittedJoint, JointAxis, LineEstimate, PoseNoise
+from elbowscrew.model.joint_axis import AxisPath, AxisWander, FittedJoint, JointAxis, LineEstimate, MeanLine, PoseNoise
 from elbowscrew.model.modeled import (
     BodyPoints,
     InterpolatedMotion,
@@ -34,6 +34,8 @@ from elbowscrew.model.sense import Sense
 __all__ = [
     "Analysis",
     "AnatomicalMotion",
+    "AxisPath",
+    "AxisWander",
     "BodyPoints",
     "BodyQuality",
     "ClockQuality",
@@ -54,6 +56,7 @@ __all__ = [
     "LineEstimate",
     "Marker",
     "MeanAxis",
+    "MeanLine",
     "ModelPhases",
     "MovementPhases",
     "PhaseLaw",

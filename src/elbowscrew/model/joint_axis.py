@@ -107,6 +107,76 @@ class FittedJoint(Brief):
     weight: Float
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AxisWander:
+    """How far a joint's axis moves while the joint goes from one end of its range to the other.
+
+    Attributes
+    ----------
+    turn, turn_sd : float
+        By how much its direction turns, rad.
+    shift, shift_sd : float
+        By how much it moves across itself, m, at its point nearest the distal body's origin at the reference.
+    significant : bool
+        Whether one of both is beyond what an axis that stays shows in 0.27 % of the trials.
+    unseen_turn, unseen_shift : float
+        Up to so much (rad, m) an axis may wander without being told from one that stays.
+    """
+
+    turn: float
+    turn_sd: float
+    shift: float
+    shift_sd: float
+    significant: bool
+    unseen_turn: float
+    unseen_shift: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class MeanLine(Brief):
+    """Mean over the range of an axis that wanders.
+
+    Attributes
+    ----------
+    line : LineEstimate
+        As expressed it is the mean of `AxisPath`; in each body, the mean of the places the axis takes in that body.
+    axis_sd, point_sd, axis_cone, point_radius : float
+        As those of `FittedJoint`.
+    decided_by : {"A", "B", "J"} or None
+    """
+
+    line: LineEstimate
+    axis_sd: float
+    point_sd: float
+    axis_cone: float
+    point_radius: float
+    decided_by: Literal["A", "B", "J"] | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class AxisPath(Brief):
+    """An axis that wanders, against the angle, in the frame the screws are expressed in.
+
+    Attributes
+    ----------
+    angle : ndarray, shape (K,)
+        Middles of equal parts of the fitted joint's range, rad, from the reference and positive about the axis.
+    direction, point : ndarray, shape (K, 3)
+        Unit vectors, and points (m) nearest the origin.
+    axis_sd, point_sd : ndarray, shape (K,)
+        Standard deviations (rad, m) as those of `FittedJoint`.
+    frames : ndarray, shape (K,)
+        How many of the frames that were fitted are in each part.
+    """
+
+    angle: Float
+    direction: Float
+    point: Float
+    axis_sd: Float
+    point_sd: Float
+    frames: NDArray[np.int64]
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class JointAxis(Brief):
     """All estimates of the joint's axis, side by side.
@@ -123,7 +193,13 @@ class JointAxis(Brief):
     unexplained : float
         RMS rotation that a hinge leaves over the RMS rotation about it: 0 for a hinge, 1 and more for a ball joint.
     noise : mapping of str to PoseNoise or None
-        Of "arm" and "forearm".
+        Of "proximal" and "distal".
+    wander : AxisWander or None
+        Of the preferred fit; None without one, or where the frames do not tell.
+    mean_axis : MeanLine or None
+        Where the axis wanders.
+    path : AxisPath or None
+        Where the axis wanders.
     """
 
     single: bool
@@ -133,6 +209,9 @@ class JointAxis(Brief):
     sara: LineEstimate
     unexplained: float
     noise: Mapping[str, PoseNoise | None]
+    wander: AxisWander | None = None
+    mean_axis: MeanLine | None = None
+    path: AxisPath | None = None
 
     @property
     def preferred(self) -> Literal["hinge", "screw_hinge"] | None:
@@ -146,3 +225,8 @@ class JointAxis(Brief):
     def best(self) -> FittedJoint | None:
         """The preferred fit itself; None where the motion has no single axis."""
         return self.screw_hinge if self.preferred == "screw_hinge" else self.hinge
+
+    @property
+    def headline(self) -> FittedJoint | MeanLine | None:
+        """The line to tell first: the mean axis where the axis wanders, else the preferred fit's."""
+        return self.best if self.mean_axis is None else self.mean_axis

@@ -104,7 +104,7 @@ def analyze(recording: Recording, settings: Settings | None = None, *, landmarks
             measured.distal,
             joint,
             axis_lines=proximal_lines(measured.line, joint, measured.express_in),
-            joint_line=None if joint_axis.best is None else joint_axis.best.line,
+            joint_line=None if joint_axis.headline is None else joint_axis.headline.line,
         )
         warnings += doubts
     interpolated = _compared(model, measured, wanted)

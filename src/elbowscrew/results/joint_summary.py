@@ -8,7 +8,16 @@ import numpy as np
 
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat
-from elbowscrew.model import Analysis, AnatomicalMotion, FittedJoint, LineEstimate, PoseNoise, RigidBody
+from elbowscrew.model import (
+    Analysis,
+    AnatomicalMotion,
+    AxisWander,
+    FittedJoint,
+    LineEstimate,
+    MeanLine,
+    PoseNoise,
+    RigidBody,
+)
 from elbowscrew.results.joint_type_summary import joint_type_summary
 from elbowscrew.results.statistics import known, rms, statistic
 
@@ -24,6 +33,8 @@ def joint_summary(analysis: Analysis) -> dict[str, Any]:
         "unexplained_share": known(axis.unexplained) if axis.unexplained <= 1.0 else None,
         "hinge": _fitted(axis.hinge),
         "screw_hinge": _fitted(axis.screw_hinge),
+        "wander": _wander(axis.wander),
+        "mean_axis": _mean_axis(axis.mean_axis),
         "weighted_mean": _line(axis.weighted_mean),
         "sara": _line(axis.sara),
         "dispersion": dispersion_summary(analysis),
@@ -83,6 +94,37 @@ def _fitted(fit: FittedJoint | None) -> dict[str, Any] | None:
         **{name: known(value) for name, value in figures.items()},
         "decided_by": fit.decided_by,
         "interval_method": None if fit.decided_by is None else INTERVAL_METHODS[fit.decided_by],
+    }
+
+
+def _wander(wander: AxisWander | None) -> dict[str, Any] | None:
+    if wander is None:
+        return None
+    figures = {
+        "size_deg": float(np.degrees(wander.turn)),
+        "size_sd_deg": float(np.degrees(wander.turn_sd)),
+        "size_mm": 1000.0 * wander.shift,
+        "size_sd_mm": 1000.0 * wander.shift_sd,
+        "unseen_deg": float(np.degrees(wander.unseen_turn)),
+        "unseen_mm": 1000.0 * wander.unseen_shift,
+    }
+    return {**{name: known(value) for name, value in figures.items()}, "significant": wander.significant}
+
+
+def _mean_axis(mean: MeanLine | None) -> dict[str, Any] | None:
+    if mean is None:
+        return None
+    figures = {
+        "axis_sd_deg": float(np.degrees(mean.axis_sd)),
+        "axis_cone95_deg": float(np.degrees(mean.axis_cone)),
+        "point_sd_mm": 1000.0 * mean.point_sd,
+        "point_radius95_mm": 1000.0 * mean.point_radius,
+    }
+    return {
+        **_line(mean.line),
+        **{name: known(value) for name, value in figures.items()},
+        "decided_by": mean.decided_by,
+        "interval_method": None if mean.decided_by is None else INTERVAL_METHODS[mean.decided_by],
     }
 
 

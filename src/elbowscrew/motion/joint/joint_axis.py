@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from elbowscrew.choices import ExpressIn
-from elbowscrew.geometry import point_nearest_origin
 from elbowscrew.geometry.arrays import Float
-from elbowscrew.geometry.dual_quaternion import conjugate, multiply, pose_from_dual_quat, transform_lines
-from elbowscrew.geometry.sensitivity import confidence_radius
-from elbowscrew.model import FittedJoint, JointAxis, JointMotion, LineEstimate, PoseNoise
+from elbowscrew.geometry.dual_quaternion import conjugate, pose_from_dual_quat, transform_lines
+from elbowscrew.model import FittedJoint, JointAxis, JointMotion, PoseNoise
+from elbowscrew.motion.joint.estimates import line_errors, line_estimate
 from elbowscrew.motion.joint.influence import influence_of_fit
 from elbowscrew.motion.joint.interval import (
     SURE,
@@ -20,19 +20,19 @@ from elbowscrew.motion.joint.interval import (
     JointInterval,
     SkinMotion,
     joint_interval,
-    pose_radii,
     skin_sensitivity,
 )
 from elbowscrew.motion.joint.joint_fit import LineFit, fit_joint, sara_lines
+from elbowscrew.motion.joint.lines import Z_LINE
 from elbowscrew.motion.joint.nonrigid import Segment
+from elbowscrew.motion.joint.wander import wander_of_axis
+from elbowscrew.motion.joint.wandering import told_wander
 from elbowscrew.motion.screws.pose_noise import JointNoise
 from elbowscrew.motion.screws.uncertainty import joint_covariance
 
 _MOST_FRAMES: Final = 20_000
 _LARGEST_UNEXPLAINED: Final = 0.25
-_UNDETERMINED: Final = 0.5 * np.pi
 _NORMAL_95: Final = 1.959964
-_Z_AXIS: Final = np.array([0.0, 0.0, 1.0, 0.0, 0.0, 0.0])
 # Without a stated noise: a common cluster's, whose rotation and translation only have to be weighed against each other.
 _COMMON_NOISE: Final = np.diag([6e-6] * 3 + [1e-8] * 3)
 
@@ -80,34 +80,33 @@ def estimate_joint_axis(
     single = bool(unexplained <= _LARGEST_UNEXPLAINED)
     told = noise.known is not None
     clusters = tuple(ClusterMotion(segment=one.segment, shape=one.shape, rms=one.rms[rows]) for one in markers)
-    intervals = {
-        screw: joint_interval(
-            influence_of_fit(fit, poses, covariance),
-            clusters,
-            skin=skin,
-            reference_angle=_reference_angle(fit, rows, joint),
-            noise_known=told,
-        )
-        if single
-        else None
-        for screw, fit in fits.items()
-    }
+    influences = {screw: influence_of_fit(fit, poses, covariance) for screw, fit in fits.items()} if single else {}
+    reference = {screw: _reference_angle(fit, rows, joint) for screw, fit in fits.items()}
+    fitted: dict[bool, FittedJoint] = {}
+    for screw, influence in influences.items():
+        fit = fits[screw]
+        interval = joint_interval(influence, clusters, skin=skin, reference_angle=reference[screw], noise_known=told)
+        fitted[screw] = _fitted_joint(fit, interval, joint, rows, express_in, start, noise, noise_known=told)
     proximal_line, distal_line = sara_lines(poses, angle[rows])
-    fitted = {
-        screw: None
-        if interval is None
-        else _fitted_joint(fits[screw], interval, joint, rows, express_in, start, noise, noise_known=told)
-        for screw, interval in intervals.items()
-    }
-    return JointAxis(
+    found = JointAxis(
         single=single,
-        hinge=fitted[False],
-        screw_hinge=fitted[True],
-        weighted_mean=_estimate(start, mean_line, joint, express_in),
-        sara=_estimate(proximal_line, distal_line, joint, express_in),
+        hinge=fitted.get(False),
+        screw_hinge=fitted.get(True),
+        weighted_mean=line_estimate(start, mean_line, joint, express_in),
+        sara=line_estimate(proximal_line, distal_line, joint, express_in),
         unexplained=unexplained,
         noise={"proximal": noise.proximal, "distal": noise.distal},
     )
+    if found.best is None:
+        return found
+    screw = found.preferred == "screw_hinge"
+    wander = wander_of_axis(
+        fits[screw], influences[screw], clusters, skin=skin, reference_angle=reference[screw], noise_known=told
+    )
+    if wander is None or not np.isfinite(found.best.covariance).all():
+        return found
+    away = told_wander(wander, fits[screw], reference[screw], joint, noise, start, express_in=express_in)
+    return replace(found, wander=away.wander, mean_axis=away.mean_axis, path=away.path)
 
 
 def fitted_frames(joint: JointMotion, noise: JointNoise, noise_gain: Float) -> tuple[NDArray[np.int64], Float, Float]:
@@ -143,40 +142,24 @@ def _fitted_joint(
     *,
     noise_known: bool,
 ) -> FittedJoint:
-    proximal, distal = transform_lines(fit.proximal, _Z_AXIS), transform_lines(fit.distal, _Z_AXIS)
+    proximal, distal = transform_lines(fit.proximal, Z_LINE), transform_lines(fit.distal, Z_LINE)
     if proximal[:3] @ start[:3] < 0.0:
         proximal, distal = -proximal, -distal
     covariance = fit.covariance(noise_known=noise_known)
     first = 4 if express_in == "distal" else 0
-    line = _estimate(proximal, distal, joint, express_in)
+    line = line_estimate(proximal, distal, joint, express_in)
     shared = np.eye(len(covariance))
     tilt, shift = shared[first : first + 2], shared[first + 2 : first + 4]
-    # A tilt (a, b) moves the line by (b, -a) d at a distance d along it from the fit's origin.
-    frame = {
-        "distal": fit.distal,
-        "proximal": fit.proximal,
-        "lab": multiply(joint.dual_quat_lab_proximal, fit.proximal),
-    }[express_in]
-    along = (line.point - pose_from_dual_quat(frame)[1]) @ transform_lines(frame, _Z_AXIS)[:3]
-    place = shift + along * np.stack([tilt[1], -tilt[0]])
+    pose = fit.distal if express_in == "distal" else fit.proximal
+    errors = line_errors(interval, covariance, tilt, shift, pose, line, joint, noise, express_in=express_in)
     known = bool(np.isfinite(covariance).all())
-    cone = interval.radius(tilt) if known else float("nan")
-    radius = interval.radius(place) if known else float("nan")
-    if express_in == "lab" and noise.proximal is not None:
-        carried = pose_radii(noise.proximal.covariance, line.direction_proximal, line.point_proximal)
-        cone, radius = float(np.hypot(cone, carried[0])), float(np.hypot(radius, carried[1]))
-    if not cone < _UNDETERMINED:
-        cone = radius = float("nan")
     pitched = len(covariance) > 9
     pitch = shared[9:]
     return FittedJoint(
         line=line,
         covariance=covariance,
-        axis_sd=cone * _sd_of_radius(tilt @ covariance @ tilt.T),
-        point_sd=radius * _sd_of_radius(place @ covariance @ place.T),
-        axis_cone=cone,
-        point_radius=radius,
-        decided_by=interval.decided_by(tilt) if np.isfinite(cone) else None,
+        **errors._asdict(),
+        decided_by=interval.decided_by(tilt) if np.isfinite(errors.axis_cone) else None,
         pitch=fit.pitch,
         pitch_sd=interval.radius(pitch) / _NORMAL_95 if pitched and known else 0.0 if not pitched else float("nan"),
         pitch_sure=interval.radius(pitch, SURE) if pitched and known else 0.0 if not pitched else float("nan"),
@@ -187,28 +170,6 @@ def _fitted_joint(
         correlation=fit.correlation,
         used=rows,
         weight=fit.weight,
-    )
-
-
-def _sd_of_radius(covariance: Float) -> float:
-    """Standard deviation of both components together, for each unit of the radius that holds 95 %."""
-    radius = float(confidence_radius(covariance))
-    return float(np.sqrt(np.trace(covariance))) / radius if radius > 0.0 else 0.0
-
-
-def _estimate(proximal: Float, distal: Float, joint: JointMotion, express_in: ExpressIn) -> LineEstimate:
-    shown = {
-        "distal": distal,
-        "proximal": proximal,
-        "lab": transform_lines(joint.dual_quat_lab_proximal, proximal),
-    }[express_in]
-    return LineEstimate(
-        direction=shown[:3],
-        point=point_nearest_origin(shown),
-        direction_proximal=proximal[:3],
-        point_proximal=point_nearest_origin(proximal),
-        direction_distal=distal[:3],
-        point_distal=point_nearest_origin(distal),
     )
 
 

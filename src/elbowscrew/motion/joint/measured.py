@@ -70,7 +70,7 @@ def axis_of_type(joint_axis: JointAxis, joint_type: JointType | None) -> JointAx
     """Leave out the fit of one axis where the joint was found to have more than one."""
     if joint_type is None or joint_type.type not in ("two_axes", "ball", "free"):
         return joint_axis
-    return replace(joint_axis, single=False, hinge=None, screw_hinge=None)
+    return replace(joint_axis, single=False, hinge=None, screw_hinge=None, wander=None, mean_axis=None, path=None)
 
 
 def _markers(measured: Measurement) -> tuple[BodyMarkers, ...]:

@@ -15,6 +15,7 @@ from elbowscrew.motion.joint.joint_fit import LineFit
 
 _GRID: Final = 400
 _TILT_SHIFT: Final = (0, 1, 3, 4)
+_TELLS_NOTHING: Final = np.radians(45.0)  # of a wander that would not be seen: no linear step tells of more
 
 
 class Wander(NamedTuple):
@@ -34,8 +35,16 @@ class Wander(NamedTuple):
         From the hinge: its own numbers, then tilts x, y and shifts x, y of half the wander in the frame of the line.
     interval : JointInterval
         Of the same numbers: with the first four the mean axis', and not of the hinge, where the axis wanders.
+    inverse : ndarray, shape (P + 4, P + 4)
+        Covariance of the numbers under the stated noise.
     middle, half_range : float
         Of the angle, radians: the line is the mean one in the middle.
+    pitch : float
+        Of the fit, m/rad.
+    grid : ndarray, shape (K,)
+        Angles, evenly from one end to the other.
+    summed : ndarray, shape (K, 6, 4)
+        What the poses leave a hinge by there for each unit of the last four of `step`.
     """
 
     turn: float
@@ -47,8 +56,42 @@ class Wander(NamedTuple):
     significant: bool
     step: Float
     interval: JointInterval
+    inverse: Float
     middle: float
     half_range: float
+    pitch: float
+    grid: Float
+    summed: Float
+
+    @property
+    def mean_rows(self) -> Float:
+        """Rows (4, P + 4) of tilt and shift of the mean line in the proximal body, by the numbers."""
+        return self.error_rows(np.array(self.middle))
+
+    @property
+    def mean_distal_rows(self) -> Float:
+        """Rows (4, P + 4) of tilt and shift of the mean line in the distal body, by the numbers."""
+        place = np.linspace(-1.0, 1.0, len(self.grid))
+        return self._distal_rows(np.mean(place[:, None, None] * self._turned(self.grid), axis=0))
+
+    def reference_rows(self, angle: Float, reference_angle: float) -> Float:
+        """Rows (..., 4, P + 4) of the line at angles (...) in the distal body as it stands at a reference angle."""
+        place = np.asarray((np.asarray(angle) - self.middle) / self.half_range)[..., None, None]
+        rows = list(_TILT_SHIFT)
+        summed = np.stack(
+            [np.interp(reference_angle, self.grid, part) for part in self.summed.reshape(len(self.grid), -1).T]
+        ).reshape(6, 4)
+        return self._distal_rows(place * self._turned(np.array([reference_angle]))[0] - summed[rows])
+
+    def _turned(self, angle: Float) -> Float:
+        """Tilts and shifts (K, 4, 4) on the distal side of those on the proximal side, at angles (K,)."""
+        return _columns(angle, self.pitch)[:, list(_TILT_SHIFT)]
+
+    def _distal_rows(self, of_wander: Float) -> Float:
+        rows = np.zeros((*of_wander.shape[:-1], len(self.step)))
+        rows[..., range(4), range(4, 8)] = 1.0
+        rows[..., -4:] = of_wander
+        return rows
 
     def proximal_line_pose(self, proximal: Float, angle: Float) -> Float:
         """Pose (..., 8) whose z axis is the line in the proximal body at angles (...), radians.
@@ -95,7 +138,7 @@ def wander_of_axis(
     Returns
     -------
     Wander or None
-        None where the frames do not determine it.
+        None where the frames do not determine it, or would not show a wander of 45 deg.
 
     References
     ----------
@@ -111,8 +154,9 @@ def wander_of_axis(
     place = np.linspace(-1.0, 1.0, _GRID)
     wave = 0.5 * (place[1:] + place[:-1])
     summed = np.concatenate([np.zeros((1, 6, 4)), np.cumsum(wave[:, None, None] * change, axis=0)])
-    summed = (summed - summed.mean(axis=0)).reshape(_GRID, -1)
-    extra = np.stack([np.interp(fit.angle, grid, column) for column in summed.T], axis=1).reshape(-1, 6, 4)
+    summed = summed - summed.mean(axis=0)
+    flat = summed.reshape(_GRID, -1).T
+    extra = np.stack([np.interp(fit.angle, grid, column) for column in flat], axis=1).reshape(-1, 6, 4)
     more, step = with_columns(influence, adjoint(fit.distal) @ extra)
     if not more.determined:
         return None
@@ -122,6 +166,8 @@ def wander_of_axis(
     sizes = [float(np.linalg.norm(rows @ step)) for rows in (tilt, shift)]
     sure = [interval.radius(rows, SURE) for rows in (tilt, shift)]
     usual = [interval.radius(rows) for rows in (tilt, shift)]
+    if not 2.0 * sure[0] < _TELLS_NOTHING:
+        return None
     return Wander(
         turn=2.0 * sizes[0],
         shift=2.0 * sizes[1],
@@ -132,8 +178,12 @@ def wander_of_axis(
         significant=any(size > limit for size, limit in zip(sizes, sure, strict=True)),
         step=step,
         interval=interval,
+        inverse=more.inverse,
         middle=0.5 * (low + high),
         half_range=0.5 * (high - low),
+        pitch=fit.pitch,
+        grid=grid,
+        summed=summed,
     )
 
 

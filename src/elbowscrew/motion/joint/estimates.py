@@ -1,0 +1,104 @@
+"""Lines of a joint as they are told: in both bodies and in the frame asked for, with their errors there."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowscrew.choices import ExpressIn
+from elbowscrew.geometry import point_nearest_origin
+from elbowscrew.geometry.dual_quaternion import multiply, pose_from_dual_quat, transform_lines
+from elbowscrew.geometry.sensitivity import confidence_radius
+from elbowscrew.model import JointMotion, LineEstimate
+from elbowscrew.motion.joint.interval import JointInterval, pose_radii
+from elbowscrew.motion.joint.lines import Z_LINE
+from elbowscrew.motion.screws.pose_noise import JointNoise
+
+Float = NDArray[np.float64]
+
+UNDETERMINED = 0.5 * np.pi
+"""Half-angle of a cone from which on a direction is not determined at all."""
+
+
+class LineErrors(NamedTuple):
+    """How far a line may be off: half-angle (rad) and radius (m) that hold 95 %, and both components' deviations."""
+
+    axis_cone: float
+    point_radius: float
+    axis_sd: float
+    point_sd: float
+
+
+def line_estimate(proximal: Float, distal: Float, joint: JointMotion, express_in: ExpressIn) -> LineEstimate:
+    """Tell a line, given (6,) in both bodies, in the frame that is asked for too."""
+    shown = {
+        "distal": distal,
+        "proximal": proximal,
+        "lab": transform_lines(joint.dual_quat_lab_proximal, proximal),
+    }[express_in]
+    return LineEstimate(
+        direction=shown[:3],
+        point=point_nearest_origin(shown),
+        direction_proximal=proximal[:3],
+        point_proximal=point_nearest_origin(proximal),
+        direction_distal=distal[:3],
+        point_distal=point_nearest_origin(distal),
+    )
+
+
+def line_errors(
+    interval: JointInterval,
+    covariance: Float,
+    tilt: Float,
+    shift: Float,
+    pose: Float,
+    line: LineEstimate,
+    joint: JointMotion,
+    noise: JointNoise,
+    *,
+    express_in: ExpressIn,
+) -> LineErrors:
+    """Errors of a line in the frame it is told in, the place at the line's point there.
+
+    Parameters
+    ----------
+    interval : JointInterval
+        Of the fit's P shared numbers.
+    covariance : ndarray, shape (P, P)
+        Of the same, as the fit has it: it gives the ratio of a deviation to a radius.
+    tilt, shift : ndarray, shape (2, P)
+        The line's tilts about x and y, and its shifts along them at its origin, by the shared numbers.
+    pose : ndarray, shape (8,)
+        Whose z axis the line is, in the distal body where the line is told there, else in the proximal one.
+    line : LineEstimate
+    joint : JointMotion
+    noise : JointNoise
+        In the laboratory the proximal body's pose at the reference carries the line with it.
+    express_in : {"distal", "proximal", "lab"}
+    """
+    frame = multiply(joint.dual_quat_lab_proximal, pose) if express_in == "lab" else pose
+    # A tilt (a, b) moves the line by (b, -a) d at a distance d along it from the pose's origin.
+    along = (line.point - pose_from_dual_quat(frame)[1]) @ transform_lines(frame, Z_LINE)[:3]
+    place = shift + along * np.stack([tilt[1], -tilt[0]])
+    known = bool(np.isfinite(covariance).all())
+    cone = interval.radius(tilt) if known else float("nan")
+    radius = interval.radius(place) if known else float("nan")
+    if express_in == "lab" and noise.proximal is not None:
+        carried = pose_radii(noise.proximal.covariance, line.direction_proximal, line.point_proximal)
+        cone, radius = float(np.hypot(cone, carried[0])), float(np.hypot(radius, carried[1]))
+    if not cone < UNDETERMINED:
+        cone = radius = float("nan")
+    return LineErrors(
+        axis_cone=cone,
+        point_radius=radius,
+        axis_sd=cone * _sd_of_radius(tilt @ covariance @ tilt.T),
+        point_sd=radius * _sd_of_radius(place @ covariance @ place.T),
+    )
+
+
+def _sd_of_radius(covariance: Float) -> float:
+    """Standard deviation of both components together, for each unit of the radius that holds 95 %."""
+    radius = float(confidence_radius(covariance))
+    return float(np.sqrt(np.trace(covariance))) / radius if radius > 0.0 else 0.0
