@@ -35,7 +35,7 @@ def motions() -> Iterator[tuple[str, Recording, Settings]]:
         "smooth elbow": {},
         "elbow with rests": rests,
         "jerky elbow": {"tremor_deg": 2.0},
-        "elbow, axis drifts 5 deg": {"axis_drift_deg": 5.0},
+        "elbow, axis drifts 5 deg": {"wander_deg": 5.0},
         "cycloidal elbow": {"law": "cycloidal"},
     }
     for name, changes in elbows.items():

@@ -21,6 +21,10 @@ ClosedLaw = Literal[
 """Laws of motion in closed form; functions of `elbowscrew.motion.interpolation.laws`."""
 LawName = Literal[ClosedLaw, "empirical", "best"]
 """Laws of motion, those found from the recording among them."""
+SimulatedLaw = Literal["minimum-jerk", ClosedLaw]
+"""Laws that synthetic trials move by."""
+SimulatedJointType = Literal["hinge", "screw-hinge", "two-axes", "ball"]
+"""Joints that synthetic trials move in."""
 MethodName = Literal["dlb", "sclerp", "sdlb", "dib", "catmull-rom"]
 """Interpolations of poses; functions of `elbowscrew.motion.interpolation.modeling`."""
 KnotName = Literal["law", "chord", "uniform", "angle"]

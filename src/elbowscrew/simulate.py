@@ -1,46 +1,35 @@
-"""Synthetic trials of a joint whose joint line, angle and slide are known."""
+"""Synthetic trials of a joint whose type, axes or center, and angles are known."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, Final, Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from elbowscrew.choices import SimulatedJointType, SimulatedLaw
 from elbowscrew.errors import UsageError
-from elbowscrew.geometry import dual_quat_from_screw, line_through, point_nearest_origin, pose_from_points, quaternion
-from elbowscrew.geometry.arrays import Float
-from elbowscrew.geometry.dual_quaternion import (
-    conjugate,
-    dual_quat_from_pose,
-    multiply,
-    transform_lines,
-    transform_points,
-)
+from elbowscrew.geometry import pose_from_points, quaternion
+from elbowscrew.geometry.arrays import Bool, Float
+from elbowscrew.geometry.dual_quaternion import dual_quat_from_pose, multiply, transform_points
 from elbowscrew.joints import JOINT_NAMES, JointName, joints_of
 from elbowscrew.model import Recording, RigidBody, TrackingLoss
-from elbowscrew.motion.interpolation.laws import cycloidal
-from elbowscrew.motion.screws.relative import IDENTITY
+from elbowscrew.motion.interpolation.laws import LAWS
+from elbowscrew.simulated_joint import Geometry, JointCourse, ball, mirrors, odd_course, one_axis, two_axes
 
-# An adult's arm: the line through the elbow in the arm's frame, tilted as the trochlea is; the segments' markers.
-_JOINT_POINT: Final = np.array([0.004, -0.132, 0.011])
-_JOINT_DIRECTION: Final = np.array([0.986, 0.104, -0.131])
-_DRIFT_ACROSS: Final = np.array([0.0, 1.0, 0.0])
-_FOREARM_CENTER: Final = np.array([0.018, -0.251, 0.037])
-_FOREARM_TURN: Final = np.array([0.09, 0.21, -0.06])
 _ARM_PLACE: Final = np.array([0.31, 1.24, -0.18])
-_SIZES: Final = {
-    "elbow": 1.0, "wrist": 0.8, "knee": 1.6, "ankle": 1.5, "hip": 1.5, "shoulder": 1.1, "finger": 0.3,
-}  # fmt: skip
-"""Lengths of the segments beside an arm's; the clusters of markers of smaller ones are smaller, too."""
-_ACROSS_MIRRORED: Final = np.array([-1.0, 1.0, 1.0])
-"""A left joint is the mirror image of a right one in the plane across x, which the joint's line lies near."""
-_MOST_FRAMES: Final = 10_000_000
 _ARM_TURN: Final = np.array([0.12, 0.55, -0.2])
-_ARM_MARKERS: Final = np.array([[38, 12, 31], [-41, 27, 8], [9, -44, -28], [-6, 5, -47]]) * 1e-3
-_FOREARM_MARKERS: Final = np.array([[35, 33, -9], [-37, 14, 25], [-11, -45, 19], [28, -21, -38]]) * 1e-3
+_MOST_FRAMES: Final = 10_000_000
+_SLIDE_MM: Final = 3.0
+_PRONATION_DEG: Final = 60.0
+_SKIN_COURSES: Final[dict[str, Callable[[Float], Float]]] = {
+    "u": lambda u: u,
+    "sin(pi u/2)": lambda u: np.sin(0.5 * np.pi * u),
+    "u^2": lambda u: u**2,
+    "sin(pi u)": lambda u: np.sin(np.pi * u),
+}
+"""How markers may move with flexion, u being the share of the largest angle."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -52,7 +41,7 @@ class Simulation:
     joint : {"elbow", "wrist", "knee", "ankle", "hip", "shoulder", "finger"}
         Names the bodies, and sets how long the segments are.
     side : {"left", "right"} or None
-        Goes into the bodies' names; a left joint's geometry is the mirror image of a right one's.
+        Goes into the bodies' names; a left joint's motion is the mirror image of a right one's.
     frames : int
         Frames of one repetition, from the start to the end of its movement.
     rate_hz : float
@@ -61,10 +50,16 @@ class Simulation:
         Largest angle of the joint.
     inversion : int
         Frame of the repetition at which the angle is largest.
-    slide_mm : float
-        Translation along the axis at the top; it grows with the angle.
-    law : {"minimum-jerk", "cycloidal"}
-        Law of motion out and back.
+    joint_type : {"hinge", "screw-hinge", "two-axes", "ball"}
+        How the segments move against each other. A ball turns about its other directions by half and a third of the
+        top as well.
+    slide_mm : float, optional
+        Translation along a screw-hinge's axis at the top; it grows with the angle. 3 mm by default.
+    pronation_deg : float, optional
+        Range of the rotation about the second of two axes, from one side to the other and back while the first angle
+        rises and falls. 60 deg by default.
+    law : {"minimum-jerk", ...}
+        Law of motion out and back; minimum jerk, or one of the model's laws.
     marker_noise_mm : float
         Standard deviation of each coordinate of each marker; the poses are fitted to the noisy markers.
     gaps, gap_frames : int
@@ -77,8 +72,11 @@ class Simulation:
         How many times the movement is done.
     rest_before_s, hold_s, rest_after_s : float
         Rest before the movement, at every top, and after the movement, seconds.
-    axis_drift_deg : float
-        Tilt of the joint's line at the top against that at the start; it grows with the angle.
+    skin_mm : float
+        How far each marker moves on its bone with flexion, each in its own direction and by its own course, drawn from
+        the seed.
+    wander_deg : float
+        Tilt of the joint's (first) line at the top against that at the start; it grows with the angle.
     tremor_deg, tremor_hz : float
         Amplitude and frequency of a tremor of the angle, which fades towards rest and top.
     seed : int
@@ -91,8 +89,10 @@ class Simulation:
     rate_hz: float = 100.0
     top_deg: float = 130.0
     inversion: int = 211
-    slide_mm: float = 3.0
-    law: Literal["minimum-jerk", "cycloidal"] = "minimum-jerk"
+    joint_type: SimulatedJointType = "screw-hinge"
+    slide_mm: float | None = None
+    pronation_deg: float | None = None
+    law: SimulatedLaw = "minimum-jerk"
     marker_noise_mm: float = 0.2
     gaps: int = 0
     gap_frames: int = 5
@@ -102,7 +102,8 @@ class Simulation:
     rest_before_s: float = 0.0
     hold_s: float = 0.0
     rest_after_s: float = 0.0
-    axis_drift_deg: float = 0.0
+    skin_mm: float = 0.0
+    wander_deg: float = 0.0
     tremor_deg: float = 0.0
     tremor_hz: float = 6.0
     seed: int = 0
@@ -122,7 +123,8 @@ class Simulation:
             "inversion": 0 < self.inversion < self.frames - 1,
             "rate": 1e-3 <= self.rate_hz <= 1e6,
             "top": 0.0 < self.top_deg < 360.0,
-            "slide": abs(self.slide_mm) <= 1e5,
+            "slide": abs(self.slide_mm or 0.0) <= 1e5,
+            "pronation": self.pronation_deg is None or 0.0 < self.pronation_deg <= 180.0,
             "marker-noise": 0.0 <= self.marker_noise_mm <= 1e5,
             "gaps": self.gaps >= 0 and self.gaps * (self.gap_frames + 2) <= self.total_frames - 2,
             "gap-frames": self.gap_frames >= 1,
@@ -130,7 +132,8 @@ class Simulation:
             "rest-before": 0.0 <= self.rest_before_s * self.rate_hz < _MOST_FRAMES,
             "hold": 0.0 <= self.hold_s * self.rate_hz < _MOST_FRAMES,
             "rest-after": 0.0 <= self.rest_after_s * self.rate_hz < _MOST_FRAMES,
-            "axis-drift": abs(self.axis_drift_deg) <= 90.0,
+            "skin": 0.0 <= self.skin_mm <= 1e3,
+            "wander": abs(self.wander_deg) <= 90.0,
             "tremor": 0.0 <= self.tremor_deg <= 90.0,
             "tremor-hz": self.tremor_deg == 0.0 or 0.0 < self.tremor_hz <= 0.5 * self.rate_hz,
             "seed": self.seed >= 0,
@@ -140,10 +143,25 @@ class Simulation:
             names = ", ".join(f"--{name}" for name in bad)
             msg = (
                 f"simulate: impossible value of {names}: the inversion must lie inside the frames, the top between 0 "
-                f"and 360 deg, the gaps must fit into the trial, frames are {_MOST_FRAMES} at most, and nothing may be "
-                "negative"
+                f"and 360 deg, pronation up to 180 deg, the gaps must fit into the trial, frames are {_MOST_FRAMES} at "
+                "most, and nothing may be negative"
             )
             raise UsageError(msg)
+        for option, given, owners in (
+            ("slide", self.slide_mm, ("screw-hinge",)),
+            ("pronation", self.pronation_deg, ("two-axes",)),
+            ("wander", self.wander_deg, ("hinge", "screw-hinge", "two-axes")),
+        ):
+            if given and self.joint_type not in owners:
+                msg = f"simulate: --{option} is of {' and '.join(owners)}, and --joint-type is {self.joint_type}"
+                raise UsageError(msg)
+
+    @property
+    def slide(self) -> float:
+        """Slide at the top, m."""
+        if self.joint_type != "screw-hinge":
+            return 0.0
+        return 1e-3 * (_SLIDE_MM if self.slide_mm is None else self.slide_mm)
 
     @property
     def total_frames(self) -> int:
@@ -166,7 +184,7 @@ class SimulatedTrial:
     markers : mapping of str to ndarray, shape (N, M, 3)
         The markers of each body, by the body's name, in the laboratory, meters; NaN where not seen.
     truth : dict
-        Joint line, angles and slides, ready for JSON; units in the names.
+        The joint's type, axes or center, and angles, ready for JSON; units in the names (`docs/simulate.md`).
     """
 
     recording: Recording
@@ -175,12 +193,12 @@ class SimulatedTrial:
 
 
 def simulate_trial(simulation: Simulation | None = None, **settings: Any) -> SimulatedTrial:
-    """Simulate a joint that turns about and slides along one line.
+    """Simulate a joint of a known type.
 
     Parameters
     ----------
     simulation : Simulation, optional
-        An elbow's plain flexion and extension by default.
+        An elbow's plain flexion and extension by default, about one line along which it slides.
     **settings
         Fields of `Simulation` to change.
 
@@ -199,52 +217,67 @@ def simulate_trial(simulation: Simulation | None = None, **settings: Any) -> Sim
     >>> trial = simulate_trial(top_deg=142, seed=3)
     >>> [body.name for body in trial.recording.bodies], trial.recording.frame.size
     (['Upper Arm', 'Forearm'], 450)
+    >>> simulate_trial(joint_type="two-axes").truth["two_axes"]["angle_between_deg"] > 70
+    True
     """
-    if "arm" in settings:  # what an elbow's proximal body was called before
-        settings["proximal"] = settings.pop("arm")
+    for former, name in (("arm", "proximal"), ("axis_drift_deg", "wander_deg")):  # what they were called before
+        if former in settings:
+            settings[name] = settings.pop(former)
     wanted = replace(simulation or Simulation(), **settings)
     rng = np.random.default_rng(wanted.seed)
-    progress, inversions = _progress(wanted)
+    progress, returns, inversions = _progress(wanted)
     time_s = np.arange(progress.size) / wanted.rate_hz
-    angle, slide = np.radians(wanted.top_deg) * progress, 1e-3 * wanted.slide_mm * progress
     fading = 4.0 * progress * (1.0 - progress)
+    angle = np.radians(wanted.top_deg) * progress
     angle = angle + np.radians(wanted.tremor_deg) * fading * np.sin(2.0 * np.pi * wanted.tremor_hz * time_s)
-    geometry = _geometry(wanted)
-    line = line_through(geometry.point, geometry.direction)
-    lines = _drifting(line, geometry, np.radians(wanted.axis_drift_deg) * progress)
-    start = dual_quat_from_pose(quaternion.quat_from_rotation_vector(geometry.distal_turn), geometry.distal_center)
+    geometry = Geometry.of(wanted.joint, wanted.side)
     proximal_pose = _proximal_poses(time_s, wanted)
-    joint = multiply(dual_quat_from_screw(angle, slide, lines[:, :3], lines[:, 3:]), start)
-    distal_pose = multiply(proximal_pose, joint)
+    course = _course(wanted, geometry, angle, progress, returns, proximal_pose[0])
+    distal_pose = multiply(proximal_pose, course.pose)
     lost = _lost_frames(wanted, progress.size, rng)
     named, side = joints_of(wanted.joint)[0], "" if wanted.side is None else f"{wanted.side.title()} "
     names = [f"{side}{segment.name.title()}" for segment in (named.proximal, named.distal)]
+    skin = _skin(wanted, progress, geometry)
     bodies, markers = [], {}
-    for name, identifier, offsets, pose, gone in (
-        (names[0], "5C0E1B7A90D311EDA1EB0242AC120002", geometry.proximal_markers, proximal_pose, None),
-        (names[1], "5C0E1DB490D311EDA1EB0242AC120003", geometry.distal_markers, distal_pose, lost),
+    for name, identifier, offsets, moved, pose, gone in (
+        (names[0], "5C0E1B7A90D311EDA1EB0242AC120002", geometry.proximal_markers, skin[0], proximal_pose, None),
+        (names[1], "5C0E1DB490D311EDA1EB0242AC120003", geometry.distal_markers, skin[1], distal_pose, lost),
     ):
-        body, seen = _observed(name, identifier, offsets - offsets.mean(axis=0), pose, gone, wanted, rng)
+        body, seen = _observed(name, identifier, offsets - offsets.mean(axis=0), moved, pose, gone, wanted, rng)
         bodies.append(body)
         markers[name] = seen
     recording = Recording.from_bodies(bodies, rate_hz=wanted.rate_hz)
     truth = {
         "settings": {name: getattr(wanted, name) for name in Simulation.__dataclass_fields__},
-        "axis": {
-            frame: _line_truth(transform_lines(change, line))
-            for frame, change in (("distal", conjugate(start)), ("proximal", IDENTITY), ("lab", proximal_pose[0]))
-        },
+        **course.truth,
         "inversion_frames": inversions,
         "lost_frames": np.flatnonzero(lost).tolist(),
-        "theta_deg": np.degrees(angle).tolist(),
-        "slide_mm": (1000.0 * slide).tolist(),
+        "theta_deg": np.degrees(course.theta).tolist(),
     }
+    if np.isfinite(course.slide).all():
+        truth["slide_mm"] = (1000.0 * course.slide).tolist()
+    if wanted.skin_mm > 0.0:
+        truth["skin"] = {name: moved.truth for name, moved in zip(names, skin, strict=True)}
     return SimulatedTrial(recording=recording, markers=markers, truth=truth)
 
 
-def _progress(wanted: Simulation) -> tuple[Float, list[int]]:
-    """Return the share of the full motion in every frame, 0 to 1 and back, and the frames of its tops."""
-    law = cycloidal if wanted.law == "cycloidal" else _minimum_jerk
+def _course(
+    wanted: Simulation, geometry: Geometry, angle: Float, progress: Float, returns: Bool, lab: Float
+) -> JointCourse:
+    tilt = np.radians(wanted.wander_deg) * progress
+    if wanted.joint_type == "two-axes":
+        pronation = np.radians(_PRONATION_DEG if wanted.pronation_deg is None else wanted.pronation_deg)
+        return two_axes(geometry, angle, pronation * odd_course(progress, returns), tilt, lab)
+    if wanted.joint_type == "ball":
+        return ball(geometry, angle, progress, returns)
+    # In a mirror a right-handed screw is a left-handed one.
+    slide = -wanted.slide if wanted.side == "left" else wanted.slide
+    return one_axis(geometry, angle, slide * progress, tilt, lab)
+
+
+def _progress(wanted: Simulation) -> tuple[Float, Bool, list[int]]:
+    """Return the share of the full motion in every frame, 0 to 1 and back, where it returns, and its tops' frames."""
+    law = LAWS["polynomial-345" if wanted.law == "minimum-jerk" else wanted.law]
     frame = np.arange(wanted.frames)
     flexion = law(frame[: wanted.inversion] / wanted.inversion)
     extension = law((wanted.frames - 1 - frame[wanted.inversion :]) / (wanted.frames - 1 - wanted.inversion))
@@ -256,53 +289,33 @@ def _progress(wanted: Simulation) -> tuple[Float, list[int]]:
     movement = np.concatenate([repetition, *([repetition[1:]] * (wanted.repetitions - 1))])
     first = before.size + wanted.inversion + hold // 2
     tops = [first + k * (wanted.frames - 1 + hold) for k in range(wanted.repetitions)]
-    return np.concatenate([before, movement, after]), tops
+    progress = np.concatenate([before, movement, after])
+    within = (np.arange(progress.size) - before.size) % (wanted.frames - 1 + hold)
+    return progress, within >= wanted.inversion, tops
 
 
-class _Geometry(NamedTuple):
-    """The joint's line in the proximal body, the distal body's pose there at angle 0, and the clusters; meters."""
+class _Skin(NamedTuple):
+    """How far markers are from their places on the bone, (N, M, 3) or none, and by what."""
 
-    point: Float
-    direction: Float
-    across: Float
-    distal_center: Float
-    distal_turn: Float
-    proximal_markers: Float
-    distal_markers: Float
+    shift: Float | None
+    truth: list[dict[str, Any]]
 
 
-def _geometry(wanted: Simulation) -> _Geometry:
-    size = _SIZES[wanted.joint]
-    cluster = min(size, 1.0)
-    mirror, axial = _mirrors(wanted)
-    return _Geometry(
-        point=size * mirror * _JOINT_POINT,
-        direction=axial * _JOINT_DIRECTION,
-        across=axial * _DRIFT_ACROSS,
-        distal_center=size * mirror * _FOREARM_CENTER,
-        distal_turn=axial * _FOREARM_TURN,
-        proximal_markers=cluster * mirror * _ARM_MARKERS,
-        distal_markers=cluster * mirror * _FOREARM_MARKERS,
-    )
-
-
-def _mirrors(wanted: Simulation) -> tuple[Float, Float]:
-    """Factors (3,) of points and of axes of rotation: these are axial vectors and turn round in a mirror as well."""
-    if wanted.side == "left":
-        return _ACROSS_MIRRORED, -_ACROSS_MIRRORED
-    return np.ones(3), np.ones(3)
-
-
-def _drifting(line: Float, geometry: _Geometry, tilt: Float) -> Float:
-    """Lines (N, 6) through a line's point, tilted by angles (N,) in a plane through it."""
-    direction, across = line[:3], geometry.across - (geometry.across @ line[:3]) * line[:3]
-    across = across / np.sqrt(across @ across)
-    tilted = np.cos(tilt)[:, None] * direction + np.sin(tilt)[:, None] * across
-    return np.concatenate([tilted, np.cross(geometry.point, tilted)], axis=1)
-
-
-def _minimum_jerk(tau: Float) -> Float:
-    return tau**3 * (10.0 - 15.0 * tau + 6.0 * tau**2)
+def _skin(wanted: Simulation, progress: Float, geometry: Geometry) -> tuple[_Skin, _Skin]:
+    """Give each marker a direction and a course of its own; a left joint's are those of the right one in a mirror."""
+    if wanted.skin_mm <= 0.0:
+        return _Skin(None, []), _Skin(None, [])
+    rng = np.random.default_rng([wanted.seed, len(_SKIN_COURSES)])  # beside that of the noise, which stays the same
+    found = []
+    for markers in (geometry.proximal_markers, geometry.distal_markers):
+        direction = rng.normal(size=markers.shape)
+        direction = mirrors(wanted.side)[0] * direction / np.sqrt(np.sum(direction**2, axis=1))[:, None]
+        names = rng.choice(list(_SKIN_COURSES), size=len(markers)).tolist()
+        courses = np.stack([_SKIN_COURSES[name](progress) for name in names], axis=1)
+        shift = 1e-3 * wanted.skin_mm * courses[:, :, None] * direction
+        truth = [{"direction": h.tolist(), "course": name} for h, name in zip(direction, names, strict=True)]
+        found.append(_Skin(shift, truth))
+    return found[0], found[1]
 
 
 def _proximal_poses(time_s: Float, wanted: Simulation) -> Float:
@@ -312,14 +325,14 @@ def _proximal_poses(time_s: Float, wanted: Simulation) -> Float:
         phase = 2.0 * np.pi * time_s[:, None] * np.array([0.31, 0.23, 0.17])
         sway = np.array([0.10, 0.16, 0.07]) * np.sin(phase)
         shift = np.array([0.03, 0.02, 0.04]) * np.sin(1.3 * phase)
-    mirror, axial = _mirrors(wanted)
+    mirror, axial = mirrors(wanted.side)
     turn = quaternion.multiply(
         quaternion.quat_from_rotation_vector(axial * sway), quaternion.quat_from_rotation_vector(axial * _ARM_TURN)
     )
     return dual_quat_from_pose(turn, mirror * (_ARM_PLACE + shift))
 
 
-def _lost_frames(wanted: Simulation, frames: int, rng: np.random.Generator) -> NDArray[np.bool_]:
+def _lost_frames(wanted: Simulation, frames: int, rng: np.random.Generator) -> Bool:
     lost = np.zeros(frames, dtype=np.bool_)
     if wanted.gaps:
         # One gap somewhere in each of equal stretches, never at the trial's first or last frame.
@@ -334,14 +347,16 @@ def _observed(
     name: str,
     identifier: str,
     offsets: Float,
+    moved: _Skin,
     pose: Float,
-    lost: NDArray[np.bool_] | None,
+    lost: Bool | None,
     wanted: Simulation,
     rng: np.random.Generator,
 ) -> tuple[RigidBody, Float]:
-    seen = transform_points(pose[:, None, :], offsets)
+    seen = transform_points(pose[:, None, :], offsets if moved.shift is None else offsets + moved.shift)
     if wanted.marker_noise_mm > 0.0:
         seen = seen + rng.normal(scale=1e-3 * wanted.marker_noise_mm, size=seen.shape)
+    if wanted.marker_noise_mm > 0.0 or moved.shift is not None:
         pose = pose_from_points(offsets, seen)
     if wanted.sign_flips:
         pose = pose * np.where(rng.random(len(pose)) < 0.5, -1.0, 1.0)[:, None]
@@ -352,7 +367,3 @@ def _observed(
         seen = np.where(lost[:, None, None], np.nan, seen)
     body = RigidBody(name=name, identifier=identifier, dual_quat_lab_body=pose, loss=loss, marker_offsets=offsets)
     return body, seen
-
-
-def _line_truth(line: Float) -> dict[str, list[float]]:
-    return {"direction": line[:3].tolist(), "point_mm": (1000.0 * point_nearest_origin(line)).tolist()}

@@ -7,7 +7,8 @@ from typing import Annotated, Literal
 
 import typer
 
-from elbowscrew.choices import FileUnit
+from elbowscrew.choices import FileUnit, SimulatedJointType, SimulatedLaw
+from elbowscrew.joints import JointName
 
 _MOTION, _RECORDING, _OUTPUT = "Motion", "Recording", "Output"
 
@@ -15,7 +16,7 @@ _MOTION, _RECORDING, _OUTPUT = "Motion", "Recording", "Output"
 def simulate(
     output: Annotated[Path, typer.Argument(metavar="OUT.csv", help="File to write.", show_default=False)],
     joint: Annotated[
-        Literal["elbow", "wrist", "knee", "ankle", "hip", "shoulder", "finger"],
+        JointName,
         typer.Option(rich_help_panel=_MOTION, help="Names the bodies, and sets how long they are."),
     ] = "elbow",
     side: Annotated[
@@ -28,12 +29,22 @@ def simulate(
     inversion: Annotated[
         int, typer.Option(metavar="FRAME", rich_help_panel=_MOTION, help="Frame of the largest angle.")
     ] = 211,
+    joint_type: Annotated[
+        SimulatedJointType, typer.Option(rich_help_panel=_MOTION, help="How the segments move against each other.")
+    ] = "screw-hinge",
     slide: Annotated[
-        float, typer.Option(metavar="MM", rich_help_panel=_MOTION, help="Slide along the axis at the top.")
-    ] = 3.0,
-    law: Annotated[
-        Literal["minimum-jerk", "cycloidal"], typer.Option(rich_help_panel=_MOTION, help="Law of motion.")
-    ] = "minimum-jerk",
+        float | None,
+        typer.Option(
+            metavar="MM", rich_help_panel=_MOTION, help="Slide of a screw-hinge at the top; 3.", show_default=False
+        ),
+    ] = None,
+    pronation: Annotated[
+        float | None,
+        typer.Option(
+            metavar="DEG", rich_help_panel=_MOTION, help="Range about the second of two axes; 60.", show_default=False
+        ),
+    ] = None,
+    law: Annotated[SimulatedLaw, typer.Option(rich_help_panel=_MOTION, help="Law of motion.")] = "minimum-jerk",
     proximal: Annotated[
         Literal["moving", "still"],
         typer.Option("--proximal", "--arm", rich_help_panel=_MOTION, help="Proximal body."),
@@ -46,13 +57,23 @@ def simulate(
     rest_after: Annotated[
         float, typer.Option(metavar="SECONDS", rich_help_panel=_MOTION, help="Rest after the movement.")
     ] = 0.0,
-    axis_drift: Annotated[
-        float, typer.Option(metavar="DEG", rich_help_panel=_MOTION, help="Tilt of the axis at the top.")
+    wander: Annotated[
+        float,
+        typer.Option(
+            "--wander",
+            "--axis-drift",
+            metavar="DEG",
+            rich_help_panel=_MOTION,
+            help="Tilt of the (first) axis at the top.",
+        ),
     ] = 0.0,
     tremor: Annotated[
         float, typer.Option(metavar="DEG", rich_help_panel=_MOTION, help="Amplitude of a tremor of the angle.")
     ] = 0.0,
     tremor_hz: Annotated[float, typer.Option(metavar="HZ", rich_help_panel=_MOTION, help="Its frequency.")] = 6.0,
+    skin: Annotated[
+        float, typer.Option(metavar="MM", rich_help_panel=_RECORDING, help="How far markers move with flexion.")
+    ] = 0.0,
     marker_noise: Annotated[
         float, typer.Option(metavar="MM", rich_help_panel=_RECORDING, help="SD of each marker coordinate.")
     ] = 0.2,
@@ -88,7 +109,9 @@ def simulate(
         rate_hz=rate,
         top_deg=top,
         inversion=inversion,
+        joint_type=joint_type,
         slide_mm=slide,
+        pronation_deg=pronation,
         law=law,
         marker_noise_mm=marker_noise,
         gaps=gaps,
@@ -99,7 +122,8 @@ def simulate(
         rest_before_s=rest_before,
         hold_s=hold,
         rest_after_s=rest_after,
-        axis_drift_deg=axis_drift,
+        skin_mm=skin,
+        wander_deg=wander,
         tremor_deg=tremor,
         tremor_hz=tremor_hz,
         seed=seed,
