@@ -47,6 +47,7 @@ NOT_IN_TABLES_OF_JOINT = {
         "tests/motion/screws/test_uncertainty.py::test_each_source_finds_the_noise_there_is"
     ),
     r"unexplained_share": "tests/motion/joint/test_joint_axis.py",
+    r"wander(\..*)?|mean_axis(\..*)?": "tests/motion/joint/test_told_wander.py",
 }
 # Where the file's markers are read otherwise, or a fit weighs translations, too, by which it stands on.
 CLOSE = {
