@@ -169,7 +169,7 @@ def test_the_preferred_model(told: Told) -> None:
         assert not told.joint["single_axis"]
         return
     assert told.joint["preferred"] == (
-        "screw_hinge" if fit["pitch_mm_per_rad"] > 3.5 * fit["pitch_sd_mm_per_rad"] else "hinge"
+        "screw_hinge" if abs(fit["pitch_mm_per_rad"]) > 3.5 * fit["pitch_sd_mm_per_rad"] else "hinge"
     )
     assert told.joint["joint_type"]["type"] == told.joint["preferred"]
 
