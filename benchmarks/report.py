@@ -62,7 +62,7 @@ def main() -> None:
         size, median = trial.stat().st_size, statistics.median(times)
         print(f"page of a trial   {size:9d} bytes, {median:.1f} ms, first {first:.0f} ms")
         study = read_study(folder)
-        trials = tuple(replace(study.trials[k % 10], place=f"condition/trial {k}") for k in range(TRIALS))
+        trials = tuple(replace(study.trials[k % 10], folder=f"condition/trial {k}") for k in range(TRIALS))
         page = folder / "index.html"
         made = milliseconds(lambda: page.write_text(study_page(replace(study, trials=trials)), encoding="utf-8"))
         print(f"page of {TRIALS} trials {page.stat().st_size:9d} bytes, {made:.0f} ms beside reading them")

@@ -23,10 +23,12 @@ def test_every_printed_number_is_met() -> None:
 
 
 def test_a_number_that_differs_is_noticed() -> None:
-    wrong = paper.Comparison(place="here", quantity="d", printed="2.036640", computed=2.036641)
+    wrong = paper.PrintedValue(place="here", quantity="d", printed="2.036640", computed=2.036641)
     assert not wrong.agrees
-    assert not paper.Comparison(place="x", quantity="d", printed="1.999999", computed=2.1, note=paper.EARLY_STOP).agrees
-    assert paper.Comparison(place="x", quantity="d", printed="0", computed=-1e-17).rounded == "0"
+    assert not paper.PrintedValue(
+        place="x", quantity="d", printed="1.999999", computed=2.1, note=paper.EARLY_STOP
+    ).agrees
+    assert paper.PrintedValue(place="x", quantity="d", printed="0", computed=-1e-17).rounded == "0"
 
 
 def test_the_command_says_so(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
@@ -34,7 +36,7 @@ def test_the_command_says_so(capsys: pytest.CaptureFixture[str], monkeypatch: py
     assert "88 numbers agree, 0 differ" in capsys.readouterr().out
     assert main(["paper", "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["differ"] == 0
-    wrong = paper.Comparison(place="here", quantity="d", printed="1", computed=2.0)
+    wrong = paper.PrintedValue(place="here", quantity="d", printed="1", computed=2.0)
     monkeypatch.setattr(paper, "comparisons", lambda: (wrong,))
     assert main(["paper"]) == 1
     assert "DIFFERS" in capsys.readouterr().out

@@ -45,6 +45,14 @@ ExportName = Literal["parquet", "mat", "sto"]
 CLOSED_LAWS: Final[tuple[ClosedLaw, ...]] = get_args(ClosedLaw)
 LAW_NAMES: Final[tuple[LawName, ...]] = get_args(LawName)
 METHOD_NAMES: Final[tuple[MethodName, ...]] = get_args(MethodName)
+METHOD_LABELS: Final[dict[str, str]] = {
+    "dlb": "DLB",
+    "sclerp": "ScLERP",
+    "sdlb": "sDLB",
+    "dib": "DIB",
+    "catmull-rom": "Catmull-Rom",
+}
+"""Methods as figures and charts call them."""
 KNOT_NAMES: Final[tuple[KnotName, ...]] = get_args(KnotName)
 BLEND_NAMES: Final[tuple[BlendName, ...]] = get_args(BlendName)
 KEYFRAME_SOURCES: Final[tuple[KeyframeSource, ...]] = get_args(KeyframeSource)

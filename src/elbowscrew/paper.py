@@ -28,7 +28,7 @@ _EARLY_STOP_TOLERANCE: Final = 2.0000001e-6
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Comparison:
+class PrintedValue:
     """One printed number and the computed one.
 
     Attributes
@@ -62,12 +62,12 @@ class Comparison:
         return bool(self.note) and abs(self.computed - float(self.printed)) <= _EARLY_STOP_TOLERANCE
 
 
-def comparisons() -> tuple[Comparison, ...]:
+def comparisons() -> tuple[PrintedValue, ...]:
     """Compute both numerical examples, the dual matrix of section 4 and all of Table 1."""
     return (*_example_of_section_2(), *_example_of_section_4(), *_table_1())
 
 
-def _example_of_section_2() -> Iterator[Comparison]:
+def _example_of_section_2() -> Iterator[PrintedValue]:
     place = "section 2, example"
     quarter = [np.cos(np.pi / 4), 0.0, 0.0, np.sin(np.pi / 4)]
     # P 9 is printed with norm 2, and with it the product of P 11.
@@ -79,18 +79,20 @@ def _example_of_section_2() -> Iterator[Comparison]:
         ("q_z", "1.4142", product[3]),
         ("q_z, dual part", "0.7071", product[7]),
     ):
-        yield Comparison(place=place, quantity=name, printed=printed, computed=float(value))
+        yield PrintedValue(place=place, quantity=name, printed=printed, computed=float(value))
     screw = screw_from_dual_quat(dq.normalize(product))
-    yield Comparison(place=place, quantity="angle (rad)", printed="1.570796", computed=float(screw.angle))
-    yield Comparison(place=place, quantity="slide", printed="1", computed=float(screw.slide))
+    yield PrintedValue(place=place, quantity="angle (rad)", printed="1.570796", computed=float(screw.angle))
+    yield PrintedValue(place=place, quantity="slide", printed="1", computed=float(screw.slide))
     for axis, direction, moment, point in zip("xyz", "001", "200", "020", strict=True):
         k = "xyz".index(axis)
-        yield Comparison(place=place, quantity=f"h_{axis}", printed=direction, computed=float(screw.direction[k]))
-        yield Comparison(place=place, quantity=f"h_{axis}, dual part", printed=moment, computed=float(screw.moment[k]))
-        yield Comparison(place=place, quantity=f"p_{axis}", printed=point, computed=float(screw.point[k]))
+        yield PrintedValue(place=place, quantity=f"h_{axis}", printed=direction, computed=float(screw.direction[k]))
+        yield PrintedValue(
+            place=place, quantity=f"h_{axis}, dual part", printed=moment, computed=float(screw.moment[k])
+        )
+        yield PrintedValue(place=place, quantity=f"p_{axis}", printed=point, computed=float(screw.point[k]))
 
 
-def _example_of_section_4() -> Iterator[Comparison]:
+def _example_of_section_4() -> Iterator[PrintedValue]:
     place = "section 4, example"
     before = np.array([[1, 0, 0], [1, 2, 0], [1, 2, 1], [0, 2, 1]], dtype=np.float64)
     after = np.array([[2, 3, 1], [0, 3, 1], [0, 3, 2], [0, 2, 2]], dtype=np.float64)
@@ -104,13 +106,13 @@ def _example_of_section_4() -> Iterator[Comparison]:
     for row, line in enumerate(printed):
         for column, (real, dual) in enumerate(line):
             name = f"A[{row + 1},{column + 1}]"
-            yield Comparison(place=place, quantity=name, printed=real, computed=float(matrix.real[row, column]))
-            yield Comparison(
+            yield PrintedValue(place=place, quantity=name, printed=real, computed=float(matrix.real[row, column]))
+            yield PrintedValue(
                 place=place, quantity=f"{name}, dual part", printed=dual, computed=float(matrix.dual[row, column])
             )
     screw = screw_from_dual_matrix(matrix)
-    yield Comparison(place=place, quantity="angle (rad)", printed="1.570796", computed=float(screw.angle))
-    yield Comparison(place=place, quantity="slide", printed="1", computed=float(screw.slide))
+    yield PrintedValue(place=place, quantity="angle (rad)", printed="1.570796", computed=float(screw.angle))
+    yield PrintedValue(place=place, quantity="slide", printed="1", computed=float(screw.slide))
 
 
 _TABLE_1: Final = {
@@ -127,7 +129,7 @@ _TABLE_1: Final = {
 }  # fmt: skip
 
 
-def _table_1() -> Iterator[Comparison]:
+def _table_1() -> Iterator[PrintedValue]:
     start = dual_quat_from_screw(0.0, 0.0, [0, 0, 1], [0, 0, 0])
     end = dual_quat_from_screw(np.pi / 4, 10.0, [0, 0, 1], [0, 0, 0])
     for method, rows in _TABLE_1.items():
@@ -136,10 +138,10 @@ def _table_1() -> Iterator[Comparison]:
             pose = _interpolated(method, start, end, float(t))
             place = f"table 1, {method}"
             screw, position = screw_from_dual_quat(pose), dq.pose_from_dual_quat(pose)[1]
-            yield Comparison(
+            yield PrintedValue(
                 place=place, quantity=f"d_z at t = {t}", printed=d_z, computed=float(position[2]), note=note
             )
-            yield Comparison(
+            yield PrintedValue(
                 place=place, quantity=f"θ at t = {t}", printed=theta, computed=float(screw.angle), note=note
             )
 

@@ -145,7 +145,7 @@ ANATOMY_COLUMNS: Final = (
     _column("frame", "frame", Quantity.INTEGER),
     _column("time_s", "time_s", Quantity.NUMBER),
     _column("flexion", "flexion", Quantity.ANGLE),
-    _column("carrying", "carrying", Quantity.ANGLE),
+    _column("carrying", "carrying_angle", Quantity.ANGLE),
     _column("pronation", "pronation", Quantity.ANGLE),
     _column("axis_angle", "axis_angle", Quantity.ANGLE),
     _column("axis_distance", "axis_distance", Quantity.LENGTH),

@@ -29,14 +29,14 @@ def test_derivatives_are_those_of_finite_differences(Q: Float, k: int) -> None:
     assert found.slide[k] == pytest.approx((ahead.slide - back.slide) / (2 * h), abs=1e-6 * scale)
     assert found.direction[:, k] == pytest.approx((ahead.direction - back.direction) / (2 * h), abs=1e-6 / size)
     moved = (ahead.point - back.point) / (2 * h)
-    assert found.place[:, k] == pytest.approx(moved - (moved @ n) * n, abs=1e-5 * scale / size**2)
+    assert found.point[:, k] == pytest.approx(moved - (moved @ n) * n, abs=1e-5 * scale / size**2)
 
 
 @pytest.mark.parametrize("shape", SHAPES)
 def test_shapes_are_kept(shape: tuple[int, ...]) -> None:
     found = screw_sensitivity(random_poses(shape))
     assert (found.angle.shape, found.slide.shape) == ((*shape, 6), (*shape, 6))
-    assert (found.direction.shape, found.place.shape) == ((*shape, 3, 6), (*shape, 3, 6))
+    assert (found.direction.shape, found.point.shape) == ((*shape, 3, 6), (*shape, 3, 6))
 
 
 def test_a_translation_has_no_axis_to_be_sensitive() -> None:

@@ -57,7 +57,7 @@ def test_hostile_names_and_reasons_are_escaped(study: Path) -> None:
 def test_what_the_manifest_says_is_carried(study: Path) -> None:
     found = read_study(study)
     assert found.factors == ("subject", "condition")
-    told = {trial.place: trial.factors["condition"] for trial in found.trials}
+    told = {trial.folder: trial.factors["condition"] for trial in found.trials}
     assert told["trial 4"] == "slow"
     assert told["trial 5"] == "fast"
     assert "Distributions by condition" in text_of(study)
@@ -140,7 +140,7 @@ def test_the_same_results_give_the_same_bytes(study: Path) -> None:
 def test_a_thousand_trials_make_a_page_of_less_than_ten_megabytes(study: Path) -> None:
     found = read_study(study)
     many = [
-        replace(found.trials[k % 18], place=f"folder {k}/a trial with a rather long name {k}", page=True)
+        replace(found.trials[k % 18], folder=f"folder {k}/a trial with a rather long name {k}", page=True)
         for k in range(1000)
     ]
     page = study_page(replace(found, trials=tuple(many)))

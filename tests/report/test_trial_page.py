@@ -24,13 +24,14 @@ from elbowscrew import Settings, analyze, save_analysis, simulate_trial
 from elbowscrew.errors import OutputError, ResultError
 from elbowscrew.geometry.dual_quaternion import dual_quat_from_pose, transform_points
 from elbowscrew.report import write_trial_page
-from elbowscrew.report.charts import min_max_rows, path_of, ticks_between
+from elbowscrew.report.charts import path_of, ticks_between
 from elbowscrew.report.methods import methods_of
 from elbowscrew.report.pages import json_for_script, number
 from elbowscrew.report.scene import MOST_FRAMES, scene_of
 from elbowscrew.report.trial_page import trial_page
 from elbowscrew.results.read_back import read_finished
 from elbowscrew.results.staging import RESULT_FILES
+from elbowscrew.view.decimation import drawn_rows
 from elbowscrew.view.scene import bodies_in_space
 
 
@@ -201,7 +202,7 @@ def test_long_trials_are_thinned_in_the_view_and_in_the_charts(tmp_path: Path) -
 @given(st.lists(st.one_of(st.floats(-100, 100), st.just(float("nan"))), min_size=1, max_size=400), st.integers(2, 40))
 def test_thinning_keeps_ends_extremes_and_gaps(values: list[float], buckets: int) -> None:
     y = np.array(values)
-    rows = min_max_rows(y, buckets)
+    rows = drawn_rows(y, parts=buckets, keep_gaps=True)
     assert rows.size <= max(3 * buckets + 2, 2 * buckets)
     assert (np.diff(rows) > 0).all()
     assert {0, y.size - 1} <= set(rows.tolist())

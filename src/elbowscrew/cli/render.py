@@ -15,7 +15,7 @@ from rich.text import Text
 from elbowscrew.cli.text import NobodyReads, one_line, printable
 
 if TYPE_CHECKING:
-    from elbowscrew.paper import Comparison
+    from elbowscrew.paper import PrintedValue
     from elbowscrew.study.study import StudyResult
     from elbowscrew.study.trials import Skipped
 
@@ -193,7 +193,7 @@ def _spread(spread: Mapping[str, float] | None) -> str:
     return "–" if spread is None else f"{spread['median']:.2f}, max {spread['largest']:.2f}"
 
 
-def paper_table(found: Iterable[Comparison]) -> None:
+def paper_table(found: Iterable[PrintedValue]) -> None:
     """Write printed and computed numbers side by side."""
     table = Table(box=None, pad_edge=False, header_style="bold")
     for column, justify in (

@@ -112,8 +112,8 @@ def position(Q: Rows) -> list[Float]:
 def rotated(quat: Rows, vector: Rows) -> list[Float]:
     """Rotate a vector: ``v + w t + u x t`` with ``t = 2 u x v``."""
     twice = [row + row for row in cross(quat[1:], vector)]
-    turned = cross(quat[1:], twice)
-    return [v + quat[0] * t + u for v, t, u in zip(vector, twice, turned, strict=True)]
+    rotated = cross(quat[1:], twice)
+    return [v + quat[0] * t + u for v, t, u in zip(vector, twice, rotated, strict=True)]
 
 
 def rotation_matrix(quat: Rows) -> list[Float]:

@@ -17,6 +17,10 @@ _SECTORS: Final = 720
 _BISECTIONS: Final = 60
 
 
+NORMAL_95: Final = 1.959964
+"""Standard deviations of a normal distribution within which 95 % lie."""
+
+
 class ScrewSensitivity(NamedTuple):
     """Derivatives of screw parameters by a small twist ``rho + eps tau`` applied after the displacement.
 
@@ -26,14 +30,14 @@ class ScrewSensitivity(NamedTuple):
         Of the rotation (rad) and of the slide (length).
     direction : ndarray, shape (..., 3, 6)
         Of the axis' unit vector.
-    place : ndarray, shape (..., 3, 6)
-        Of the axis' place: how far it moves across itself at the point nearest the origin.
+    point : ndarray, shape (..., 3, 6)
+        Of the axis' position: how far it moves across itself at the point nearest the origin.
     """
 
     angle: Float
     slide: Float
     direction: Float
-    place: Float
+    point: Float
 
 
 def screw_sensitivity(dual_quat: ArrayLike) -> ScrewSensitivity:
@@ -79,8 +83,8 @@ def screw_sensitivity(dual_quat: ArrayLike) -> ScrewSensitivity:
     direction = 0.5 * (cotangent * across - cross_n @ rho)
     moment = 0.5 * (cotangent * across_dual + slope * across - cross_m @ rho - cross_n @ tau)
     point = cross_n @ moment - cross_m @ direction
-    place = point - n[..., :, None] * (n[..., None, :] @ point)
-    return ScrewSensitivity(angle, slide, direction, place)
+    point = point - n[..., :, None] * (n[..., None, :] @ point)
+    return ScrewSensitivity(angle, slide, direction, point)
 
 
 def confidence_radius(covariance: ArrayLike) -> Float:
@@ -89,7 +93,7 @@ def confidence_radius(covariance: ArrayLike) -> Float:
     Parameters
     ----------
     covariance : array_like, shape (..., k, k)
-        Of rank 2 at most: of a unit vector's error, or of a place across a line.
+        Of rank 2 at most: of a unit vector's error, or of a position across a line.
 
     Returns
     -------

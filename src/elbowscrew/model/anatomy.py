@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from elbowscrew import tables
 from elbowscrew.geometry.arrays import Float
-from elbowscrew.model.brief import Brief
+from elbowscrew.model.array_record import ArrayRecord
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -31,7 +31,7 @@ LANDMARKS: Final[Mapping[str, str]] = {
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class Landmark(Brief):
+class Landmark(ArrayRecord):
     """Where one landmark is: markers of the recording, or coordinates; one of the two.
 
     Attributes
@@ -56,7 +56,7 @@ class Landmark(Brief):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class Landmarks(Brief):
+class Landmarks(ArrayRecord):
     """The landmarks that the frames of humerus and forearm are built from.
 
     Attributes
@@ -92,14 +92,14 @@ class Landmarks(Brief):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class AnatomicalMotion(Brief):
+class AnatomicalMotion(ArrayRecord):
     """The elbow's angles by the ISB's sequence, and its screw axes beside the epicondyle line.
 
     Attributes
     ----------
     side : {"right", "left"}
     frame, time_s : ndarray, shape (N,)
-    flexion, carrying, pronation : ndarray, shape (N,)
+    flexion, carrying_angle, pronation : ndarray, shape (N,)
         Angles about the humerus' Z, the floating X and the forearm's Y, radians; of the same sense on both sides;
         flexion and pronation continuous in time, and NaN where the carrying angle is within 5 deg of a right angle.
     axis_angle, axis_distance : ndarray, shape (N,)
@@ -113,7 +113,7 @@ class AnatomicalMotion(Brief):
         In the arm's frame, meters.
     dual_quat_proximal_humerus, dual_quat_distal_isb : ndarray, shape (8,)
         The ISB's frames of humerus and forearm, as poses in the frames of the two bodies.
-    places : mapping of str to ndarray, shape (3,)
+    points : mapping of str to ndarray, shape (3,)
         EL, EM and GH in the arm's frame, US and RS in the forearm's, meters.
     landmarks : Landmarks
         What was asked for.
@@ -127,7 +127,7 @@ class AnatomicalMotion(Brief):
     frame: NDArray[np.int64]
     time_s: Float
     flexion: Float
-    carrying: Float
+    carrying_angle: Float
     pronation: Float
     axis_angle: Float
     axis_distance: Float
@@ -137,7 +137,7 @@ class AnatomicalMotion(Brief):
     epicondyle_midpoint: Float
     dual_quat_proximal_humerus: Float
     dual_quat_distal_isb: Float
-    places: Mapping[str, Float]
+    points: Mapping[str, Float]
     landmarks: Landmarks
 
     def to_frame(self, angle_unit: tables.AngleUnit = "deg", length_unit: tables.LengthUnit = "mm") -> pd.DataFrame:

@@ -10,14 +10,14 @@ from numpy.typing import NDArray
 
 from elbowscrew import tables
 from elbowscrew.geometry.arrays import Float
-from elbowscrew.model.brief import Brief
+from elbowscrew.model.array_record import ArrayRecord
 
 if TYPE_CHECKING:
     import pandas as pd
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class InstantaneousMotion(Brief):
+class InstantaneousMotion(ArrayRecord):
     """Instantaneous helical axis of every frame, in the frame the screws are expressed in.
 
     Attributes
@@ -47,7 +47,7 @@ class InstantaneousMotion(Brief):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class HelicalSteps(Brief):
+class HelicalSteps(ArrayRecord):
     """Finite helical axes between successive poses, in the frame the screws are expressed in.
 
     Attributes

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from elbowscrew import tables
 from elbowscrew.geometry.arrays import Float, Index
-from elbowscrew.model.brief import Brief
+from elbowscrew.model.array_record import ArrayRecord
 from elbowscrew.model.modeled import ModelPhases, PhaseLaw, Selection
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ Label = NDArray[np.str_]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class ComparedModels(Brief):
+class ComparedModels(ArrayRecord):
     """Models and their errors, the best first; those that could not be made last, with the reason.
 
     Errors are those of the model against the measured motion, unfiltered and at the recording's own rate, over the
@@ -86,7 +86,7 @@ class ComparedModels(Brief):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class Comparison(Brief):
+class Comparison(ArrayRecord):
     """Everything `elbowscrew.compare` found of one recording.
 
     Attributes
@@ -117,7 +117,7 @@ class Comparison(Brief):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class ComparedOverTrials(Brief):
+class ComparedOverTrials(ArrayRecord):
     """The same models over several trials: mean and standard deviation of each error; the best mean first.
 
     Attributes
@@ -159,7 +159,7 @@ class ComparedOverTrials(Brief):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class TrialsComparison(Brief):
+class TrialsComparison(ArrayRecord):
     """Everything `elbowscrew.compare_trials` found.
 
     Attributes

@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowscrew.geometry.arrays import Float
-from elbowscrew.model.brief import Brief
+from elbowscrew.model.array_record import ArrayRecord
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class PoseNoise(Brief):
+class PoseNoise(ArrayRecord):
     """Noise of one body's poses, alike in all frames and independent from frame to frame.
 
     Attributes
@@ -33,7 +33,7 @@ class PoseNoise(Brief):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class LineEstimate(Brief):
+class LineEstimate(ArrayRecord):
     """One estimate of a joint's line, in the frame the screws are expressed in.
 
     Attributes
@@ -53,7 +53,7 @@ class LineEstimate(Brief):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class FittedJoint(Brief):
+class FittedJoint(ArrayRecord):
     """A hinge or screw-hinge fitted to all relative poses by maximum likelihood.
 
     Attributes
@@ -133,7 +133,7 @@ class AxisWander:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class MeanLine(Brief):
+class MeanLine(ArrayRecord):
     """Mean over the range of an axis that wanders.
 
     Attributes
@@ -154,7 +154,7 @@ class MeanLine(Brief):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class AxisPath(Brief):
+class AxisPath(ArrayRecord):
     """An axis that wanders, against the angle, in the frame the screws are expressed in.
 
     Attributes
@@ -178,7 +178,7 @@ class AxisPath(Brief):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class JointAxis(Brief):
+class JointAxis(ArrayRecord):
     """All estimates of the joint's axis, side by side.
 
     Attributes

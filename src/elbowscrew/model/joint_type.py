@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from elbowscrew.geometry.arrays import Float
-from elbowscrew.model.brief import Brief
+from elbowscrew.model.array_record import ArrayRecord
 
 JointTypeName = Literal["rigid", "hinge", "screw_hinge", "two_axes", "ball", "free", "undetermined"]
 
@@ -39,7 +39,7 @@ class TypeCandidate:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class JointLine(Brief):
+class JointLine(ArrayRecord):
     """One of two axes.
 
     Attributes
@@ -82,7 +82,7 @@ class Measure:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class TwoAxes(Brief):
+class TwoAxes(ArrayRecord):
     """Two axes, the first fixed in the proximal body, the second in the distal one.
 
     Attributes
@@ -110,7 +110,7 @@ class TwoAxes(Brief):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class BallJoint(Brief):
+class BallJoint(ArrayRecord):
     """A center.
 
     Attributes
@@ -130,7 +130,7 @@ class BallJoint(Brief):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class SecondRotation(Brief):
+class SecondRotation(ArrayRecord):
     """What rotates beside a hinge.
 
     Attributes
@@ -146,7 +146,7 @@ class SecondRotation(Brief):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class JointType(Brief):
+class JointType(ArrayRecord):
     """Which joint it is, and its numbers.
 
     Attributes

@@ -11,14 +11,14 @@ from numpy.typing import NDArray
 from elbowscrew import tables
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat
-from elbowscrew.model.brief import Brief
+from elbowscrew.model.array_record import ArrayRecord
 
 if TYPE_CHECKING:
     import pandas as pd
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class ModelPhases(Brief):
+class ModelPhases(ArrayRecord):
     """The phases of the model, from one turn of the motion to the next.
 
     Attributes
@@ -57,7 +57,7 @@ class PhaseLaw(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class Keyframes(Brief):
+class Keyframes(ArrayRecord):
     """The poses the model passes through.
 
     Attributes
@@ -82,7 +82,7 @@ class Keyframes(Brief):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class KeyframeSet(Brief):
+class KeyframeSet(ArrayRecord):
     """Keyframes with all that rebuilds the motion from them.
 
     Attributes
@@ -165,7 +165,7 @@ class KeyframeSet(Brief):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class RebuiltMotion(Brief):
+class RebuiltMotion(ArrayRecord):
     """The motion that keyframes tell of, frame by frame.
 
     Attributes
@@ -193,7 +193,7 @@ class RebuiltMotion(Brief):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class Selection(Brief):
+class Selection(ArrayRecord):
     """The smallest set of measured poses between which a model stays within a tolerance, and what others reach.
 
     Attributes
@@ -231,7 +231,7 @@ class Selection(Brief):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class InterpolatedMotion(Brief):
+class InterpolatedMotion(ArrayRecord):
     """The motion modeled from the keyframes, and its difference from the measured one; NaN outside the keyframes.
 
     Attributes
@@ -274,7 +274,7 @@ class InterpolatedMotion(Brief):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class BodyPoints(Brief):
+class BodyPoints(ArrayRecord):
     """The points of a body that a displacement is averaged over, in the body's frame.
 
     Attributes

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from elbowscrew.geometry import dual_quaternion, quaternion
 from elbowscrew.geometry.arrays import Bool, Float
-from elbowscrew.model.brief import Brief
+from elbowscrew.model.array_record import ArrayRecord
 
 # Exports print six decimals, so that a norm is off by 1e-6; a digit or a cell gone wrong shows above this.
 _NORM_TOLERANCE: Final = 5e-3
@@ -83,7 +83,7 @@ def invalid_marker_warning(owner: str, places: int) -> QualityWarning:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class RigidBody(Brief):
+class RigidBody(ArrayRecord):
     """The poses of one rigid body.
 
     Attributes
@@ -186,7 +186,7 @@ class RigidBody(Brief):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class Marker(Brief):
+class Marker(ArrayRecord):
     """One marker: its name and its positions in the laboratory, shape (N, 3), meters; NaN where not seen."""
 
     name: str
@@ -213,7 +213,7 @@ class Source:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class Recording(Brief):
+class Recording(ArrayRecord):
     """The rigid bodies of one take on one clock.
 
     Attributes

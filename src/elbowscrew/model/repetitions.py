@@ -10,14 +10,14 @@ from numpy.typing import NDArray
 
 from elbowscrew import tables
 from elbowscrew.geometry.arrays import Float
-from elbowscrew.model.brief import Brief
+from elbowscrew.model.array_record import ArrayRecord
 
 if TYPE_CHECKING:
     import pandas as pd
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class MovementPhases(Brief):
+class MovementPhases(ArrayRecord):
     """When the joint moves and when it rests.
 
     Attributes
@@ -33,7 +33,7 @@ class MovementPhases(Brief):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class Repetitions(Brief):
+class Repetitions(ArrayRecord):
     """Cycles out and back: a value for each of them.
 
     Attributes
@@ -86,7 +86,7 @@ class Repetitions(Brief):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class Repeatability(Brief):
+class Repeatability(ArrayRecord):
     """How alike the repetitions are; NaN where fewer than two do not say.
 
     Attributes
@@ -121,7 +121,7 @@ class Repeatability(Brief):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class CycleCurves(Brief):
+class CycleCurves(ArrayRecord):
     """Every cycle over its own time, one after the other.
 
     Attributes

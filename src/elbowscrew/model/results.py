@@ -12,8 +12,8 @@ from elbowscrew import tables
 from elbowscrew.geometry.arrays import Bool, Float
 from elbowscrew.joints import Joint
 from elbowscrew.model.anatomy import AnatomicalMotion
+from elbowscrew.model.array_record import ArrayRecord
 from elbowscrew.model.axes import HelicalSteps, InstantaneousMotion
-from elbowscrew.model.brief import Brief
 from elbowscrew.model.joint_axis import JointAxis
 from elbowscrew.model.joint_type import JointType
 from elbowscrew.model.modeled import BodyPoints, InterpolatedMotion, Keyframes, PhaseLaw, Selection
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class JointMotion(Brief):
+class JointMotion(ArrayRecord):
     """The forearm (distal) seen from the arm (proximal), frame by frame.
 
     Attributes
@@ -57,7 +57,7 @@ class JointMotion(Brief):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class ScrewMotion(Brief):
+class ScrewMotion(ArrayRecord):
     """The displacement since the reference (P 35) and its screw, frame by frame; NaN where not defined or not known.
 
     Attributes
@@ -115,7 +115,7 @@ class ScrewMotion(Brief):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class MeanAxis(Brief):
+class MeanAxis(ArrayRecord):
     """The mean of the axes and their spread about it, in the frame the screw is expressed in.
 
     Attributes
@@ -152,7 +152,7 @@ class MeanAxis(Brief):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class Analysis(Brief):
+class Analysis(ArrayRecord):
     """Everything `elbowscrew.analyze` found in one recording.
 
     Attributes

@@ -6,14 +6,14 @@ from dataclasses import dataclass
 from typing import Final
 
 from elbowscrew.geometry.arrays import Float
-from elbowscrew.model.brief import Brief
+from elbowscrew.model.array_record import ArrayRecord
 
 # Between these, another reference pose may decide otherwise.
 _DOUBTFUL_RATIO: Final = (0.15, 0.25)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class Sense(Brief):
+class Sense(ArrayRecord):
     """Sense of the rotation in every frame, and the axis that gives it.
 
     Attributes

@@ -38,14 +38,14 @@ def _shift(a: _rows.Rows, b: _rows.Rows) -> list[Float]:
 
 
 def direction_between(line_a: Float, line_b: Float) -> Float:
-    """Angle between the directions of two lines (..., 6), radians in [0, pi], shape (...)."""
+    """Angle between the directions of two lines (..., 6) or two vectors (..., 3), radians in [0, pi], shape (...)."""
     a, b = line_a[..., :3], line_b[..., :3]
     angle: Float = np.arctan2(length(np.cross(a, b)), np.sum(a * b, axis=-1))
     return angle
 
 
 def angle_of_lines(line_a: Float, line_b: Float) -> Float:
-    """Angle between two lines (..., 6), whichever way round they are, radians in [0, pi/2], shape (...)."""
+    """Angle between lines (..., 6) or vectors (..., 3), whichever way round, radians in [0, pi/2], shape (...)."""
     angle = direction_between(line_a, line_b)
     return np.minimum(angle, np.pi - angle)
 
@@ -55,9 +55,13 @@ def distance_across(line: Float, other: Float, near: Float) -> Float:
     direction = line[..., :3]
     foot = np.cross(direction, line[..., 3:])
     center = foot + np.sum((near - foot) * direction, axis=-1, keepdims=True) * direction
-    start = np.cross(other[..., :3], other[..., 3:]) - center
-    along = np.sum(other[..., :3] * direction, axis=-1)
-    return length(start - divide(np.sum(start * direction, axis=-1), along)[..., None] * other[..., :3])
+    return length(piercing(other[..., :3], np.cross(other[..., :3], other[..., 3:]), direction, center) - center)
+
+
+def piercing(direction: Float, point: Float, normal: Float, center: Float) -> Float:
+    """Where lines, by direction and point, pierce the plane across a normal through a center; all of shape (..., 3)."""
+    ahead = np.sum((center - point) * normal, axis=-1)
+    return point + divide(ahead, np.sum(direction * normal, axis=-1))[..., None] * direction
 
 
 def rms_displacement(pose_a: Float, pose_b: Float, points: BodyPoints) -> Float:

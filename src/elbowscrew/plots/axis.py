@@ -13,11 +13,11 @@ from mpl_toolkits.mplot3d.art3d import Line3DCollection
 from mpl_toolkits.mplot3d.axes3d import Axes3D
 from numpy.typing import NDArray
 
-from elbowscrew.geometry.arrays import Float
+from elbowscrew.geometry.arrays import Float, evenly_thinned
 from elbowscrew.plots import style
 from elbowscrew.tables import LengthUnit, angle_in, length_in
 from elbowscrew.view.decimation import drawn_rows
-from elbowscrew.view.scene import Bodies, axis_segments, bodies_in_space, directions_across, half_length, thinned
+from elbowscrew.view.scene import Bodies, axis_segments, bodies_in_space, directions_across, half_length
 from elbowscrew.view.shown import Shown
 
 _MOST_POINTS: Final = 4000
@@ -78,7 +78,7 @@ def plot_axis_directions(ax: Axes, analysis: Shown) -> Axes:
     """Draw how far each axis, a line without direction, is tilted from the mean axis, in two directions across it."""
     unit = analysis.settings.angle_unit
     mean = _mean_frame(analysis, bodies_in_space(analysis))
-    rows = thinned(np.flatnonzero(analysis.screw.axis_known), _MOST_POINTS)
+    rows = evenly_thinned(np.flatnonzero(analysis.screw.axis_known), _MOST_POINTS)
     direction = analysis.screw.axis_direction[rows]
     along = direction @ mean.direction
     way = np.where(along < 0.0, -1.0, 1.0)
@@ -93,7 +93,7 @@ def plot_axis_places(ax: Axes, analysis: Shown) -> Axes:
     """Draw where each axis pierces the plane across the mean axis nearest the forearm, relative to the mean axis."""
     unit = analysis.settings.length_unit
     mean = _mean_frame(analysis, bodies_in_space(analysis))
-    rows = thinned(np.flatnonzero(analysis.screw.axis_known), _MOST_POINTS)
+    rows = evenly_thinned(np.flatnonzero(analysis.screw.axis_known), _MOST_POINTS)
     direction, point = analysis.screw.axis_direction[rows], analysis.screw.axis_point[rows]
     along = direction @ mean.direction
     crossing = np.abs(along) > 0.1  # an axis nearly in the plane pierces it far away or nowhere

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter, StrMethodFormatter
 from numpy.typing import NDArray
 
+from elbowscrew.choices import METHOD_LABELS
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import ComparedModels, ComparedOverTrials, Comparison, Selection, TrialsComparison
 from elbowscrew.plots import style
@@ -81,7 +82,7 @@ def comparison_figure(found: Comparison | TrialsComparison) -> Figure:
     panels = figure.subplots(2, 2).ravel()
     plot_methods(panels[0], errors, unit)
     plot_laws(panels[1], errors, unit)
-    plot_treatments(panels[2], errors, unit)
+    plot_keyframe_sources(panels[2], errors, unit)
     trials = [found.selections] if isinstance(found, Comparison) else [one.selections for one in found.trials]
     plot_selections(panels[3], trials, unit)
     for ax, letter in zip(panels, "abcd", strict=True):
@@ -93,12 +94,12 @@ def plot_methods(ax: Axes, errors: _Errors, unit: LengthUnit) -> Axes:
     """Draw the error over the number of keyframes in each phase, for each method under its best law, piecewise."""
     raw = _as_recorded(errors)
     piecewise = raw.where(raw.blend == "piecewise")
-    for k, name in enumerate(style.METHOD_NAMES):
+    for k, name in enumerate(METHOD_LABELS):
         # What is the same model between two poses stands in the comparison once.
         same = [other for other, kind in _BETWEEN_TWO.items() if kind == _BETWEEN_TWO[name]]
         mine = (piecewise.method == name) | ((piecewise.keyframes == 2) & np.isin(piecewise.method, same))
         if name in piecewise.method:
-            _curve(ax, piecewise.where(mine), k, style.METHOD_NAMES[name])
+            _curve(ax, piecewise.where(mine), k, METHOD_LABELS[name])
     ax.set_title("each method, best law", loc="center", fontweight="normal")
     return _over_count(ax, unit)
 
@@ -136,9 +137,9 @@ def plot_laws(ax: Axes, errors: _Errors, unit: LengthUnit) -> Axes:
     return ax
 
 
-def plot_treatments(ax: Axes, errors: _Errors, unit: LengthUnit) -> Axes:
+def plot_keyframe_sources(ax: Axes, errors: _Errors, unit: LengthUnit) -> Axes:
     """Draw the error over the number of keyframes, taken from the recording as it is, filtered, and thinned."""
-    for k, name in enumerate(dict.fromkeys(sorted(errors.data.tolist(), key=_treatment_order))):
+    for k, name in enumerate(dict.fromkeys(sorted(errors.data.tolist(), key=_source_order))):
         _curve(ax, errors.where(errors.data == name), k, f"{name} frame" if name.startswith("every") else name)
     ax.set_title("keyframes from, best model", loc="center", fontweight="normal")
     return _over_count(ax, unit)
@@ -149,7 +150,7 @@ def plot_selections(ax: Axes, trials: Sequence[dict[str, Selection]], unit: Leng
     drawn: set[str] = set()
     for selections in trials:
         for k, (method, selection) in enumerate(selections.items()):
-            label = None if method in drawn else f"{style.METHOD_NAMES[method]}, constant speed between"
+            label = None if method in drawn else f"{METHOD_LABELS[method]}, constant speed between"
             drawn.add(method)
             look = {**series_look(k, line=True), "linewidth": 1.0 if len(trials) > 1 else 1.3, "markersize": 3.0}
             ax.plot(selection.count, length_in(selection.largest, unit), label=label, **look)
@@ -173,7 +174,7 @@ def plot_selections(ax: Axes, trials: Sequence[dict[str, Selection]], unit: Leng
     return ax
 
 
-def _treatment_order(name: str) -> tuple[int, int]:
+def _source_order(name: str) -> tuple[int, int]:
     if name.startswith("every"):
         return 2, int("".join(character for character in name if character.isdigit()))
     return (0 if name == "raw" else 1), 0

@@ -8,14 +8,15 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 
+from elbowscrew.choices import METHOD_LABELS
 from elbowscrew.geometry.arrays import Float
+from elbowscrew.geometry.sensitivity import NORMAL_95
 from elbowscrew.motion.movements.phases import runs_of
 from elbowscrew.plots import style
 from elbowscrew.tables import angle_in, length_in
 from elbowscrew.view.decimation import drawn_band, drawn_rows
 from elbowscrew.view.shown import Shown
 
-_NORMAL_95: Final = 1.959964
 _PIECE: Final = 500
 
 
@@ -23,7 +24,7 @@ def plot_theta(ax: Axes, analysis: Shown) -> Axes:
     """Draw measured and modeled angle over time with the keyframes (the paper's figures 7 and 8)."""
     unit = analysis.settings.angle_unit
     angle = angle_in(analysis.screw.angle, unit)
-    reach = angle_in(_NORMAL_95 * analysis.screw.angle_sd, unit)
+    reach = angle_in(NORMAL_95 * analysis.screw.angle_sd, unit)
     time_s = analysis.screw.time_s
     if np.isfinite(reach).any():
         label = f"95 % interval (±{np.nanmedian(reach):.2g} {unit})"
@@ -141,5 +142,5 @@ def over_time(ax: Axes, time_s: Float) -> Axes:
 
 
 def _model_label(analysis: Shown) -> str:
-    method = style.METHOD_NAMES.get(analysis.settings.model_method, analysis.settings.model_method)
+    method = METHOD_LABELS.get(analysis.settings.model_method, analysis.settings.model_method)
     return f"{method} through {analysis.keyframes.row.size} poses"

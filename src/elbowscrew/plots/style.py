@@ -36,14 +36,6 @@ BAND: Final[dict[str, Any]] = {"color": "#888888", "alpha": 0.5, "linewidth": 0.
 # Viridis without its light end, which vanishes on white paper.
 COLORMAP: Final = ListedColormap(mpl.colormaps["viridis"](np.linspace(0.0, 0.88, 256)), name="angle")
 
-METHOD_NAMES: Final = {
-    "dlb": "DLB",
-    "sclerp": "ScLERP",
-    "sdlb": "sDLB",
-    "dib": "DIB",
-    "catmull-rom": "Catmull-Rom",
-}
-
 _MM_PER_INCH: Final = 25.4
 _DOTS_PER_INCH: Final = 300
 _RC: Final[dict[Any, Any]] = {

@@ -15,8 +15,8 @@ import numpy as np
 from elbowscrew.errors import NoBodiesError, RecordingError
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import QualityWarning, Recording, RigidBody, Source, invalid_warning, out_of_reach
+from elbowscrew.reading.builders import MarkerBuilder
 from elbowscrew.reading.clock import is_rate
-from elbowscrew.reading.growing import GrowingMarker
 from elbowscrew.reading.options import ASK_FOR_MARKERS, ReadOptions, stated_unit
 from elbowscrew.reading.source import sha256_of
 from elbowscrew.tables import METERS
@@ -62,8 +62,8 @@ def read(path: Path, options: ReadOptions) -> Recording:
         msg = f"{path}: POINT:RATE is {rate:g}, no possible frame rate; export the take again"
         raise RecordingError(msg)
     bodies, warnings = _bodies(content, METERS[unit])
-    grown = _markers(content, METERS[unit], options)
-    markers = tuple(marker.finish() for marker in grown)
+    builders = _markers(content, METERS[unit], options)
+    markers = tuple(marker.finish() for marker in builders)
     if not bodies and not markers:
         names = ", ".join(content.labels("POINT")[:8]) or "none"
         msg = f"{path}: no rigid bodies (rotations) in the file (markers: {names}); {ASK_FOR_MARKERS}"
@@ -86,7 +86,7 @@ def read(path: Path, options: ReadOptions) -> Recording:
             length_unit=unit,
             rotation_type="matrix" if bodies else "",
         ),
-        warnings=(*warnings, *(warning for marker in grown for warning in marker.warnings())),
+        warnings=(*warnings, *(warning for marker in builders for warning in marker.warnings())),
     )
 
 
@@ -119,7 +119,7 @@ def _open(path: Path) -> _Content:
     raise RecordingError(msg)
 
 
-def _markers(content: _Content, scale: float, options: ReadOptions) -> list[GrowingMarker]:
+def _markers(content: _Content, scale: float, options: ReadOptions) -> list[MarkerBuilder]:
     found = []
     for k, name in enumerate(content.labels("POINT")[: content.points.shape[1]]):
         if options.wants(name):
@@ -127,7 +127,7 @@ def _markers(content: _Content, scale: float, options: ReadOptions) -> list[Grow
             if content.residuals.shape[-2:] == content.points.shape[-2:]:
                 # A negative residual says: not seen.
                 position = np.where((content.residuals[0, k] >= 0.0)[:, None], position, np.nan)
-            found.append(GrowingMarker(name))
+            found.append(MarkerBuilder(name))
             found[-1].append(position)
     return found
 

@@ -99,11 +99,11 @@ def _parse_block(
     rows = []
     marks: set[str] = set()
     for offset, line in enumerate(block):
-        place = f"{source.path}:{number + offset}"
+        location = f"{source.path}:{number + offset}"
         try:
             cells = source.cells(line) if quoted else line.split(delimiter)
         except csv.Error as error:
-            msg = f"{place}: not a line of a CSV file: {error}; export the take again"
+            msg = f"{location}: not a line of a CSV file: {error}; export the take again"
             raise RecordingError(msg) from error
         if not any(cell.strip() for cell in cells):
             continue
@@ -111,27 +111,27 @@ def _parse_block(
             cells.pop()
         if len(cells) < width or (exact and len(cells) != width):
             msg = (
-                f"{place}: expected {width} cells, found {len(cells)}: the line is cut or its cells are shifted; "
+                f"{location}: expected {width} cells, found {len(cells)}: the line is cut or its cells are shifted; "
                 "export the take again, or delete the line"
             )
             raise RecordingError(msg)
         width, exact = len(cells), True
-        rows.append(_numbers(source, cells, columns, place))
+        rows.append(_numbers(source, cells, columns, location))
         if source.decimal_comma:
             marks |= {mark for column in columns for mark in ",." if mark in cells[column]}
             if len(marks) > 1:
-                msg = f"{place}: commas and points in numbers: which is the decimal mark is not certain; save again"
+                msg = f"{location}: commas and points in numbers: which is the decimal mark is not certain; save again"
                 raise RecordingError(msg)
     return width, np.array(rows, dtype=np.float64).reshape(len(rows), len(columns))
 
 
-def _numbers(source: TextSource, cells: list[str], columns: Sequence[int], place: str) -> list[float]:
+def _numbers(source: TextSource, cells: list[str], columns: Sequence[int], location: str) -> list[float]:
     row = []
     for column in columns:
         text = cells[column].replace(",", ".") if source.decimal_comma else cells[column]
         try:
             row.append(parse_number(text))
         except ValueError as error:
-            msg = f"{place}: column {column + 1}: {error}; export the take again, or blank the cell"
+            msg = f"{location}: column {column + 1}: {error}; export the take again, or blank the cell"
             raise RecordingError(msg) from error
     return row

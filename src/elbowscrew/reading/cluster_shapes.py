@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import QualityWarning
-from elbowscrew.reading.growing import Growing
+from elbowscrew.reading.builders import ArrayBuilder
 
 _OFF_M: Final = 0.005
 _MOST_ROWS: Final = 65536
@@ -24,13 +24,13 @@ def signature(points: Float) -> Float:
     return np.sort(np.linalg.norm(points[..., first, :] - points[..., second, :], axis=-1), axis=-1)
 
 
-class OddShapes:
+class ClusterMismatch:
     """The frames in which a body's markers do not fit it, and the shape they have then."""
 
     def __init__(self, name: str, offsets: Float) -> None:
         self.name = name
         self.own = signature(offsets)
-        self._rows, self._shapes = Growing(dtype=np.int64), Growing((self.own.size,))
+        self._rows, self._shapes = ArrayBuilder(dtype=np.int64), ArrayBuilder((self.own.size,))
         self._seen_rows = self._kept = 0
 
     def append(self, seen: Float, residual: Float) -> None:
@@ -47,7 +47,7 @@ class OddShapes:
         return self._rows.finish(), self._shapes.finish()
 
 
-def swap_warnings(bodies: Sequence[OddShapes], frame: NDArray[np.int64]) -> list[QualityWarning]:
+def swap_warnings(bodies: Sequence[ClusterMismatch], frame: NDArray[np.int64]) -> list[QualityWarning]:
     """Tell of frames in which the markers of two bodies have each other's shape."""
     found = []
     odd = [body.finish() for body in bodies]

@@ -86,16 +86,16 @@ def _read_toml(file: Path) -> dict[str, Any]:
 def _landmark(name: str, value: object, faults: list[str]) -> Landmark | None:
     """Build one landmark; what is wrong with it is added to the faults."""
     before = len(faults)
-    place = f"landmarks.{name}"
+    location = f"landmarks.{name}"
     if isinstance(value, dict):
-        faults += [f"{place}: {fault}" for fault in _coordinate_faults(value)]
+        faults += [f"{location}: {fault}" for fault in _coordinate_faults(value)]
         if len(faults) > before:
             return None
         return Landmark(point=np.array(value["mm"], dtype=np.float64) / 1000.0, frame=_FRAMES[value["body"]])
     given = value if isinstance(value, list) else [value]
     markers = tuple(marker for marker in given if isinstance(marker, str) and marker.strip())
     if not markers or len(markers) < len(given):
-        faults.append(f"{place}: expected {_EXPECTED}, found {brief(value)}")
+        faults.append(f"{location}: expected {_EXPECTED}, found {brief(value)}")
         return None
     return Landmark(markers=markers)
 

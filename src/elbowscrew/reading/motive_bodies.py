@@ -12,9 +12,9 @@ from elbowscrew.geometry import quaternion
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_quaternion import conjugate, transform_points
 from elbowscrew.model import QualityWarning, RigidBody, invalid_marker_warning, out_of_reach
+from elbowscrew.reading.builders import ArrayBuilder, BodyBuilder
 from elbowscrew.reading.cells import read_blocks
-from elbowscrew.reading.cluster_shapes import OddShapes
-from elbowscrew.reading.growing import Growing, GrowingBody
+from elbowscrew.reading.cluster_shapes import ClusterMismatch
 from elbowscrew.reading.motive_header import BodyColumns, Header
 from elbowscrew.reading.source import TextSource
 
@@ -53,14 +53,14 @@ def sample_bodies(
     there are any.
     """
     columns = sorted({k for body in bodies for k in _sampled_columns(body)})
-    place = {column: k for k, column in enumerate(columns)}
-    samples = {k: Growing((len(columns),)) for k, body in enumerate(bodies) if _sampled_columns(body)}
+    index = {column: k for k, column in enumerate(columns)}
+    samples = {k: ArrayBuilder((len(columns),)) for k, body in enumerate(bodies) if _sampled_columns(body)}
     wanted = dict.fromkeys(samples, _SAMPLE_ROWS)
     if columns:
         for block in read_blocks(source, header.lines, columns, header.width, exact=header.whole):
             # A body may be found late: its sample is of the first frames that have it.
             for k in [k for k, rows in wanted.items() if rows > 0]:
-                own = [place[column] for column in (*bodies[k].rotation.values(), *bodies[k].position.values())]
+                own = [index[column] for column in (*bodies[k].rotation.values(), *bodies[k].position.values())]
                 rows = np.flatnonzero(np.isfinite(block[:, own]).all(axis=1))[: wanted[k]]
                 samples[k].append(block[rows])
                 wanted[k] -= rows.size
@@ -68,7 +68,7 @@ def sample_bodies(
                 break
     nothing = np.empty((0, len(columns)))
     return [
-        _sample(header, body, samples[k].finish() if k in samples else nothing, place, scale, order)
+        _sample(header, body, samples[k].finish() if k in samples else nothing, index, scale, order)
         for k, body in enumerate(bodies)
     ]
 
@@ -80,14 +80,14 @@ def _sampled_columns(body: BodyColumns) -> set[int]:
 
 
 def _sample(
-    header: Header, body: BodyColumns, cells: Float, place: dict[int, int], scale: float, order: str
+    header: Header, body: BodyColumns, cells: Float, index: dict[int, int], scale: float, order: str
 ) -> BodySample:
     by_version = header.version == _MIRRORED_VERSION
     triples = body.fitted or body.seen
     if not triples or not len(cells):
         return BodySample(offsets={}, mirrored=by_version, by_version=by_version)
     numbers = list(triples)
-    markers = scale * np.stack([cells[:, [place[k] for k in xyz]] for xyz in triples.values()], axis=1)
+    markers = scale * np.stack([cells[:, [index[k] for k in xyz]] for xyz in triples.values()], axis=1)
     markers = np.where(out_of_reach(markers)[..., None], np.nan, markers)
     if body.fitted and header.pairs.get("Coordinate Space", "").casefold() == "local":
         # There the Rigid Body Marker columns are the offsets themselves.
@@ -96,7 +96,7 @@ def _sample(
         return BodySample(offsets=known, mirrored=by_version, by_version=by_version)
     found = {}
     for mirrored in (False, True):
-        quat, position = _pose_cells(cells, place, body, scale, order, mirrored=mirrored)
+        quat, position = _pose_cells(cells, index, body, scale, order, mirrored=mirrored)
         pose = RigidBody.from_quaternions(body.name, quat, position, only_plausible=True).dual_quat_lab_body
         found[mirrored] = _offsets_at_rest(transform_points(conjugate(pose)[:, None, :], markers))
     undecided = bool(found[False]) == bool(found[True])  # a body that does not move rests either way
@@ -116,7 +116,7 @@ def _median_where_known(markers: Float) -> Float:
 
 
 def _offsets_at_rest(in_body: Float) -> dict[int, Float]:
-    """Median place in the body of each marker that is seen, by its index; none if one of them moves in it."""
+    """Median position in the body of each marker that is seen, by its index; none if one of them moves in it."""
     offsets = _median_where_known(in_body)
     seen = np.flatnonzero(np.isfinite(offsets).all(axis=1))
     spread = _median_where_known(np.abs(in_body - offsets))
@@ -125,35 +125,37 @@ def _offsets_at_rest(in_body: Float) -> dict[int, Float]:
 
 
 def _pose_cells(
-    cells: Float, place: dict[int, int], body: BodyColumns, scale: float, order: str, *, mirrored: bool
+    cells: Float, index: dict[int, int], body: BodyColumns, scale: float, order: str, *, mirrored: bool
 ) -> tuple[Float, Float]:
     """Quaternions, scalar first, and positions in meters, from columns taken by their labels.
 
     Motive writes X, Y, Z, W, or angles in degrees.
     """
-    by_label = {label: cells[:, place[k]] for label, k in body.rotation.items()}
+    by_label = {label: cells[:, index[k]] for label, k in body.rotation.items()}
     if order == "quaternion":
         quat = np.stack([by_label[label] for label in "WXYZ"], axis=1)
     else:
         angles = np.radians(np.stack([by_label[label] for label in order], axis=1))
         quat = quaternion.quat_from_euler_angles(angles, order)
-    position = scale * np.stack([cells[:, place[body.position[axis]]] for axis in "XYZ"], axis=1)
+    position = scale * np.stack([cells[:, index[body.position[axis]]] for axis in "XYZ"], axis=1)
     if mirrored:
         quat, position = quat * [1.0, -1.0, -1.0, 1.0], position * [1.0, 1.0, -1.0]
     return quat, position
 
 
-class BodyBuilder:
+class MotiveBody:
     """Builds one rigid body from blocks of cells."""
 
     def __init__(self, body: BodyColumns, scale: float, order: str, sample: BodySample) -> None:
         self._body, self._scale, self._order, self._sample = body, scale, order, sample
-        self._store = GrowingBody(body.name)
-        self._error, self._residual = Growing(), Growing()
+        self._store = BodyBuilder(body.name)
+        self._error, self._residual = ArrayBuilder(), ArrayBuilder()
         self._seen = {number: xyz for number, xyz in body.seen.items() if number in sample.offsets}
         self._partly_blank = self._far_markers = 0
         offsets = [sample.offsets[number] for number in self._seen]
-        self.odd_shapes = OddShapes(body.name, np.stack(offsets)) if len(offsets) >= _FEWEST_OF_A_SHAPE else None
+        self.cluster_mismatch = (
+            ClusterMismatch(body.name, np.stack(offsets)) if len(offsets) >= _FEWEST_OF_A_SHAPE else None
+        )
 
     @property
     def columns(self) -> set[int]:
@@ -164,23 +166,23 @@ class BodyBuilder:
 
     def append(self, block: Float, columns: list[int]) -> None:
         """Take a block of rows; `columns` says which columns it has."""
-        place = {column: k for k, column in enumerate(columns)}
+        index = {column: k for k, column in enumerate(columns)}
         body = self._body
-        quat, position = _pose_cells(block, place, body, self._scale, self._order, mirrored=self._sample.mirrored)
-        known = np.isfinite(block[:, [place[k] for k in (*body.rotation.values(), *body.position.values())]])
+        quat, position = _pose_cells(block, index, body, self._scale, self._order, mirrored=self._sample.mirrored)
+        known = np.isfinite(block[:, [index[k] for k in (*body.rotation.values(), *body.position.values())]])
         self._partly_blank += int((known.any(axis=1) & ~known.all(axis=1)).sum())
         pose = self._store.append(quat, position)
         if body.error is not None:
-            self._error.append(self._scale * block[:, place[body.error]])
+            self._error.append(self._scale * block[:, index[body.error]])
         if self._seen:
-            seen = self._scale * np.stack([block[:, [place[k] for k in xyz]] for xyz in self._seen.values()], axis=1)
+            seen = self._scale * np.stack([block[:, [index[k] for k in xyz]] for xyz in self._seen.values()], axis=1)
             far = out_of_reach(seen)
             self._far_markers += int(far.sum())
             seen = np.where(far[..., None], np.nan, seen)
             residual = self._rms_residual(pose, seen)
             self._residual.append(residual)
-            if self.odd_shapes is not None:
-                self.odd_shapes.append(seen, residual)
+            if self.cluster_mismatch is not None:
+                self.cluster_mismatch.append(seen, residual)
 
     def _rms_residual(self, pose: Float, seen: Float) -> Float:
         offsets = np.stack([self._sample.offsets[number] for number in self._seen])

@@ -9,11 +9,11 @@ import numpy as np
 from elbowscrew.errors import RecordingError, SettingError
 from elbowscrew.geometry import quaternion
 from elbowscrew.model import QualityWarning, Recording, Source
+from elbowscrew.reading.builders import ArrayBuilder, MarkerBuilder
 from elbowscrew.reading.cells import read_blocks
 from elbowscrew.reading.clock import check_frames, cut_warnings, frame_rate
 from elbowscrew.reading.cluster_shapes import swap_warnings
-from elbowscrew.reading.growing import Growing, GrowingMarker
-from elbowscrew.reading.motive_bodies import BodyBuilder, sample_bodies
+from elbowscrew.reading.motive_bodies import MotiveBody, sample_bodies
 from elbowscrew.reading.motive_header import BodyColumns, Header, body_columns, marker_columns, parse_header
 from elbowscrew.reading.options import ReadOptions, stated_unit
 from elbowscrew.reading.source import TextSource
@@ -35,18 +35,18 @@ def read(source: TextSource, options: ReadOptions) -> Recording:
     unit = stated_unit(source.path, header.pairs.get("Length Units", ""), options)
     order = _rotation_type(source, header, bodies, options.rotation) if bodies else ""
     samples = sample_bodies(source, header, bodies, METERS[unit], order)
-    builders = [BodyBuilder(body, METERS[unit], order, sample) for body, sample in zip(bodies, samples, strict=True)]
+    builders = [MotiveBody(body, METERS[unit], order, sample) for body, sample in zip(bodies, samples, strict=True)]
     columns = sorted({0, 1}.union(*(builder.columns for builder in builders), *wanted.values()))
-    place = {column: k for k, column in enumerate(columns)}
-    frames, times = Growing(dtype=np.int64), Growing()
-    markers = {name: GrowingMarker(name) for name in wanted}
+    index = {column: k for k, column in enumerate(columns)}
+    frames, times = ArrayBuilder(dtype=np.int64), ArrayBuilder()
+    markers = {name: MarkerBuilder(name) for name in wanted}
     line = header.lines
     for block in read_blocks(source, header.lines, columns, header.width, exact=header.whole):
         check_frames(source, line, block)
         frames.append(block[:, 0].astype(np.int64))
         times.append(block[:, 1])
         for name, triple in wanted.items():
-            markers[name].append(METERS[unit] * block[:, [place[k] for k in triple]])
+            markers[name].append(METERS[unit] * block[:, [index[k] for k in triple]])
         for builder in builders:
             builder.append(block, columns)
         line += len(block)
@@ -60,7 +60,7 @@ def read(source: TextSource, options: ReadOptions) -> Recording:
         warnings += builder.warnings(header.version)
     for marker in markers.values():
         warnings += marker.warnings()
-    warnings += swap_warnings([one for builder in builders if (one := builder.odd_shapes) is not None], frame)
+    warnings += swap_warnings([one for builder in builders if (one := builder.cluster_mismatch) is not None], frame)
     return Recording(
         bodies=tuple(builder.finish() for builder in builders),
         frame=frame,

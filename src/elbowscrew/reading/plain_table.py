@@ -1,7 +1,7 @@
 """A plain table for recordings of other systems: named columns with units in their names.
 
 ``frame, time_s``, then for a body ``<name>_e0 .. <name>_e3, <name>_x_m, <name>_y_m, <name>_z_m`` and for a marker
-``<name>_x_m, <name>_y_m, <name>_z_m``; ``_mm`` or ``_cm`` in place of ``_m`` if so. Blank cells are lost frames.
+``<name>_x_m, <name>_y_m, <name>_z_m``; ``_mm`` or ``_cm`` in index of ``_m`` if so. Blank cells are lost frames.
 """
 
 from __future__ import annotations
@@ -14,9 +14,9 @@ import numpy as np
 
 from elbowscrew.errors import NoBodiesError, RecordingError
 from elbowscrew.model import Recording, Source
+from elbowscrew.reading.builders import ArrayBuilder, BodyBuilder, MarkerBuilder
 from elbowscrew.reading.cells import read_blocks
 from elbowscrew.reading.clock import check_frames, counted_rate, cut_warnings
-from elbowscrew.reading.growing import Growing, GrowingBody, GrowingMarker
 from elbowscrew.reading.options import ASK_FOR_MARKERS, ReadOptions
 from elbowscrew.reading.source import TextSource
 from elbowscrew.tables import METERS
@@ -33,39 +33,39 @@ def recognizes(cells: list[str]) -> bool:
 def read(source: TextSource, options: ReadOptions) -> Recording:
     """Read a plain table; see `elbowscrew.reading.registry.read_recording`."""
     names, line = _header(source)
-    things, scales = _things(source, names, line)
-    bodies = {name: parts for name, parts in things.items() if set(parts) == set(_POSE)}
-    markers = {name: parts for name, parts in things.items() if set(parts) == set("xyz") and options.wants(name)}
+    columns, scales = _columns_by_body(source, names, line)
+    bodies = {name: parts for name, parts in columns.items() if set(parts) == set(_POSE)}
+    markers = {name: parts for name, parts in columns.items() if set(parts) == set("xyz") and options.wants(name)}
     if not bodies and not markers:
-        seen = ", ".join(list(things)[:8]) or "none"
+        seen = ", ".join(list(columns)[:8]) or "none"
         msg = f"{source.path}:{line}: no rigid bodies in the table (markers: {seen}); {ASK_FOR_MARKERS}"
         raise NoBodiesError(msg)
     wanted = sorted({0, 1}.union(*(parts.values() for parts in (*bodies.values(), *markers.values()))))
-    place = {column: k for k, column in enumerate(wanted)}
-    frames, times = Growing(dtype=np.int64), Growing()
-    grown = {name: GrowingBody(name) for name in bodies}
-    grown_markers = {name: GrowingMarker(name) for name in markers}
+    index = {column: k for k, column in enumerate(wanted)}
+    frames, times = ArrayBuilder(dtype=np.int64), ArrayBuilder()
+    body_builders = {name: BodyBuilder(name) for name in bodies}
+    marker_builders = {name: MarkerBuilder(name) for name in markers}
     number = line
     for block in read_blocks(source, line, wanted, len(names), exact=False):
         check_frames(source, number, block)
         frames.append(block[:, 0].astype(np.int64))
         times.append(block[:, 1])
         for name, parts in bodies.items():
-            cells = block[:, [place[parts[part]] for part in _POSE]]
-            grown[name].append(cells[:, :4], scales[name] * cells[:, 4:])
+            cells = block[:, [index[parts[part]] for part in _POSE]]
+            body_builders[name].append(cells[:, :4], scales[name] * cells[:, 4:])
         for name, parts in markers.items():
-            grown_markers[name].append(scales[name] * block[:, [place[parts[axis]] for axis in "xyz"]])
+            marker_builders[name].append(scales[name] * block[:, [index[parts[axis]] for axis in "xyz"]])
         number += len(block)
     frame, time_s = frames.finish(), times.finish()
     if not frame.size:
         msg = f"{source.path}:{line + 1}: no frame follows the header"
         raise RecordingError(msg)
     return Recording(
-        bodies=tuple(body.finish() for body in grown.values()),
+        bodies=tuple(body.finish() for body in body_builders.values()),
         frame=frame,
         time_s=time_s,
         rate_hz=counted_rate(source.path, frame, time_s),
-        markers=tuple(marker.finish() for marker in grown_markers.values()),
+        markers=tuple(marker.finish() for marker in marker_builders.values()),
         source=Source(
             path=str(source.path),
             sha256=source.sha256,
@@ -74,8 +74,8 @@ def read(source: TextSource, options: ReadOptions) -> Recording:
             rotation_type="quaternion" if bodies else "",
         ),
         warnings=(
-            *(warning for body in grown.values() for warning in body.warnings()),
-            *(warning for marker in grown_markers.values() for warning in marker.warnings()),
+            *(warning for body in body_builders.values() for warning in body.warnings()),
+            *(warning for marker in marker_builders.values() for warning in marker.warnings()),
             *cut_warnings(source, "", frame.size),
         ),
     )
@@ -95,9 +95,11 @@ def _header(source: TextSource) -> tuple[list[str], int]:
     raise AssertionError  # the file was recognized by this very line
 
 
-def _things(source: TextSource, names: list[str], line: int) -> tuple[dict[str, dict[str, int]], dict[str, float]]:
+def _columns_by_body(
+    source: TextSource, names: list[str], line: int
+) -> tuple[dict[str, dict[str, int]], dict[str, float]]:
     """Columns of every body and marker by their parts, and the scale of each to meters; all faults at once."""
-    things: dict[str, dict[str, int]] = {}
+    columns: dict[str, dict[str, int]] = {}
     scales: dict[str, float] = {}
     faults = []
     for k, title in enumerate(names[2:], start=2):
@@ -106,20 +108,20 @@ def _things(source: TextSource, names: list[str], line: int) -> tuple[dict[str, 
             faults.append(f"column {k + 1} {title[:40]!r} is neither <name>_e0..e3 nor <name>_x_m, _y_m, _z_m")
             continue
         name, part = found["name"], found["euler"] or found["axis"]
-        if part in things.setdefault(name, {}):
+        if part in columns.setdefault(name, {}):
             faults.append(f"column {k + 1} {title[:40]!r} stands twice")
-        things[name][part] = k
+        columns[name][part] = k
         if found["unit"]:
             scale = METERS[found["unit"]]
             if scales.setdefault(name, scale) != scale:
                 faults.append(f"{name!r} has positions in two units")
-    for name, parts in things.items():
+    for name, parts in columns.items():
         if set(parts) not in (set(_POSE), set("xyz")):
             faults.append(f"{name!r} has only {', '.join(sorted(parts))}: expected e0..e3, x, y, z, or x, y, z alone")
     if faults:
         msg = f"{source.path}:{line}: {'; '.join(faults[:5])}; see docs/plain-table.md"
         raise RecordingError(msg)
-    return things, scales
+    return columns, scales
 
 
 def _unit_of(scale: float) -> str:

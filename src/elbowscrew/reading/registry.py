@@ -124,25 +124,25 @@ def read_recording(
         raise UsageError(msg)
     patterns = (markers,) if isinstance(markers, str) else tuple(markers)
     options = ReadOptions(units=units, rotation=rotation, markers=patterns)
-    place = Path(path)
-    if c3d.recognizes(first_bytes(place, 2)):
-        _check_options(place, "C3D", options, _UNITS | _MARKERS)
-        return c3d.read(place, options)
-    source = open_source(place)
+    file = Path(path)
+    if c3d.recognizes(first_bytes(file, 2)):
+        _check_options(file, "C3D", options, _UNITS | _MARKERS)
+        return c3d.read(file, options)
+    source = open_source(file)
     first_line = next((line for line in islice(source.lines(), 20) if line.strip(", ;\t")), "")
     cells = [cell.strip().strip('"').strip().casefold() for cell in first_line.split(source.delimiter)]
     for entry in FORMATS:
         if entry.recognizes(cells):
-            _check_options(place, entry.name, options, entry.accepts)
+            _check_options(file, entry.name, options, entry.accepts)
             return entry.read(source, options)
     raise RecordingError(_refusal(source, cells[0]))
 
 
 def _check_options(path: Path, name: str, options: ReadOptions, accepted: frozenset[str]) -> None:
     given = {key for key in _ALL if getattr(options, key)}
-    strangers = sorted(given - accepted)
-    if strangers:
-        told = ", ".join(strangers)
+    unknown = sorted(given - accepted)
+    if unknown:
+        told = ", ".join(unknown)
         msg = f"{path}: {told}: a file of this format ({name}) states or has no such thing; leave it out"
         raise SettingError(msg)
 
@@ -169,13 +169,13 @@ def recordings_in(folder: str | os.PathLike[str]) -> tuple[Path, ...]:
     RecordingError
         If the folder cannot be read, or has none.
     """
-    place = Path(folder)
+    root = Path(folder)
     try:
-        found = sorted(path for path in place.iterdir() if path.suffix.casefold() in ENDINGS and path.is_file())
+        found = sorted(path for path in root.iterdir() if path.suffix.casefold() in ENDINGS and path.is_file())
     except OSError as error:
-        msg = f"{place}: cannot be read: {error.strerror or error}"
+        msg = f"{root}: cannot be read: {error.strerror or error}"
         raise RecordingError(msg) from error
     if not found:
-        msg = f"{place}: expected recordings ({', '.join(ENDINGS)}) in the folder, found none"
+        msg = f"{root}: expected recordings ({', '.join(ENDINGS)}) in the folder, found none"
         raise RecordingError(msg)
     return tuple(found)

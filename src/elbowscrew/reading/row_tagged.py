@@ -12,9 +12,9 @@ import numpy as np
 
 from elbowscrew.errors import RecordingError
 from elbowscrew.model import QualityWarning, Recording, Source, TrackingLoss, out_of_reach
+from elbowscrew.reading.builders import ArrayBuilder, BodyBuilder
 from elbowscrew.reading.cells import parse_number
 from elbowscrew.reading.clock import LAST_FRAME, LATEST_TIME_S, counted_rate, cut_warnings
-from elbowscrew.reading.growing import Growing, GrowingBody
 from elbowscrew.reading.options import ReadOptions
 from elbowscrew.reading.source import TextSource
 
@@ -43,10 +43,10 @@ class _Parsed:
     right_handed: bool = False
     names: dict[int, str] = field(default_factory=dict)
     markers: dict[int, list[list[float]]] = field(default_factory=dict)
-    frames: Growing = field(default_factory=lambda: Growing(dtype=np.int64))
-    times: Growing = field(default_factory=Growing)
-    bodies: dict[int, GrowingBody] = field(default_factory=dict)
-    strangers: set[int] = field(default_factory=set)
+    frames: ArrayBuilder = field(default_factory=lambda: ArrayBuilder(dtype=np.int64))
+    times: ArrayBuilder = field(default_factory=ArrayBuilder)
+    bodies: dict[int, BodyBuilder] = field(default_factory=dict)
+    unknown: set[int] = field(default_factory=set)
     pending: list[_Frame] = field(default_factory=list)
     begun: bool = False
 
@@ -106,7 +106,7 @@ def _parse(source: TextSource) -> _Parsed:
                     msg = f"a marker of body {row[1]!r} lies over 10 km from it"
                     raise ValueError(msg)
                 parsed.names[identifier] = row[1]
-                parsed.bodies[identifier] = GrowingBody(row[1])
+                parsed.bodies[identifier] = BodyBuilder(row[1])
                 parsed.markers[identifier] = [offsets[k : k + 3] for k in range(0, 3 * count, 3)]
             elif tag not in TAGS:
                 msg = f"expected one of {', '.join(TAGS)} in the first cell, found {row[0][:40]!r}"
@@ -165,7 +165,7 @@ def _parse_frame(parsed: _Parsed, row: list[str]) -> None:
             raise ValueError(msg)
         poses[identifier] = [_finite(cell) for cell in cells[1:8]]
         if identifier not in parsed.bodies:
-            parsed.strangers.add(identifier)
+            parsed.unknown.add(identifier)
     if abs(time_s) > LATEST_TIME_S:
         msg = f"expected a time in seconds, found {time_s:g}"
         raise ValueError(msg)
@@ -182,12 +182,12 @@ def _validate(source: TextSource, parsed: _Parsed) -> None:
         faults.append("left-handed coordinates, in which every rotation is mirrored, are not read")
     if not parsed.begun:
         faults.append("no frame rows")
-    if not parsed.names and not parsed.strangers:
+    if not parsed.names and not parsed.unknown:
         faults.append("no rigid bodies (trackables)")
-    strangers = sorted(parsed.strangers)
-    if strangers:
+    unknown = sorted(parsed.unknown)
+    if unknown:
         faults.append(
-            f"the frames tell of bodies {', '.join(map(str, strangers))} but the definitions of "
+            f"the frames tell of bodies {', '.join(map(str, unknown))} but the definitions of "
             f"{', '.join(map(str, sorted(parsed.names))) or 'none'}, so it is not certain which pose is whose"
         )
     if faults:

@@ -9,9 +9,9 @@ import numpy as np
 
 from elbowscrew.errors import NoBodiesError, RecordingError
 from elbowscrew.model import Recording, Source
+from elbowscrew.reading.builders import ArrayBuilder, MarkerBuilder
 from elbowscrew.reading.cells import read_blocks
 from elbowscrew.reading.clock import check_frames, cut_warnings, frame_rate
-from elbowscrew.reading.growing import Growing, GrowingMarker
 from elbowscrew.reading.options import ASK_FOR_MARKERS, ReadOptions, stated_unit
 from elbowscrew.reading.source import TextSource
 from elbowscrew.tables import METERS
@@ -50,8 +50,8 @@ def read(source: TextSource, options: ReadOptions) -> Recording:
         msg = f"{source.path}: no rigid bodies in the file (markers: {told}); {ASK_FOR_MARKERS}"
         raise NoBodiesError(msg)
     columns = [0, 1, *(k + axis for k in wanted.values() for axis in range(3))]
-    frames, times = Growing(dtype=np.int64), Growing()
-    markers = [GrowingMarker(name) for name in wanted]
+    frames, times = ArrayBuilder(dtype=np.int64), ArrayBuilder()
+    markers = [MarkerBuilder(name) for name in wanted]
     line = _HEADER_LINES
     for block in read_blocks(source, line, columns, max(columns) + 1):
         check_frames(source, line, block)

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from html import escape
-from itertools import pairwise
 from typing import Final
 
 import numpy as np
 from markupsafe import Markup
-from numpy.typing import NDArray
 
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.motion.movements.phases import runs_of
+from elbowscrew.view.decimation import drawn_rows
 
 WIDTH: Final = 900.0
 _LEFT, _RIGHT, _TOP, _BOTTOM = 62.0, 16.0, 10.0, 46.0
@@ -47,22 +46,6 @@ def ticks_between(low: float, high: float, most: int) -> tuple[list[float], int]
     first, last = int(np.ceil(low / step - 1e-9)), int(np.floor(high / step + 1e-9))
     decimals = max(0, -int(np.floor(np.log10(step) + 1e-9)))
     return [k * step for k in range(first, last + 1)], decimals
-
-
-def min_max_rows(values: Float, buckets: int) -> NDArray[np.int64]:
-    """Rows that show a curve of any length: of each bucket the lowest, the highest and one that is not known."""
-    if values.size <= 2 * buckets:
-        return np.arange(values.size)
-    edges = np.linspace(0, values.size, buckets + 1).astype(np.int64)
-    kept = {0, values.size - 1}
-    for first, last in pairwise(edges.tolist()):
-        part = values[first:last]
-        known = np.isfinite(part)
-        if known.any():
-            kept |= {int(first + np.nanargmin(part)), int(first + np.nanargmax(part))}
-        if not known.all():
-            kept.add(int(first + np.argmin(known)))
-    return np.array(sorted(kept), dtype=np.int64)
 
 
 def path_of(x: Float, y: Float) -> str:
@@ -125,13 +108,13 @@ class Chart:
 
     def line(self, x: Float, y: Float, look: str, label: str = "") -> None:
         """Draw a curve, thinned to what the pixels can show."""
-        rows = min_max_rows(y, int(self._inner[2] - self._inner[0]))
+        rows = drawn_rows(y, keep_gaps=True, parts=int(self._inner[2] - self._inner[0]))
         self._drawn.append(f'<path class="{look}" d="{path_of(self.x(x[rows]), self.y(y[rows]))}"/>')
         self._note(look, label)
 
     def band(self, x: Float, low: Float, high: Float, look: str, label: str = "") -> None:
         """Fill between two curves wherever both are known."""
-        rows = np.union1d(*(min_max_rows(values, int(self._inner[2])) for values in (low, high)))
+        rows = drawn_rows(low, high, keep_gaps=True, parts=int(self._inner[2]))
         known = np.isfinite(low[rows]) & np.isfinite(high[rows])
         for first, last in zip(*runs_of(known), strict=True):
             part = rows[first : last + 1]

@@ -6,10 +6,10 @@ from typing import Any, Final
 
 import numpy as np
 
-from elbowscrew.geometry.arrays import Float
+from elbowscrew.geometry.arrays import Float, evenly_thinned
 from elbowscrew.report.charts import COLORS
 from elbowscrew.view.finished import FinishedTrial
-from elbowscrew.view.scene import Region, bodies_in_space, directions_across, joint_bundle, thinned
+from elbowscrew.view.scene import Region, bodies_in_space, directions_across, joint_bundle
 
 MOST_FRAMES: Final = 900
 """Frames that are played; of longer trials every so many."""
@@ -36,7 +36,7 @@ def scene_of(trial: FinishedTrial) -> dict[str, Any]:
     bundle = joint_bundle(trial).scaled(1000.0)
     proximal, distal = _bodies(trial)
     across, _ = directions_across(bundle.direction)
-    rows = thinned(np.arange(screw.frame.size), MOST_FRAMES)
+    rows = evenly_thinned(np.arange(screw.frame.size), MOST_FRAMES)
     angle = np.degrees(screw.angle)
     known = angle[screw.axis_known]
     return {

@@ -15,10 +15,10 @@ from elbowscrew import tables
 from elbowscrew.errors import ResultError
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.reading.source import longest_cell
-from elbowscrew.report.charts import min_max_rows
 from elbowscrew.results.read_back import UNREADABLE, check_version, is_result, read_summary
 from elbowscrew.results.table_reading import read_columns
 from elbowscrew.settings import settings_from_options
+from elbowscrew.view.decimation import drawn_rows
 
 CONDITION: Final = "condition"
 _ALWAYS: Final = ("subject", CONDITION)
@@ -36,7 +36,7 @@ class StudyTrial:
 
     Attributes
     ----------
-    place : str
+    folder : str
         The result's folder relative to the study's, with slashes.
     summary : mapping
         Its ``summary.json``.
@@ -48,7 +48,7 @@ class StudyTrial:
         What the manifest says of it.
     """
 
-    place: str
+    folder: str
     summary: Mapping[str, Any]
     time_s: Float
     theta: Float
@@ -67,7 +67,7 @@ class Failure:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Study:
-    """Trials of a folder by their places, the columns that the manifest brought, and what failed.
+    """Trials of a folder by their folders, the columns that the manifest brought, and what failed.
 
     Where there is a ``summary.csv``, trials are those that it names; `others` are results beside them.
     """
@@ -81,8 +81,8 @@ class Study:
 
 def result_folders(folder: Path) -> Iterator[Path]:
     """Find result folders inside a folder, in order of their names; links are not followed."""
-    for place, names, _ in os.walk(folder):
-        here = Path(place)
+    for root, names, _ in os.walk(folder):
+        here = Path(root)
         if here != folder and is_result(here):
             names.clear()
             yield here
@@ -107,27 +107,27 @@ def read_study(folder: Path, factors: Sequence[str] | None = None) -> Study:
     """
     trials, failures = [], _failures(folder / "failures.csv")
     for result in result_folders(folder):
-        place = result.relative_to(folder).as_posix()
+        name = result.relative_to(folder).as_posix()
         try:
-            trials.append(_trial(result, place))
+            trials.append(_trial(result, name))
         except ResultError as error:
-            failures.append(Failure(path=place, kind="ResultError", message=str(error)))
+            failures.append(Failure(path=name, kind="ResultError", message=str(error)))
     if not trials and not failures:
         msg = f"{folder}: holds no finished results; analyze trials into it first"
         raise ResultError(msg)
-    said = _said_of(folder / "summary.csv", {trial.place for trial in trials})
+    said = _said_of(folder / "summary.csv", {trial.folder for trial in trials})
     chosen = tuple(_factors(said) if factors is None else factors)
     kept = tuple(
-        replace(trial, factors={name: said.get(trial.place, {}).get(name, "") for name in chosen})
+        replace(trial, factors={name: said.get(trial.folder, {}).get(name, "") for name in chosen})
         for trial in trials
-        if not said or trial.place in said
+        if not said or trial.folder in said
     )
-    others = tuple(trial.place for trial in trials if said and trial.place not in said)
+    others = tuple(trial.folder for trial in trials if said and trial.folder not in said)
     name = folder.resolve().name or "study"
     return Study(name=name, trials=kept, factors=chosen, failures=tuple(failures), others=others)
 
 
-def _trial(result: Path, place: str) -> StudyTrial:
+def _trial(result: Path, name: str) -> StudyTrial:
     summary = read_summary(result / "summary.json")
     check_version(result, summary)
     try:
@@ -137,9 +137,9 @@ def _trial(result: Path, place: str) -> StudyTrial:
         msg = f"{result}: not a result of this version of the program: {' '.join(str(error).split())}"
         raise ResultError(msg) from error
     theta = np.degrees(columns["theta"])
-    rows = min_max_rows(theta, _KEPT_BUCKETS)
+    rows = drawn_rows(theta, keep_gaps=True, parts=_KEPT_BUCKETS)
     return StudyTrial(
-        place=place,
+        folder=name,
         summary=summary,
         time_s=columns["time_s"][rows],
         theta=theta[rows],
@@ -154,13 +154,13 @@ def _failures(path: Path) -> list[Failure]:
     ]
 
 
-def _said_of(path: Path, places: set[str]) -> dict[str, dict[str, str]]:
+def _said_of(path: Path, folders: set[str]) -> dict[str, dict[str, str]]:
     """Rows of ``summary.csv`` by the results they are of: one of its columns names their folders."""
     rows = _rows(path)
     if len(rows) < 2:
         return {}
     header = rows[0]
-    matches = [sum(_folder(row, k) in places for row in rows[1:]) for k in range(len(header))]
+    matches = [sum(_folder(row, k) in folders for row in rows[1:]) for k in range(len(header))]
     best = int(np.argmax(matches)) if matches else 0
     if not matches or not matches[best]:
         return {}

@@ -11,10 +11,11 @@ import numpy as np
 from markupsafe import Markup
 
 from elbowscrew.geometry.arrays import Float
-from elbowscrew.report.charts import min_max_rows, path_of
+from elbowscrew.report.charts import path_of
 from elbowscrew.report.distributions import LEAST, LIMIT, modified_z, strip_chart
 from elbowscrew.report.pages import UNSHOWABLE, render, unshowable, write_page
 from elbowscrew.report.study import CONDITION, Failure, Study, StudyTrial, read_study
+from elbowscrew.view.decimation import drawn_rows
 
 _THUMB: Final = (132.0, 34.0)
 _THUMB_BUCKETS: Final = 40
@@ -67,7 +68,7 @@ def study_page(study: Study) -> str:
             rows.append(_row(trial, scale))
             trials.append(trial)
         except UNSHOWABLE as error:
-            failures.append(Failure(path=trial.place, kind="ResultError", message=str(unshowable(Path(), error))))
+            failures.append(Failure(path=trial.folder, kind="ResultError", message=str(unshowable(Path(), error))))
     groups = _groups(study, trials)
     _mark_outliers(rows, groups)
     content = {
@@ -91,7 +92,7 @@ def study_page(study: Study) -> str:
 def thumbnail(time_s: Float, theta: Float, scale: tuple[float, float]) -> Markup:
     """Draw an angle over time in a few hundred bytes; times are the trial's own, angles to a common scale."""
     width, height = _THUMB
-    rows = min_max_rows(theta, _THUMB_BUCKETS)
+    rows = drawn_rows(theta, keep_gaps=True, parts=_THUMB_BUCKETS)
     span = float(time_s[-1] - time_s[0]) or 1.0
     x = np.round(1.0 + (width - 2.0) * (time_s[rows] - time_s[0]) / span)
     y = np.round(height - 2.0 - (height - 4.0) * (theta[rows] - scale[0]) / ((scale[1] - scale[0]) or 1.0), 1)
@@ -120,8 +121,8 @@ def _row(trial: StudyTrial, scale: tuple[float, float]) -> dict[str, Any]:
     warnings = [str(one["code"]) for one in summary["warnings"] if one["severity"] == "warning"]
     values = {one.key: summary[one.section][one.name] for one in MEASURES}
     return {
-        "place": trial.place,
-        "link": quote(f"{trial.place}/report.html", safe="/") if trial.page else None,
+        "folder": trial.folder,
+        "link": quote(f"{trial.folder}/report.html", safe="/") if trial.page else None,
         "thumb": thumbnail(trial.time_s, trial.theta, scale),
         "factors": list(trial.factors.items()),
         "frames": int(figures["frames"]),
@@ -179,7 +180,7 @@ def _charts(rows: list[dict[str, Any]], groups: Mapping[str, list[int]]) -> list
         strips = {
             name: (
                 np.array([rows[k]["values"][measure.key] for k in members], dtype=np.float64),
-                [rows[k]["place"] for k in members],
+                [rows[k]["folder"] for k in members],
             )
             for name, members in shown.items()
         }

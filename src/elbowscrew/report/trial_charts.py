@@ -9,7 +9,9 @@ import numpy as np
 from markupsafe import Markup
 from numpy.typing import NDArray
 
+from elbowscrew.choices import METHOD_LABELS
 from elbowscrew.geometry.arrays import Float
+from elbowscrew.geometry.sensitivity import NORMAL_95
 from elbowscrew.motion.movements.phases import runs_of
 from elbowscrew.report.charts import (
     COLORS,
@@ -26,9 +28,7 @@ from elbowscrew.report.scene import WIDEST
 from elbowscrew.view.finished import FinishedTrial
 from elbowscrew.view.scene import Bundle, directions_across, joint_bundle
 
-_NORMAL_95: Final = 1.959964
 _ASPECT: Final = (0.5 * WIDTH - 78.0) / (0.42 * WIDTH - 56.0)  # of the inner part of a panel of the axes
-_METHODS: Final = {"dlb": "DLB", "sclerp": "ScLERP", "sdlb": "sDLB", "dib": "DIB", "catmull-rom": "Catmull-Rom"}
 
 
 def theta_chart(trial: FinishedTrial) -> Markup:
@@ -190,7 +190,7 @@ def repetition_chart(curve: Mapping[str, NDArray[Any]], count: int) -> Markup:
 def model_name(trial: FinishedTrial) -> str:
     """Name the model in a few words."""
     name = trial.settings.model_method
-    return f"{_METHODS.get(name, name)} through {trial.keyframes.row.size} poses"
+    return f"{METHOD_LABELS.get(name, name)} through {trial.keyframes.row.size} poses"
 
 
 def _over_time(
@@ -219,7 +219,7 @@ def _over_time(
 
 def _mark_interval(chart: Chart, trial: FinishedTrial) -> None:
     screw = trial.screw
-    reach = _NORMAL_95 * np.degrees(screw.angle_sd)
+    reach = NORMAL_95 * np.degrees(screw.angle_sd)
     if np.isfinite(reach).any():
         angle, label = np.degrees(screw.angle), f"95 % interval (±{np.nanmedian(reach):.2g})"
         chart.band(screw.time_s, angle - reach, angle + reach, "band-known", label)

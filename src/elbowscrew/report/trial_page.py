@@ -9,6 +9,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowscrew.geometry.arrays import evenly_thinned
 from elbowscrew.joints import Joint
 from elbowscrew.report.methods import citations_of, methods_of
 from elbowscrew.report.pages import UNSHOWABLE, render, unshowable, write_page
@@ -138,7 +139,7 @@ def _axis_rows(trial: FinishedTrial) -> list[dict[str, Any]]:
     """Some frames with an axis, evenly chosen over the time that has one."""
     screw = trial.screw
     known = np.flatnonzero(screw.axis_known & screw.valid)
-    rows = known[np.unique(np.linspace(0, known.size - 1, min(known.size, _FRAMES_TOLD)).astype(np.int64))]
+    rows = evenly_thinned(known, _FRAMES_TOLD)
     columns = {
         "frame": screw.frame[rows],
         "time_s": screw.time_s[rows],

@@ -95,7 +95,8 @@ def _write_sto(folder: Path, analysis: Analysis, _summary: Mapping[str, Any]) ->
     screw, unit = analysis.screw, analysis.settings.angle_unit
     series = {"theta": screw.angle}
     if analysis.anatomy is not None:
-        series |= {name: getattr(analysis.anatomy, name) for name in ("flexion", "carrying", "pronation")}
+        bones = analysis.anatomy
+        series |= {"flexion": bones.flexion, "carrying": bones.carrying_angle, "pronation": bones.pronation}
     columns = [screw.time_s, *(angle_in(angle, unit) for angle in series.values())]
     header = (
         "elbowscrew",

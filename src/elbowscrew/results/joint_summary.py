@@ -163,7 +163,7 @@ def _anatomy(motion: AnatomicalMotion | None) -> dict[str, Any] | None:
         "axis_distance_mm": known(1000.0 * motion.joint_axis_distance),
         "epicondyle_direction_in_proximal": motion.epicondyle_line[:3].tolist(),
         "epicondyle_midpoint_in_proximal_mm": (1000.0 * motion.epicondyle_midpoint).tolist(),
-        "landmarks_mm": {name: (1000.0 * place).tolist() for name, place in motion.places.items()},
+        "landmarks_mm": {name: (1000.0 * point).tolist() for name, point in motion.points.items()},
     }
 
 
@@ -187,7 +187,7 @@ def _markers(body: RigidBody | None) -> list[list[float]] | None:
     if body is None or body.marker_offsets is None:
         return None
     offsets = 1000.0 * body.marker_offsets
-    return [place.tolist() for place in offsets if np.isfinite(place).all()]
+    return [offset.tolist() for offset in offsets if np.isfinite(offset).all()]
 
 
 def _noise(noise: PoseNoise | None) -> dict[str, Any] | None:

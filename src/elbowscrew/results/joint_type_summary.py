@@ -6,11 +6,11 @@ from typing import Any, Final
 
 import numpy as np
 
+from elbowscrew.geometry.sensitivity import NORMAL_95
 from elbowscrew.model import Analysis
 from elbowscrew.model.joint_type import JointLine, JointType, Measure, TwoAxes
 from elbowscrew.results.statistics import known
 
-_NORMAL_95: Final = 1.959964
 _MILLIMETERS: Final = 1000.0
 _DEGREES: Final = float(np.degrees(1.0))
 INTERVAL_NOTE: Final = (
@@ -100,7 +100,7 @@ def _line(line: JointLine) -> dict[str, Any]:
 
 
 def _measure(name: str, found: Measure | None, scale: float) -> dict[str, float | None]:
-    value, sd = (None, None) if found is None else (scale * found.value, scale * _NORMAL_95 * found.sd)
+    value, sd = (None, None) if found is None else (scale * found.value, scale * NORMAL_95 * found.sd)
     known_sd = value is not None and sd is not None and np.isfinite(sd)
     return {
         name: value if value is None else known(value),

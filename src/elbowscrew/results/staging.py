@@ -1,4 +1,4 @@
-"""Results appear whole or not at all: written beside their place and moved there in one step."""
+"""Results appear whole or not at all: written beside their destination and moved there in one step."""
 
 from __future__ import annotations
 
@@ -67,13 +67,13 @@ def result_folder(target: Path, *, force: bool, kind: ResultKind = ANALYSIS) -> 
     check_result_folder(target, force=force, kind=kind)
     staged, made = None, []
     try:
-        place = target.resolve()
-        made = _make_parents(place)
-        staged = _temporary(place)
+        destination = target.resolve()
+        made = _make_parents(destination)
+        staged = _temporary(destination)
         staged.mkdir()
         yield staged
         check_result_folder(target, force=force, kind=kind)  # somebody may have put something there meanwhile
-        _move_into_place(staged, place, kind)
+        _move_into_place(staged, destination, kind)
         made = []
     except OSError as error:
         raise _output_error(target, error) from error
@@ -97,9 +97,9 @@ def check_result_folder(target: Path, *, force: bool, kind: ResultKind = ANALYSI
         present = {path.relative_to(target).as_posix() for path in target.rglob("*")} - {"figures"}
         if not present:
             return
-        strangers = sorted(present - set(kind.files))
-        if strangers or not is_summary(target / kind.summary):
-            what = f"holds {strangers[0]!r}, which is not ours" if strangers else "holds files but no elbowscrew result"
+        unknown = sorted(present - set(kind.files))
+        if unknown or not is_summary(target / kind.summary):
+            what = f"holds {unknown[0]!r}, which is not ours" if unknown else "holds files but no elbowscrew result"
             msg = f"{target}: the folder {what}; give another --output"
             raise OutputError(msg)
     except OSError as error:
@@ -141,9 +141,9 @@ def write_files(contents: Mapping[Path, Iterable[str] | bytes], *, replaceable: 
     target = next(iter(contents))
     try:
         for target, lines in contents.items():
-            place = target.resolve()
-            made += _make_parents(place)
-            staged[target] = _temporary(place)
+            destination = target.resolve()
+            made += _make_parents(destination)
+            staged[target] = _temporary(destination)
             with staged[target].open("xb") as stream:
                 if isinstance(lines, bytes):
                     stream.write(lines)
@@ -162,7 +162,7 @@ def write_files(contents: Mapping[Path, Iterable[str] | bytes], *, replaceable: 
 
 
 def replace_file(target: Path, content: bytes) -> None:
-    """Write a file whole, in the place of an earlier one.
+    """Write a file whole, in place of an earlier one.
 
     Raises
     ------
@@ -223,14 +223,14 @@ def _check_file(target: Path, replaceable: str | None) -> None:
         raise _output_error(target, error) from error
 
 
-def _make_parents(place: Path) -> list[Path]:
-    """Make the folders above a place, and say which are new, the innermost first."""
+def _make_parents(destination: Path) -> list[Path]:
+    """Make the folders above a destination, and say which are new, the innermost first."""
     missing = []
-    for parent in place.parents:
+    for parent in destination.parents:
         if parent.exists():
             break
         missing.append(parent)
-    place.parent.mkdir(parents=True, exist_ok=True)
+    destination.parent.mkdir(parents=True, exist_ok=True)
     return missing
 
 
@@ -240,29 +240,29 @@ def _remove_empty(folders: Iterable[Path]) -> None:
             folder.rmdir()
 
 
-def _move_into_place(staged: Path, place: Path, kind: ResultKind) -> None:
-    """Move the staged folder to its place; an earlier result steps aside, and is removed after or comes back."""
-    if not place.is_dir() or not any(place.iterdir()):
-        if os.name == "nt" and place.is_dir():
-            place.rmdir()
-        staged.rename(place)  # over an empty folder, never over one that has just been filled
+def _move_into_place(staged: Path, destination: Path, kind: ResultKind) -> None:
+    """Move the staged folder to its destination; an earlier result steps aside, and is removed after or comes back."""
+    if not destination.is_dir() or not any(destination.iterdir()):
+        if os.name == "nt" and destination.is_dir():
+            destination.rmdir()
+        staged.rename(destination)  # over an empty folder, never over one that has just been filled
         return
     aside = staged.with_suffix(".replaced")
-    place.rename(aside)
+    destination.rename(aside)
     try:
-        staged.rename(place)
+        staged.rename(destination)
     except BaseException:
         with suppress(OSError):
-            aside.rename(place)
+            aside.rename(destination)
         raise
     for name in kind.files:
         (aside / name).unlink(missing_ok=True)
     _remove_empty([aside / "figures", aside])
 
 
-def _temporary(place: Path) -> Path:
-    """Name a temporary thing beside a place; named before it is made, it can be removed whenever the run is stopped."""
-    return place.parent / f"{_PREFIX}{secrets.token_hex(8)}.partial"
+def _temporary(destination: Path) -> Path:
+    """Name a temporary thing beside a destination, before it is made: so it is removed whenever the run is stopped."""
+    return destination.parent / f"{_PREFIX}{secrets.token_hex(8)}.partial"
 
 
 def _output_error(target: Path, error: OSError) -> OutputError:

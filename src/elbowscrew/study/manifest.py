@@ -66,14 +66,14 @@ def read_manifest(path: Path) -> list[Trial]:
         if not given:
             faults.append(f"{path}:{line}: column 'path': the cell is empty; expected the path of a recording")
             continue
-        place = (given, values.get("name", ""))
-        if place in seen:
+        identity = (given, values.get("name", ""))
+        if identity in seen:
             faults.append(
-                f"{path}:{line}: column 'path': {given!r} stands in line {seen[place]}, too; "
+                f"{path}:{line}: column 'path': {given!r} stands in line {seen[identity]}, too; "
                 "to analyze it twice, tell the two apart in a column 'name'"
             )
             continue
-        seen[place] = line
+        seen[identity] = line
         settings = {}
         for column, key in zip(header, keys, strict=True):
             if key in _SETTINGS and values[key]:
@@ -100,7 +100,7 @@ def read_manifest(path: Path) -> list[Trial]:
                 landmarks=path.parent / marks if marks else None,
                 name=values.get("name", ""),
                 by_file=Path(given).is_absolute(),
-                place=f"{path}:{line}",
+                location=f"{path}:{line}",
             )
         )
     if faults:

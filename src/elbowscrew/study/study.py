@@ -199,9 +199,9 @@ def _tasks(
             if chosen is not None and chosen not in read:
                 read[chosen] = read_landmarks(chosen)
         except UsageError as error:
-            if not trial.place:
+            if not trial.location:
                 raise
-            msg = f"{trial.place}: {error}"
+            msg = f"{trial.location}: {error}"
             raise UsageError(msg) from error
         tasks.append(
             TrialTask(
@@ -223,8 +223,8 @@ def _names(trials: Sequence[Trial]) -> list[str]:
         other = seen.setdefault(name, trial)
         if other is not trial:
             msg = (
-                f"{trial.place or trial.path}: two trials are called {name!r}, here and at "
-                f"{other.place or other.path}; give them different names in the manifest's column 'name'"
+                f"{trial.location or trial.path}: two trials are called {name!r}, here and at "
+                f"{other.location or other.path}; give them different names in the manifest's column 'name'"
             )
             raise UsageError(msg)
     return result_names(called, [trial.by_file and not trial.name for trial in trials])

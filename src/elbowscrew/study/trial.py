@@ -28,7 +28,7 @@ class Trial:
         Name of the result folder, if the manifest gives one.
     by_file : bool
         Whether its result folder may go by the file's name alone.
-    place : str
+    location : str
         Line of the manifest, for messages.
     """
 
@@ -39,4 +39,4 @@ class Trial:
     landmarks: Path | None = None
     name: str = ""
     by_file: bool = False
-    place: str = ""
+    location: str = ""

@@ -14,23 +14,27 @@ _BUCKETS: Final = 2000
 _STRETCHES: Final = 64  # looked at at once
 
 
-def drawn_rows(*curves: Float) -> NDArray[np.intp]:
+def drawn_rows(*curves: Float, parts: int = _BUCKETS, keep_gaps: bool = False) -> NDArray[np.intp]:
     """Rows of series that a line through them needs, increasing.
 
     Parameters
     ----------
     *curves : ndarray, shape (N,)
         Series that are drawn over the same rows; NaN where there is no value.
+    parts : int
+        Into how many stretches a long series is parted at most.
+    keep_gaps : bool
+        Keep of each stretch and curve a row without a value, so that a line is broken at the shortest gap.
 
     Returns
     -------
     ndarray of int
-        All rows of a short series; else, of each of some thousand stretches of equal length and for each curve, the
+        All rows of a short series; else, of each stretch of equal length and for each curve, the
         rows of the lowest and the highest value. Of a stretch without any value its first row, so that the line is
         broken there. The first and the last row are always among them.
     """
     count = curves[0].size
-    size = -(-count // _BUCKETS)
+    size = -(-count // parts)
     if size <= 2:
         return np.arange(count)
     found = [np.array([0, count - 1])]
@@ -42,6 +46,10 @@ def drawn_rows(*curves: Float) -> NDArray[np.intp]:
             stretches = np.concatenate([part, filler]).reshape(-1, size)
             found.append(starts + np.argmin(np.nan_to_num(stretches, nan=np.inf), axis=1))
             found.append(starts + np.argmax(np.nan_to_num(stretches, nan=-np.inf), axis=1))
+            if keep_gaps:
+                missing = np.isnan(stretches)
+                gaps = starts + missing.argmax(axis=1)
+                found.append(gaps[missing.any(axis=1) & (gaps < count)])
     return np.unique(np.concatenate(found))
 
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.joints import Joint
-from elbowscrew.model.brief import Brief
+from elbowscrew.model.array_record import ArrayRecord
 from elbowscrew.model.modeled import InterpolatedMotion, Keyframes
 from elbowscrew.model.repetitions import MovementPhases, Repetitions
 from elbowscrew.model.results import ScrewMotion
@@ -28,7 +28,7 @@ class FinishedClock:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class FinishedBody(Brief):
+class FinishedBody(ArrayRecord):
     """A body's name, and its markers (M, 3) in its own frame, meters, if it has any."""
 
     name: str
@@ -36,7 +36,7 @@ class FinishedBody(Brief):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class FinishedJoint(Brief):
+class FinishedJoint(ArrayRecord):
     """Poses at the reference, unit dual quaternions (8,): the forearm in the arm, and the arm in the laboratory."""
 
     reference: Float
@@ -44,7 +44,7 @@ class FinishedJoint(Brief):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class FinishedLine(Brief):
+class FinishedLine(ArrayRecord):
     """A line: unit direction and the point nearest the origin, meters; shape (3,)."""
 
     direction: Float
@@ -52,7 +52,7 @@ class FinishedLine(Brief):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class FinishedMean(Brief):
+class FinishedMean(ArrayRecord):
     """The mean axis, and the deviation (rad) and distance (m) that 95 % of the frames' axes keep within."""
 
     direction: Float
@@ -61,7 +61,7 @@ class FinishedMean(Brief):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class FinishedFit(Brief):
+class FinishedFit(ArrayRecord):
     """A fitted joint with the half-angle (rad) and the radius (m) that hold 95 %; NaN where not known."""
 
     line: FinishedLine
@@ -70,7 +70,7 @@ class FinishedFit(Brief):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class FinishedJointAxis(Brief):
+class FinishedJointAxis(ArrayRecord):
     """The fit to believe, if there is one, and the weighted mean."""
 
     preferred: Literal["hinge", "screw_hinge"] | None
@@ -79,7 +79,7 @@ class FinishedJointAxis(Brief):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class FinishedTrial(Brief):
+class FinishedTrial(ArrayRecord):
     """A result as it stands in its folder; what figures show (`elbowscrew.view.shown.Shown`) and the JSON itself.
 
     Attributes

@@ -139,7 +139,7 @@ def measured(
 def angles_of(landmarks: Landmarks, recording: Recording, reference: int = 0) -> Float:
     motion, warnings = measured(landmarks, recording, reference)
     assert not warnings
-    return np.stack([motion.flexion, motion.carrying, motion.pronation])
+    return np.stack([motion.flexion, motion.carrying_angle, motion.pronation])
 
 
 @pytest.mark.parametrize("side", SIDES)
@@ -316,7 +316,7 @@ def test_flexion_and_pronation_go_on_through_a_half_turn_and_over_gaps() -> None
 def test_near_gimbal_lock_only_the_carrying_angle_is_known() -> None:
     carrying = np.radians(np.linspace(0.0, 89.0, N))
     motion, _ = measured(by_markers(), recorded(known_proximal(0 * FLEX + 0.4, carrying, 0 * FLEX + 0.3)))
-    assert motion.carrying == pytest.approx(carrying, abs=1e-8)
+    assert motion.carrying_angle == pytest.approx(carrying, abs=1e-8)
     locked = np.degrees(carrying) > 85.0
     for angle, value in ((motion.flexion, 0.4), (motion.pronation, 0.3)):
         assert np.isnan(angle).tolist() == locked.tolist()

@@ -28,7 +28,8 @@ from elbowscrew.geometry.quaternion import quat_from_rotation_matrix, rotation_m
 from elbowscrew.joints import ELBOW, GENERIC, Joint
 from elbowscrew.model import JointMotion, LineEstimate, QualityWarning, Recording, RigidBody
 from elbowscrew.model.anatomy import AnatomicalMotion, Landmarks, Side
-from elbowscrew.motion.anatomy.landmarks import landmark_places
+from elbowscrew.motion.anatomy.landmarks import landmark_points
+from elbowscrew.motion.difference import angle_of_lines
 from elbowscrew.motion.screws.relative import frame_change
 
 # Noise of flexion and pronation grows as 1/cos(carrying): here 11.5 times, as that of an axis at 10 deg of rotation.
@@ -47,14 +48,14 @@ class ElbowAngles(NamedTuple):
     ----------
     flexion : ndarray
         About the humerus' Z: positive in flexion, negative in hyperextension; in (-pi, pi].
-    carrying : ndarray
+    carrying_angle : ndarray
         About the floating X: positive in varus, so that the usual carrying angle, in valgus, is negative; within pi/2.
     pronation : ndarray
         About the forearm's Y: 0 where the styloids lie as the epicondyles do, positive in pronation; in (-pi, pi].
     """
 
     flexion: Float
-    carrying: Float
+    carrying_angle: Float
     pronation: Float
 
 
@@ -153,8 +154,7 @@ def angle_to_epicondyles(axis_direction: ArrayLike, epicondyle_line: ArrayLike) 
     """
     h = np.asarray(axis_direction, dtype=np.float64)
     along = np.asarray(epicondyle_line, dtype=np.float64)[:3]
-    angle: Float = np.arctan2(length(np.cross(h, along)), np.abs(np.sum(h * along, axis=-1)))
-    return angle
+    return angle_of_lines(h, along)
 
 
 def distance_from_point(axis_line: ArrayLike, point: ArrayLike) -> Float:
@@ -208,10 +208,10 @@ def anatomical_motion(
     SettingError
         If a marker is not in the recording or never seen together with its body, or landmarks lie on one line.
     """
-    places, warnings = landmark_places(landmarks, recording, {"proximal": proximal, "distal": distal}, joint)
-    EL, EM = (transform_points(conjugate(joint.reference), places[name]) for name in ("EL", "EM"))
-    humerus = humerus_frame(places["GH"], places["EL"], places["EM"], landmarks.side)
-    distal_isb = distal_frame(places["US"], places["RS"], EL, EM, landmarks.side)
+    points, warnings = landmark_points(landmarks, recording, {"proximal": proximal, "distal": distal}, joint)
+    EL, EM = (transform_points(conjugate(joint.reference), points[name]) for name in ("EL", "EM"))
+    humerus = humerus_frame(points["GH"], points["EL"], points["EM"], landmarks.side)
+    distal_isb = distal_frame(points["US"], points["RS"], EL, EM, landmarks.side)
     for frame, names in ((humerus, "GH, EL and EM"), (distal_isb, "US, RS and the middle of EL and EM")):
         if not np.isfinite(frame).all():
             msg = f"{landmarks.source}: {names} lie nearly on one line, so that they give no plane; check their places"
@@ -219,15 +219,15 @@ def anatomical_motion(
     angles = elbow_angles(
         multiply(multiply(conjugate(humerus), joint.dual_quat_proximal_distal), distal_isb), landmarks.side
     )
-    line = line_through(places["EM"], places["EL"] - places["EM"])
-    midpoint = 0.5 * (places["EL"] + places["EM"])
+    line = line_through(points["EM"], points["EL"] - points["EM"])
+    midpoint = 0.5 * (points["EL"] + points["EM"])
     joint_axis = np.full(6, np.nan) if joint_line is None else _proximal_line(joint_line)
     motion = AnatomicalMotion(
         side=landmarks.side,
         frame=recording.frame,
         time_s=recording.time_s,
         flexion=_continuous(angles.flexion),
-        carrying=angles.carrying,
+        carrying_angle=angles.carrying_angle,
         pronation=_continuous(angles.pronation),
         axis_angle=angle_to_epicondyles(axis_lines[:, :3], line),
         axis_distance=distance_from_point(axis_lines, midpoint),
@@ -237,7 +237,7 @@ def anatomical_motion(
         epicondyle_midpoint=midpoint,
         dual_quat_proximal_humerus=humerus,
         dual_quat_distal_isb=distal_isb,
-        places=places,
+        points=points,
         landmarks=landmarks,
     )
     return motion, (*warnings, *_doubts(motion, landmarks))

@@ -19,7 +19,7 @@ _BODY_OF: Final = {"EL": "proximal", "EM": "proximal", "GH": "proximal", "US": "
 _SPOKEN: Final = {"proximal": "arm", "distal": "forearm"}
 
 
-def landmark_places(
+def landmark_points(
     landmarks: Landmarks, recording: Recording, bodies: dict[str, RigidBody | None], joint: JointMotion
 ) -> tuple[dict[str, Float], tuple[QualityWarning, ...]]:
     """Find each landmark in the frame of its own body, shape (3,).
@@ -34,17 +34,17 @@ def landmark_places(
         "distal": joint.reference,
         "lab": conjugate(joint.dual_quat_lab_proximal),
     }
-    places: dict[str, Float] = {}
+    points: dict[str, Float] = {}
     faults: list[str] = []
     warnings: list[QualityWarning] = []
     for name, landmark in landmarks.by_name.items():
         role = _BODY_OF[name]
         if landmark.point is not None and landmark.frame is not None:
             change = multiply(conjugate(proximal_from[role]), proximal_from[landmark.frame])
-            places[name] = transform_points(change, landmark.point)
+            points[name] = transform_points(change, landmark.point)
             continue
         try:
-            places[name], moving = _place_of_markers(recording, landmark, bodies[role], name, role)
+            points[name], moving = _point_of_markers(recording, landmark, bodies[role], name, role)
             warnings += moving
         except SettingError as error:
             faults.append(f"{name}: {error}")
@@ -54,14 +54,14 @@ def landmark_places(
             '{ body = "arm", mm = [x, y, z] }'
         )
         raise SettingError(msg)
-    return places, tuple(warnings)
+    return points, tuple(warnings)
 
 
-def _place_of_markers(
+def _point_of_markers(
     recording: Recording, landmark: Landmark, body: RigidBody | None, name: str, role: str
 ) -> tuple[Float, list[QualityWarning]]:
-    """Middle of the places, shape (3,), that markers have in their body in the median of the frames that see both."""
-    places, warnings = [], []
+    """Middle of the points, shape (3,), that markers have in their body in the median of the frames that see both."""
+    points, warnings = [], []
     for wanted in landmark.markers:
         seen = _marker(recording, wanted).position
         # The very origin is what some systems write for a marker that they do not see.
@@ -73,16 +73,16 @@ def _place_of_markers(
         if not len(inside):
             msg = f"marker {wanted!r} is never seen together with the {_SPOKEN[role]}"
             raise SettingError(msg)
-        place = np.median(inside, axis=0)
-        places.append(place)
-        rms = float(np.sqrt(np.mean(np.sum((inside - place) ** 2, axis=1))))
+        point = np.median(inside, axis=0)
+        points.append(point)
+        rms = float(np.sqrt(np.mean(np.sum((inside - point) ** 2, axis=1))))
         if rms > _LARGEST_RMS:
             message = (
                 f"the marker {wanted!r} of landmark {name} moves in the {_SPOKEN[role]} by {1000.0 * rms:.0f} mm RMS: "
-                "it sits loosely or on another segment, or is mistaken for another; its median place is taken"
+                "it sits loosely or on another segment, or is mistaken for another; its median point is taken"
             )
             warnings.append(QualityWarning(code="landmark-moves", message=message))
-    return np.mean(places, axis=0), warnings
+    return np.mean(points, axis=0), warnings
 
 
 def _marker(recording: Recording, wanted: str) -> Marker:

@@ -65,16 +65,16 @@ def instantaneous_motion(
         step = dq.multiply(displacement[rows + 1], dq.conjugate(displacement[rows - 1]))
         twist[rows] = 2.0 * dq.log(dq.canonical(step)) / span[:, None]
     screw = instantaneous_screw(twist)
-    turned = np.where(np.nan_to_num(screw.line[:, :3]) @ sense < 0.0, -1.0, 1.0)
+    sign = np.where(np.nan_to_num(screw.line[:, :3]) @ sense < 0.0, -1.0, 1.0)
     gated = ~(screw.rate >= min_rate)
-    line = screw.line * turned[:, None]
-    slide_rate = screw.pitch * screw.rate * turned
+    line = screw.line * sign[:, None]
+    slide_rate = screw.pitch * screw.rate * sign
     line[gated], slide_rate[gated] = np.nan, np.nan
     return InstantaneousMotion(
         frame=frame,
         time_s=time_s,
         lowpass_hz=lowpass_hz,
-        angular_velocity=screw.rate * turned,
+        angular_velocity=screw.rate * sign,
         slide_velocity=slide_rate,
         axis_direction=line[:, :3].copy(),  # a view would keep all of the line
         axis_point=point_nearest_origin(line),

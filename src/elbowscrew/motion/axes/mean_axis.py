@@ -6,9 +6,10 @@ from typing import Final
 
 import numpy as np
 
-from elbowscrew.geometry._small_angle import divide, length
-from elbowscrew.geometry.arrays import Float
+from elbowscrew.geometry._small_angle import length
+from elbowscrew.geometry.arrays import Float, evenly_thinned
 from elbowscrew.model import MeanAxis
+from elbowscrew.motion.difference import angle_of_lines, direction_between, piercing
 
 _MOST_COMPARED: Final = 1000
 _STEP: Final = float(np.radians(1.0))
@@ -53,16 +54,14 @@ def mean_axis_of(angle: Float, line: Float, near: Float) -> MeanAxis:
     known = np.isfinite(line).all(axis=1)
     direction, point = mean_line_of(angle[known], line[known])
     plain = line[known, :3].mean(axis=0)
-    deviation = np.arctan2(length(np.cross(line[:, :3], plain)), line[:, :3] @ plain)
+    deviation = direction_between(line, plain)
     # Where each axis pierces the plane across the mean axis at `near`: the same in whatever frame it is described.
     center = point + ((near - point) @ direction) * direction
-    foot = np.cross(line[:, :3], line[:, 3:]) - center
-    along = line[:, :3] @ direction
-    place = foot - divide(foot @ direction, along)[:, None] * line[:, :3]
+    place = piercing(line[:, :3], np.cross(line[:, :3], line[:, 3:]), direction, center) - center
     chosen = np.flatnonzero(known)
-    chosen = chosen[np.linspace(0, chosen.size - 1, min(chosen.size, _MOST_COMPARED)).astype(np.int64)]
+    chosen = evenly_thinned(chosen, _MOST_COMPARED)
     weights = np.sin(0.5 * angle[known]) ** 2
-    off = np.arctan2(length(np.cross(line[known, :3], direction)), np.abs(line[known, :3] @ direction))
+    off = angle_of_lines(line[known], direction)
     return MeanAxis(
         direction=direction,
         point=point,
@@ -83,7 +82,7 @@ def _dispersion_by_angle(angle: Float, direction: Float) -> float:
     step = np.floor((angle - angle.min()) / _STEP).astype(np.int64)
     weight = 1.0 / np.bincount(step)[step]
     mean = weight @ direction
-    deviation = np.arctan2(length(np.cross(direction, mean)), direction @ mean)
+    deviation = direction_between(direction, mean)
     order = np.argsort(deviation)
     share = np.cumsum(weight[order])
     lower, upper = np.searchsorted(share, 0.5 * share[-1] * np.array([1.0 - _ROUNDING, 1.0 + _ROUNDING]))

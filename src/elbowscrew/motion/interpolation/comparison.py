@@ -22,7 +22,7 @@ from elbowscrew.model import (
     Selection,
 )
 from elbowscrew.motion.interpolation.keyframe_selection import select_keyframes
-from elbowscrew.motion.interpolation.keyframe_sources import ComparisonPlan, Treatment, treatments
+from elbowscrew.motion.interpolation.keyframe_sources import ComparisonPlan, SourcePoses, keyframe_sources_of
 from elbowscrew.motion.interpolation.keyframes import keyframes_at, spread_rows
 from elbowscrew.motion.interpolation.law_fit import FittedLaw, laws_of
 from elbowscrew.motion.interpolation.model_building import body_points, phases_of
@@ -79,14 +79,14 @@ def compare(recording: Recording, settings: Settings | None = None, plan: Compar
     points = body_points(measured.distal, raw)
     rows: list[dict[str, Any]] = []
     laws: dict[str, tuple[PhaseLaw, ...]] = {}
-    for treatment in treatments(measured, phases, plan, wanted):
-        fitted = {name: _laws_of(name, treatment, measured, points) for name in plan.laws}
-        if treatment.name == "raw" or not laws:
+    for source in keyframe_sources_of(measured, phases, plan, wanted):
+        fitted = {name: _laws_of(name, source, measured, points) for name in plan.laws}
+        if source.name == "raw" or not laws:
             laws = {
                 name: () if isinstance(found, str) else tuple(one.law for one in found)
                 for name, found in fitted.items()
             }
-        rows += [_row(model, treatment, fitted[model.law], measured, points, raw) for model in models_of(plan)]
+        rows += [_row(model, source, fitted[model.law], measured, points, raw) for model in models_of(plan)]
     tolerance = _DEFAULT_TOLERANCE if wanted.tolerance_mm is None else 1e-3 * wanted.tolerance_mm
     return Comparison(
         recording=measured.recording,
@@ -134,17 +134,17 @@ def models_of(plan: ComparisonPlan) -> Iterator[PlannedModel]:
             yield model
 
 
-def _laws_of(name: str, treatment: Treatment, measured: Measurement, points: BodyPoints) -> tuple[FittedLaw, ...] | str:
+def _laws_of(name: str, source: SourcePoses, measured: Measurement, points: BodyPoints) -> tuple[FittedLaw, ...] | str:
     """Laws of the phases, or why there are none."""
     try:
         return laws_of(
             name,
             None,
-            treatment.pose,
-            treatment.usable,
+            source.pose,
+            source.usable,
             measured.elapsed,
             measured.screw.frame,
-            treatment.phases,
+            source.phases,
             points,
         )
     except SettingError as error:
@@ -153,14 +153,14 @@ def _laws_of(name: str, treatment: Treatment, measured: Measurement, points: Bod
 
 def _row(
     model: PlannedModel,
-    treatment: Treatment,
+    source: SourcePoses,
     laws: tuple[FittedLaw, ...] | str,
     measured: Measurement,
     points: BodyPoints,
     settings: Settings,
 ) -> dict[str, Any]:
     row: dict[str, Any] = {
-        "data": treatment.name,
+        "data": source.name,
         "method": model.method,
         "blend": model.blend,
         "law": model.law,
@@ -168,7 +168,7 @@ def _row(
         "keyframes_per_phase": model.keyframes,
         "note": "",
     }
-    rows = spread_rows(treatment.phases, treatment.usable, measured.elapsed, model.keyframes)
+    rows = spread_rows(source.phases, source.usable, measured.elapsed, model.keyframes)
     row["keyframes"] = rows.size
     if isinstance(laws, str):
         return {**row, "note": laws}
@@ -176,16 +176,16 @@ def _row(
     try:
         keyframes = keyframes_at(
             rows,
-            treatment.phases,
+            source.phases,
             measured.screw.frame,
             measured.elapsed,
-            treatment.pose,
+            source.pose,
             choice=model.knots,
             laws=functions,
             piecewise=model.blend == "piecewise",
         )
         modeled, seconds = _timed(
-            lambda: model_motion(treatment.pose, measured.elapsed, keyframes, METHODS[model.method], functions)
+            lambda: model_motion(source.pose, measured.elapsed, keyframes, METHODS[model.method], functions)
         )
     except SettingError as error:
         return {**row, "note": str(error)}

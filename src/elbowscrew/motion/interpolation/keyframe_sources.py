@@ -76,7 +76,7 @@ class ComparisonPlan:
                 raise UsageError(msg)
 
 
-class Treatment(NamedTuple):
+class SourcePoses(NamedTuple):
     """What keyframes and laws are taken from: poses (N, 8), which of them count, and the phases at these."""
 
     name: str
@@ -85,9 +85,9 @@ class Treatment(NamedTuple):
     phases: ModelPhases
 
 
-def treatments(
+def keyframe_sources_of(
     measured: Measurement, phases: ModelPhases, plan: ComparisonPlan, settings: Settings
-) -> Iterator[Treatment]:
+) -> Iterator[SourcePoses]:
     """Give what the plan wants keyframes to be taken from.
 
     Raises
@@ -99,10 +99,10 @@ def treatments(
     usable[phases.bound_rows] = True
     for data in plan.data:
         if data == "raw":
-            yield Treatment("raw", measured.displacement, usable, phases)
+            yield SourcePoses("raw", measured.displacement, usable, phases)
         elif data == "lowpass":
             cutoff_hz, pose = _filtered(measured, settings)
-            yield Treatment(f"lowpass {cutoff_hz:.3g} Hz", pose, usable, phases)
+            yield SourcePoses(f"lowpass {cutoff_hz:.3g} Hz", pose, usable, phases)
         else:
             for factor in plan.decimation:
                 yield _decimated(factor, measured, usable, phases)
@@ -119,7 +119,7 @@ def _filtered(measured: Measurement, settings: Settings) -> tuple[float, Float]:
     return float(smoothing.cutoff_hz or np.inf), np.where(np.isfinite(pose), pose, measured.displacement)
 
 
-def _decimated(factor: int, measured: Measurement, usable: Bool, phases: ModelPhases) -> Treatment:
+def _decimated(factor: int, measured: Measurement, usable: Bool, phases: ModelPhases) -> SourcePoses:
     start = int(phases.bound_rows[0])
     kept = usable & ((np.arange(usable.size) - start) % factor == 0)
     rows = np.flatnonzero(kept)
@@ -130,4 +130,4 @@ def _decimated(factor: int, measured: Measurement, usable: Bool, phases: ModelPh
     if (np.diff(bounds) <= 0).any() or (np.diff(laws, axis=1) <= 0).any():
         msg = f"--decimation {factor}: a phase has less than two of the frames that are left; give a smaller one"
         raise SettingError(msg)
-    return Treatment(name, measured.displacement, kept, ModelPhases(bound_rows=bounds, law_rows=laws))
+    return SourcePoses(name, measured.displacement, kept, ModelPhases(bound_rows=bounds, law_rows=laws))

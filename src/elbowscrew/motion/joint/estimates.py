@@ -5,18 +5,16 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from elbowscrew.choices import ExpressIn
 from elbowscrew.geometry import point_nearest_origin
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_quaternion import multiply, pose_from_dual_quat, transform_lines
 from elbowscrew.geometry.sensitivity import confidence_radius
 from elbowscrew.model import JointMotion, LineEstimate
 from elbowscrew.motion.joint.interval import JointInterval, pose_radii
 from elbowscrew.motion.joint.lines import Z_LINE
 from elbowscrew.motion.screws.pose_noise import JointNoise
-
-Float = NDArray[np.float64]
 
 UNDETERMINED = 0.5 * np.pi
 """Half-angle of a cone from which on a direction is not determined at all."""

@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowscrew.choices import ExpressIn
-from elbowscrew.geometry.arrays import Float
+from elbowscrew.geometry.arrays import Float, evenly_thinned
 from elbowscrew.geometry.dual_quaternion import conjugate, pose_from_dual_quat, transform_lines
+from elbowscrew.geometry.sensitivity import NORMAL_95
 from elbowscrew.model import FittedJoint, JointAxis, JointMotion, PoseNoise
 from elbowscrew.motion.joint.estimates import line_errors, line_estimate
 from elbowscrew.motion.joint.influence import influence_of_fit
@@ -32,7 +33,6 @@ from elbowscrew.motion.screws.uncertainty import joint_covariance
 
 _MOST_FRAMES: Final = 20_000
 _LARGEST_UNEXPLAINED: Final = 0.25
-_NORMAL_95: Final = 1.959964
 # Without a stated noise: a common cluster's, whose rotation and translation only have to be weighed against each other.
 _COMMON_NOISE: Final = np.diag([6e-6] * 3 + [1e-8] * 3)
 
@@ -112,7 +112,7 @@ def estimate_joint_axis(
 def fitted_frames(joint: JointMotion, noise: JointNoise, noise_gain: Float) -> tuple[NDArray[np.int64], Float, Float]:
     """Rows (F,) of the frames that a joint is fitted to, their poses (F, 8) and the covariances (F, 6, 6) of these."""
     rows = np.flatnonzero(joint.measured)
-    rows = rows[np.linspace(0, rows.size - 1, min(rows.size, _MOST_FRAMES)).astype(np.int64)]
+    rows = evenly_thinned(rows, _MOST_FRAMES)
     poses = joint.dual_quat_proximal_distal[rows]
     assumed = PoseNoise(covariance=_COMMON_NOISE, source="assumed", marker_noise=None)
     proximal, distal = noise.known or (assumed if noise.proximal_moves else None, assumed)
@@ -161,7 +161,7 @@ def _fitted_joint(
         **errors._asdict(),
         decided_by=interval.decided_by(tilt) if np.isfinite(errors.axis_cone) else None,
         pitch=fit.pitch,
-        pitch_sd=interval.radius(pitch) / _NORMAL_95 if pitched and known else 0.0 if not pitched else float("nan"),
+        pitch_sd=interval.radius(pitch) / NORMAL_95 if pitched and known else 0.0 if not pitched else float("nan"),
         pitch_sure=interval.radius(pitch, SURE) if pitched and known else 0.0 if not pitched else float("nan"),
         sensitivity=skin_sensitivity(fit.angle, fit.weight),
         residual_rotation=_rms(fit.residual[:, :2], fit.weight),

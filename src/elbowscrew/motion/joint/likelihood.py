@@ -16,7 +16,7 @@ from typing import Final, Generic, NamedTuple, Self, TypeVar
 import numpy as np
 
 from elbowscrew.geometry import dual_quaternion as dq
-from elbowscrew.geometry.arrays import Float, Index
+from elbowscrew.geometry.arrays import Float, Index, evenly_thinned
 from elbowscrew.geometry.twist import adjoint
 
 M = TypeVar("M", bound="Mechanism")
@@ -62,8 +62,7 @@ class Poses(NamedTuple):
 
     def thinned(self, most: int) -> tuple[Poses, Index]:
         """At most so many frames, evenly spread, and which they are."""
-        count = len(self.joint)
-        rows = np.linspace(0, count - 1, min(count, most)).round().astype(np.int64)
+        rows = evenly_thinned(np.arange(len(self.joint)), most)
         return self.at(rows), rows
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.quaternion import rotation_matrix_from_quat
-from elbowscrew.geometry.sensitivity import confidence_radius
+from elbowscrew.geometry.sensitivity import NORMAL_95, confidence_radius
 from elbowscrew.model.joint_type import BallJoint, JointLine, JointType, Measure, SecondRotation, TwoAxes
 from elbowscrew.motion.joint.choice import Choice, choose_type, middle_range
 from elbowscrew.motion.joint.fitting import Fitted, shared_covariance
@@ -24,7 +24,6 @@ _PARALLEL: Final = np.radians(5.0)
 _SURE: Final = 3.0
 _LEAST_RANGE_IN_SD: Final = 12.0
 _LARGEST_AXIS_SD: Final = np.radians(15.0)
-_NORMAL_95: Final = 1.959964
 # Radius of the ball that holds 95 % of an isotropic error in space: root of the quantile of chi-square with 3.
 _BALL_95: Final = 2.795483
 
@@ -236,7 +235,7 @@ def _ball(fit: Fit[Mechanism], at: Ball, *, noise_known: bool) -> BallJoint:
     # Between that of one direction and that of three alike: exact at both ends.
     values = np.linalg.eigvalsh(covariance[:3, :3]) if np.isfinite(covariance).all() else np.full(3, np.nan)
     roundness = (values.sum() / values.max() - 1.0) / 2.0
-    factor = _NORMAL_95 + (_BALL_95 / np.sqrt(3.0) - _NORMAL_95) * roundness
+    factor = NORMAL_95 + (_BALL_95 / np.sqrt(3.0) - NORMAL_95) * roundness
     return BallJoint(
         center_proximal=at.proximal,
         center_distal=at.distal,

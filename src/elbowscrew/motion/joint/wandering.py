@@ -11,6 +11,7 @@ from elbowscrew.choices import ExpressIn
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry import point_nearest_origin
 from elbowscrew.geometry.arrays import Float
+from elbowscrew.geometry.sensitivity import NORMAL_95
 from elbowscrew.model import JointMotion
 from elbowscrew.model.joint_axis import AxisPath, AxisWander, LineEstimate, MeanLine
 from elbowscrew.motion.joint.estimates import LineErrors, line_errors, line_estimate
@@ -20,7 +21,6 @@ from elbowscrew.motion.joint.wander import Wander
 from elbowscrew.motion.screws.pose_noise import JointNoise
 
 _PARTS: Final = 15
-_NORMAL_95: Final = 1.959964
 
 
 class Told(NamedTuple):
@@ -121,4 +121,4 @@ def _size_sd(found: Wander, part: slice) -> float:
     size = float(np.linalg.norm(half))
     row = np.zeros((1, len(found.step)))
     row[0, part] = half / size if size > 0.0 else [1.0, 0.0]
-    return 2.0 * found.interval.radius(row) / _NORMAL_95
+    return 2.0 * found.interval.radius(row) / NORMAL_95

@@ -10,6 +10,7 @@ from elbowscrew.geometry._small_angle import divide, length
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import CycleCurves, Repeatability, Repetitions, ScrewMotion
 from elbowscrew.motion.axes.mean_axis import mean_line_of
+from elbowscrew.motion.difference import direction_between, piercing
 from elbowscrew.motion.movements.boundaries import Cycles
 from elbowscrew.motion.movements.phases import nearest_rows
 
@@ -66,7 +67,7 @@ def repetitions_of(
         back_speed=speed[:, 1],
         axis_direction=direction,
         axis_point=point,
-        axis_deviation=np.arctan2(length(np.cross(direction, middle)), direction @ middle),
+        axis_deviation=direction_between(direction, middle),
     )
 
 
@@ -212,8 +213,8 @@ def _point_spread(directions: Float, points: Float, near: Float) -> float:
         return float("nan")
     n, p = directions[known], points[known]
     middle = _mean_direction(n)
-    pierced = p + divide((near - p) @ middle, n @ middle)[:, None] * n
-    return _spread(length(pierced - pierced.mean(axis=0)))
+    point = piercing(n, p, middle, near)
+    return _spread(length(point - point.mean(axis=0)))
 
 
 def _largest(values: Float) -> float:

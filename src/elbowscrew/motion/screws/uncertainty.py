@@ -27,7 +27,7 @@ class ScrewErrors(NamedTuple):
     angle, slide : ndarray, shape (N,)
         Radians and meters.
     axis, point : ndarray, shape (N,)
-        Of the direction (rad) and of the place across the axis (m), both components together.
+        Of the direction (rad) and of the axis' position across itself (m), both components together.
     axis_cone, point_radius : ndarray, shape (N,)
         Half-angle (rad) of the cone, and radius (m) of the circle, that hold 95 %.
     """
@@ -53,7 +53,7 @@ def joint_covariance(joint: Float, proximal: PoseNoise | None, distal: PoseNoise
     Returns
     -------
     ndarray, shape (..., 6, 6)
-        In the forearm's frame. The arm's rotation enters with the forearm's place in the arm as its lever.
+        In the forearm's frame. The arm's rotation enters with the forearm's position in the arm as its lever.
     """
     if proximal is None:
         return np.broadcast_to(distal.covariance, (*joint.shape[:-1], 6, 6))
@@ -123,20 +123,20 @@ def errors_from_covariance(displacement: Float, frame: Float, reference: Float, 
     lever = adjoint(displacement)
     covariance = lever @ frame @ np.swapaxes(lever, -1, -2) + reference
     if (change != IDENTITY).any():
-        turned = adjoint(change)
-        covariance = turned @ covariance @ turned.T
+        transform = adjoint(change)
+        covariance = transform @ covariance @ transform.T
         displacement = multiply(multiply(change, displacement), conjugate(change))
     screw = screw_sensitivity(displacement)
     turning = screw.direction[..., :3]  # a shift does not move a direction
     direction = turning @ covariance[..., :3, :3] @ np.swapaxes(turning, -1, -2)
-    place = screw.place @ covariance @ np.swapaxes(screw.place, -1, -2)
+    point = screw.point @ covariance @ np.swapaxes(screw.point, -1, -2)
     return ScrewErrors(
         angle=np.sqrt(np.einsum("ni,nij,nj->n", screw.angle, covariance, screw.angle)),
         slide=np.sqrt(np.einsum("ni,nij,nj->n", screw.slide, covariance, screw.slide)),
         axis=np.sqrt(np.trace(direction, axis1=1, axis2=2)),
-        point=np.sqrt(np.trace(place, axis1=1, axis2=2)),
+        point=np.sqrt(np.trace(point, axis1=1, axis2=2)),
         axis_cone=confidence_radius(direction),
-        point_radius=confidence_radius(place),
+        point_radius=confidence_radius(point),
     )
 
 

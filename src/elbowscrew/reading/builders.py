@@ -19,7 +19,7 @@ from elbowscrew.model import (
 )
 
 
-class Growing:
+class ArrayBuilder:
     """An array that grows by blocks of rows."""
 
     def __init__(self, row_shape: tuple[int, ...] = (), dtype: Any = np.float64) -> None:
@@ -43,12 +43,12 @@ class Growing:
         self._store.resize((rows, *self._store.shape[1:]), refcheck=False)
 
 
-class GrowingBody:
+class BodyBuilder:
     """The poses of one body of a file, of which only plausible ones count."""
 
     def __init__(self, name: str) -> None:
         self._name = name
-        self._pose, self._loss = Growing((8,)), Growing(dtype=np.uint8)
+        self._pose, self._loss = ArrayBuilder((8,)), ArrayBuilder(dtype=np.uint8)
         self._invalid = 0
 
     def append(self, quat: Float, position: Float, loss: NDArray[np.uint8] | None = None) -> Float:
@@ -74,12 +74,12 @@ class GrowingBody:
         return [invalid_warning(self._name, self._invalid)] if self._invalid else []
 
 
-class GrowingMarker:
+class MarkerBuilder:
     """The positions of one marker of a file, of which only plausible ones count."""
 
     def __init__(self, name: str) -> None:
         self._name = name
-        self._position = Growing((3,))
+        self._position = ArrayBuilder((3,))
         self._far = 0
 
     def append(self, position: Float) -> None:
