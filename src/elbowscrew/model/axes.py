@@ -26,7 +26,7 @@ class InstantaneousMotion(ArrayRecord):
     angular_velocity : ndarray, shape (N,)
         About the axis, rad/s, positive as the angle grows.
     slide_velocity : ndarray, shape (N,)
-        Along the axis, m/s; as the axis, NaN where the forearm turns too slowly.
+        Along the axis, m/s; as the axis, NaN where the distal body turns too slowly.
     axis_direction, axis_point : ndarray, shape (N, 3)
         Unit direction, and the point (m) nearest the origin.
     lowpass_hz : float

@@ -41,17 +41,17 @@ class ComparedModels(ArrayRecord):
     method, blend, law, knots : ndarray of str, shape (M,)
     keyframes_per_phase, keyframes : ndarray of int, shape (M,)
     rms_displacement, max_displacement : ndarray, shape (M,)
-        RMS and largest RMS displacement of the forearm's points, meters; NaN where there is no model.
+        RMS and largest RMS displacement of the distal body's points, meters; NaN where there is no model.
     max_displacement_frame : masked ndarray of int, shape (M,)
         Frame of the largest one.
     rms_angle_error, max_angle_error : ndarray, shape (M,)
         Angle between modeled and measured orientation, radians.
     rms_translation_error, max_translation_error : ndarray, shape (M,)
-        Of the forearm's origin, meters.
+        Of the distal body's origin, meters.
     rms_axis_error, max_axis_error : ndarray, shape (M,)
         Angle between modeled and measured screw axis, radians.
     rms_axis_distance, max_axis_distance : ndarray, shape (M,)
-        Distance between the two at the forearm, meters.
+        Distance between the two at the distal body, meters.
     ns_per_frame : ndarray, shape (M,)
         Time it takes to make the modeled poses.
     note : ndarray of str, shape (M,)

@@ -60,10 +60,10 @@ class FittedJoint(ArrayRecord):
     ----------
     line : LineEstimate
     covariance : ndarray, shape (P, P)
-        Of tilt and shift (two each) of the line in the arm, the same in the forearm, slide at the reference, and the
-        pitch of a screw-hinge.
+        Of tilt and shift (two each) of the line in the proximal body, the same in the distal one, slide at the
+        reference, and the pitch of a screw-hinge.
     axis_sd, point_sd : float
-        Of the line as expressed: direction (rad) and place at the point nearest the forearm (m), both components.
+        Of the line as expressed: direction (rad) and position nearest the distal body (m), both components.
     axis_cone, point_radius : float
         Half-angle (rad) and radius (m) that hold 95 % for the clusters' frames, the radius about the line's point
         nearest the origin; as the standard deviations, NaN where they are not known: the frames are too few to tell,

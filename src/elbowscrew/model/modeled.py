@@ -246,12 +246,12 @@ class InterpolatedMotion(ArrayRecord):
     angle_error : ndarray, shape (N,)
         Angle of the rotation between modeled and measured orientation, radians.
     translation_error : ndarray, shape (N,)
-        Distance between modeled and measured origin of the forearm, meters.
+        Distance between modeled and measured origin of the distal body, meters.
     rms_displacement : ndarray, shape (N,)
-        RMS distance between modeled and measured points of the forearm, meters.
+        RMS distance between modeled and measured points of the distal body, meters.
     axis_error, axis_distance : ndarray, shape (N,)
         Angle (rad) between modeled and measured screw axis, and distance (m) between them, across the measured one
-        where it passes the forearm at the reference; NaN where one of the two is not known.
+        where it passes the distal body at the reference; NaN where one of the two is not known.
     """
 
     frame: NDArray[np.int64]

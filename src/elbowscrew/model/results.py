@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class JointMotion(ArrayRecord):
-    """The forearm (distal) seen from the arm (proximal), frame by frame.
+    """The distal body seen from the proximal one, frame by frame.
 
     Attributes
     ----------
@@ -44,7 +44,7 @@ class JointMotion(ArrayRecord):
     lowpass_hz : float or None
         Cut-off of the filter that both bodies went through; None if they went through none.
     dual_quat_lab_proximal : ndarray, shape (8,)
-        ``A_0``, the arm at the reference; the identity if the file has no arm.
+        ``A_0``, the proximal body at the reference; the identity if the file has no proximal body.
     """
 
     dual_quat_proximal_distal: Float
@@ -125,7 +125,7 @@ class MeanAxis(ArrayRecord):
     deviation : ndarray, shape (N,)
         Angle between each frame's axis and the plain mean direction, radians; NaN where there is no axis.
     distance : ndarray, shape (N,)
-        Distance between each frame's axis and the mean axis, across the latter where it passes the forearm at the
+        Distance between each frame's axis and the mean axis, across the latter where it passes the distal body at the
         reference, meters; NaN where there is no axis.
     dispersion : float
         Median angle of the axes from their mean direction, both over equal steps (1 deg) of the rotation, radians: a
@@ -160,7 +160,7 @@ class Analysis(ArrayRecord):
     recording : Recording
     settings : Settings
     proximal : RigidBody or None
-        None where the file has no arm and it is taken to stand still.
+        None where the file has no proximal body and it is taken to stand still.
     distal : RigidBody
     named_joint : Joint
         What the joint and its segments are called.
@@ -168,7 +168,7 @@ class Analysis(ArrayRecord):
     elapsed : ndarray, shape (N,)
         Even clock, seconds since the first frame.
     displacement : ndarray, shape (N, 8)
-        Since the reference, in the forearm's frame there (P 35), sign-continuous.
+        Since the reference, in the distal body's frame there (P 35), sign-continuous.
     screw : ScrewMotion
     sense : Sense
         What gives its angle a sense.
@@ -196,7 +196,7 @@ class Analysis(ArrayRecord):
     points : BodyPoints
         What the RMS displacement is averaged over.
     quality : tuple of BodyQuality
-        Of the arm, if there is one, and of the forearm.
+        Of the proximal body, if there is one, and of the distal body.
     warnings : tuple of QualityWarning
         Those of the recording and those of the analysis.
     """

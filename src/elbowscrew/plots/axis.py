@@ -24,7 +24,7 @@ _MOST_POINTS: Final = 4000
 
 
 class _MeanFrame(NamedTuple):
-    """The mean axis with two directions perpendicular to it, and its point nearest the forearm's path."""
+    """The mean axis with two directions perpendicular to it, and its point nearest the distal body's path."""
 
     direction: Float
     across: tuple[Float, Float]
@@ -39,7 +39,7 @@ def color_scale(analysis: Shown) -> ScalarMappable:
 
 
 def plot_axes_in_space(ax: Axes3D, analysis: Shown) -> Axes3D:
-    """Draw the axes with the mean axis, the path of the forearm and the arm, in the frame they are expressed in."""
+    """Draw the axes with the mean axis and the bodies, the distal one by its path, in the frame of the axes."""
     unit = analysis.settings.length_unit
     bodies = bodies_in_space(analysis)
     proximal = bodies.proximal
@@ -90,7 +90,7 @@ def plot_axis_directions(ax: Axes, analysis: Shown) -> Axes:
 
 
 def plot_axis_places(ax: Axes, analysis: Shown) -> Axes:
-    """Draw where each axis pierces the plane across the mean axis nearest the forearm, relative to the mean axis."""
+    """Draw where each axis pierces the plane across the mean axis nearest the distal body, from the mean axis."""
     unit = analysis.settings.length_unit
     mean = _mean_frame(analysis, bodies_in_space(analysis))
     rows = evenly_thinned(np.flatnonzero(analysis.screw.axis_known), _MOST_POINTS)

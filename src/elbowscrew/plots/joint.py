@@ -72,7 +72,7 @@ def plot_axis_from_the_side(ax: Axes, analysis: Shown, side: int) -> Axes:
 
 
 def plot_axis_end_on(ax: Axes, analysis: Shown) -> Axes:
-    """Draw the axes as seen along the joint's axis, with the circles that hold 95 % at the forearm."""
+    """Draw the axes as seen along the joint's axis, with the circles that hold 95 % at the distal body."""
     bundle = _bundle(analysis)
     unit = analysis.settings.length_unit
     directions, names = directions_across(bundle.direction)

@@ -61,7 +61,7 @@ def plot_angle_error(ax: Axes, analysis: Shown) -> Axes:
 
 
 def plot_rms_displacement(ax: Axes, analysis: Shown) -> Axes:
-    """Draw the RMS displacement of the forearm's points over time, with its RMS."""
+    """Draw the RMS displacement of the distal body's points over time, with its RMS."""
     unit = analysis.settings.length_unit
     values = length_in(analysis.interpolated.rms_displacement, unit)
     return _plot_error(ax, analysis, values, "RMS displacement", unit)

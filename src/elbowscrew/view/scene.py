@@ -19,9 +19,9 @@ _STEEPEST: Final = 1.4
 class Bodies(NamedTuple):
     """Bodies in the frame shown, meters.
 
-    The path (N, 3) of the forearm's origin with its mean (3,) and the corners (2, 3) of the box about it, and where it
-    is at the reference (3,); the arm's origin (3,), None without an arm; and the markers (M, 3) of the arm and of the
-    forearm at the reference, None where the file has none.
+    The path (N, 3) of the distal body's origin with its mean (3,) and the corners (2, 3) of the box about it, and where
+    it is at the reference (3,); the proximal body's origin (3,), None without one; and the markers (M, 3) of the
+    proximal and of the distal body at the reference, None where the file has none.
     """
 
     path: Float
@@ -88,7 +88,7 @@ def bodies_in_space(shown: Shown) -> Bodies:
         for body, pose in ((shown.proximal, change), (shown.distal, at_reference))
     ]
     start = pose_from_dual_quat(at_reference)[1]
-    # The displacement takes the forearm's origin along from where it is at the reference.
+    # The displacement takes the distal body's origin along from where it is at the reference.
     path = shown.screw.translation
     if start.any():
         path = path + rotate(shown.screw.euler_parameters, start)

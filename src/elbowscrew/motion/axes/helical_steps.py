@@ -31,7 +31,7 @@ def helical_steps(
     Parameters
     ----------
     displacement : ndarray, shape (N, 8)
-        Since the reference, in the forearm's frame there.
+        Since the reference, in the distal body's frame there.
     angle : ndarray, shape (N,)
         Rotation since the reference, radians, whose course the steps follow.
     joint : JointMotion
@@ -45,7 +45,7 @@ def helical_steps(
     sense : ndarray, shape (3,)
         Direction, as expressed, about which a positive angle turns.
     noise : tuple of PoseNoise, optional
-        Of the arm (None if it stands still) and of the forearm; None where it is not known.
+        Of the proximal body (None if it stands still) and of the distal body; None where it is not known.
     noise_gain : ndarray, shape (N,)
         Share of its variance that a filter has left in each frame.
 
@@ -97,6 +97,6 @@ def _ends(angle: Float, step: float) -> NDArray[np.intp]:
 
 
 def _written(displacement: Float, covariance: Float) -> Float:
-    """Covariance of the twist in the forearm's frame at the reference, of one in the frame's own."""
+    """Covariance of the twist in the distal body's frame at the reference, of one in the frame's own."""
     lever = adjoint(displacement)
     return lever @ covariance @ np.swapaxes(lever, -1, -2)

@@ -57,7 +57,7 @@ def estimate_joint_axis(
     angle : ndarray, shape (N,)
         Rotation since the reference, radians, for the sense of the axis.
     mean_line : ndarray, shape (6,)
-        Weighted mean of the finite axes in the forearm's frame at the reference.
+        Weighted mean of the finite axes in the distal body's frame at the reference.
     noise : JointNoise
     noise_gain : ndarray, shape (N,)
         Share of the noise's variance that a filter has left in each frame.
@@ -174,7 +174,7 @@ def _fitted_joint(
 
 
 def distal_line(line: Float, change: Float) -> Float:
-    """Write a line (6,) of the frame the screws are expressed in, in the forearm's at the reference."""
+    """Write a line (6,) of the frame the screws are expressed in, in the distal body's at the reference."""
     return transform_lines(conjugate(change), line)
 
 

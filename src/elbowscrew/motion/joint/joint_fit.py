@@ -1,9 +1,10 @@
 """The joint's line from all relative poses at once: maximum likelihood of a hinge or screw-hinge, and SARA.
 
 The model of frame i is ``J_i = A Z(theta_i, s_0 + p theta_i) F^-1 exp(e_i)``: A is a pose whose z axis is the line in
-the arm, F one whose z axis is the line in the forearm, Z the screw motion along z. All frames share the two lines (four
-parameters each), s_0 and the pitch p; each has its own angle, which is eliminated. No pose is the reference, so that no
-pose's noise is shared by all. ``docs/joint-axis.md`` derives the bound that the covariance attains.
+the proximal body, F one whose z axis is the line in the distal body, Z the screw motion along z. All frames share the
+two lines (four parameters each), s_0 and the pitch p; each has its own angle, which is eliminated. No pose is the
+reference, so that no pose's noise is shared by all. ``docs/joint-axis.md`` derives the bound that the covariance
+attains.
 """
 
 from __future__ import annotations
@@ -44,7 +45,7 @@ class LineFit(NamedTuple):
         Of each frame about the line, radians.
     pitch : float
     residual : ndarray, shape (F, 6)
-        What is left of each pose, as a twist in the frame of the line (z along it) on the forearm's side.
+        What is left of each pose, as a twist in the frame of the line (z along it) on the distal body's side.
     weight : ndarray, shape (F,)
     information : ndarray, shape (P, P)
         Inverse of the covariance of the shared parameters under the stated noise.
@@ -92,13 +93,13 @@ def fit_joint(
     Parameters
     ----------
     joint : ndarray, shape (F, 8)
-        Forearm in the arm, any signs, in order of time.
+        The distal body in the proximal one, any signs, in order of time.
     covariance : ndarray, shape (F, 6, 6)
-        Of each pose's error in the forearm's frame (`joint_covariance`); its scale does not move the fit.
+        Of each pose's error in the distal body's frame (`joint_covariance`); its scale does not move the fit.
     line : ndarray, shape (6,)
-        Start: the line in the arm.
+        Start: the line in the proximal body.
     near : ndarray, shape (3,)
-        The line's origin is put at its point nearest this one, in the arm.
+        The line's origin is put at its point nearest this one, in the proximal body.
     screw : bool
         Let the slide grow with the angle.
     robust : bool
@@ -110,7 +111,7 @@ def fit_joint(
     """
     W: Float = np.asarray(np.linalg.inv(covariance), dtype=np.float64)
     A = _line_pose(line, near)
-    # The forearm's line: where the arm's is seen from it, in the middle of the motion.
+    # The distal body's line: where the proximal body's is seen from it, in the middle of the motion.
     F = dq.normalize(dq.multiply(dq.conjugate(joint[len(joint) // 2]), A))
     angle = _angles(joint, A, F)
     pitch, weight = 0.0, np.ones(len(joint))
@@ -231,7 +232,7 @@ def _moved(at: _Step, step: Float, turn: Float, *, screw: bool) -> _Step:
     tilt = np.zeros((2, 6))
     tilt[0, list(_SHARED_HINGE)] = step[:4]
     tilt[1, list(_SHARED_HINGE)] = step[4:8]
-    # The slide at angle 0 is a shift of the forearm's frame against its line: Z(0, s) F^-1 = (F Z(0, -s))^-1.
+    # The slide at angle 0 is a shift of the distal body's frame against its line: Z(0, s) F^-1 = (F Z(0, -s))^-1.
     tilt[1, 5] = -step[8]
     proximal = dq.normalize(dq.multiply(at.proximal, dq.exp(0.5 * tilt[0])))
     distal = dq.normalize(dq.multiply(at.distal, dq.exp(0.5 * tilt[1])))
@@ -298,7 +299,7 @@ def _integrated_autocorrelation(series: Float) -> float:
 
 
 def sara_lines(joint: Float, angle: Float) -> tuple[Float, Float]:
-    """Symmetrical axis of rotation: the lines (6,) in arm and forearm whose points stay nearest each other.
+    """Symmetrical axis of rotation: the lines (6,) in the two bodies whose points stay nearest each other.
 
     Solves ``R_i c_F - c_A = -t_i`` for the point in both bodies by least squares; the axis is the direction in which
     the solution is not determined.

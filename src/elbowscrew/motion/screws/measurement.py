@@ -66,7 +66,7 @@ class Measurement(NamedTuple):
         Even clock, seconds.
     joint : JointMotion
     displacement : ndarray, shape (N, 8)
-        Since the reference, in the forearm's frame there (P 35).
+        Since the reference, in the distal body's frame there (P 35).
     change : ndarray, shape (8,)
         Pose of that frame in the one the screws are expressed in.
     noise : JointNoise

@@ -65,13 +65,13 @@ class JointNoise(NamedTuple):
 
     @classmethod
     def of(cls, proximal: RigidBody | None, distal: RigidBody, rate_hz: float, settings: Settings) -> JointNoise:
-        """Find the noise of both; an arm that stands still has none."""
+        """Find the noise of both; a proximal body that stands still has none."""
         found = None if proximal is None else pose_noise(proximal, rate_hz, settings)
         return cls(found, pose_noise(distal, rate_hz, settings), proximal is not None)
 
     @property
     def known(self) -> tuple[PoseNoise | None, PoseNoise] | None:
-        """Both, the arm's None if it stands still; None if one is not known."""
+        """Both, the proximal body's None if it stands still; None if one is not known."""
         if self.distal is None or (self.proximal is None and self.proximal_moves):
             return None
         return self.proximal, self.distal

@@ -1,4 +1,4 @@
-"""The forearm seen from the arm, and its displacement since the reference (P 35)."""
+"""The distal body seen from the proximal body, and its displacement since the reference (P 35)."""
 
 from __future__ import annotations
 
@@ -33,9 +33,9 @@ def joint_from_bodies(
     Parameters
     ----------
     proximal : RigidBody or None
-        The arm; None if it stands still.
+        The proximal body; None if it stands still.
     distal : RigidBody
-        The forearm.
+        The distal body.
     frame : ndarray of int64, shape (N,)
         Frame numbers, for messages.
     elapsed : ndarray, shape (N,)
@@ -93,7 +93,7 @@ def joint_from_bodies(
 
 
 def displacement(joint: JointMotion) -> NDArray[np.float64]:
-    """``D_i = J_0^-1 J_i`` (P 35), shape (N, 8), in the forearm's frame at the reference.
+    """``D_i = J_0^-1 J_i`` (P 35), shape (N, 8), in the distal body's frame at the reference.
 
     Sign-continuous as the joint's own series, with the reference itself at +1.
     """
@@ -102,10 +102,10 @@ def displacement(joint: JointMotion) -> NDArray[np.float64]:
 
 
 def expressed(dual_quat: NDArray[np.float64], joint: JointMotion, express_in: ExpressIn) -> NDArray[np.float64]:
-    """Write displacements, shape (N, 8), given in the forearm's reference frame in another frame.
+    """Write displacements, shape (N, 8), given in the distal body's reference frame in another frame.
 
-    The arm's is ``J_0 D J_0^-1``, the laboratory's ``A_0 J_0 D J_0^-1 A_0^-1``: same angle, same slide, another
-    description of the line.
+    The proximal body's is ``J_0 D J_0^-1``, the laboratory's ``A_0 J_0 D J_0^-1 A_0^-1``: same angle, same slide,
+    another description of the line.
     """
     if express_in == "distal":
         return dual_quat
@@ -114,7 +114,7 @@ def expressed(dual_quat: NDArray[np.float64], joint: JointMotion, express_in: Ex
 
 
 def frame_change(joint: JointMotion, express_in: ExpressIn) -> NDArray[np.float64]:
-    """Pose of the forearm at the reference, shape (8,), in the frame screws are expressed in."""
+    """Pose of the distal body at the reference, shape (8,), in the frame screws are expressed in."""
     match express_in:
         case "distal":
             return IDENTITY

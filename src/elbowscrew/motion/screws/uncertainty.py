@@ -46,14 +46,14 @@ def joint_covariance(joint: Float, proximal: PoseNoise | None, distal: PoseNoise
     Parameters
     ----------
     joint : ndarray, shape (..., 8)
-        Poses of the forearm in the arm.
+        Poses of the distal body in the proximal body.
     proximal, distal : PoseNoise
-        Of the arm, None if it stands still, and of the forearm.
+        Of the proximal body, None if it stands still, and of the distal body.
 
     Returns
     -------
     ndarray, shape (..., 6, 6)
-        In the forearm's frame. The arm's rotation enters with the forearm's position in the arm as its lever.
+        In the distal body's frame. The proximal body's rotation enters with the distal body's position as its lever.
     """
     if proximal is None:
         return np.broadcast_to(distal.covariance, (*joint.shape[:-1], 6, 6))
@@ -79,7 +79,7 @@ def screw_errors(
     Parameters
     ----------
     displacement : ndarray, shape (N, 8)
-        ``D``, in the forearm's frame at the reference.
+        ``D``, in the distal body's frame at the reference.
     joint : JointMotion
     proximal, distal : PoseNoise
         As in `joint_covariance`.
@@ -93,7 +93,7 @@ def screw_errors(
 
     References
     ----------
-    Woltring 1985 for one body that moves; the arm's noise and the reference's are added here.
+    Woltring 1985 for one body that moves; the proximal body's noise and the reference's are added here.
     """
     errors = no_errors(len(displacement))
     reference = joint_covariance(joint.reference, proximal, distal) / reference_frames
