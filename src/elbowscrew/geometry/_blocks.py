@@ -14,7 +14,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from elbowscrew.geometry.arrays import Float
+from elbowscrew.geometry.arrays import Float, Index
 
 # From 8,192 to 32,768 frames alike. The least of them keeps a linear map of 4 x 8 below the size from which on
 # OpenBLAS takes threads, which would stand in the way of those who run one process on each core.
@@ -77,3 +77,8 @@ def _reader(array: Float, shape: tuple[int, ...], count: int, *, contiguous: boo
 def is_single(array: Float) -> bool:
     """Whether the array (..., k) holds one frame only."""
     return bool(array.size == array.shape[-1])
+
+
+def evenly_thinned(rows: Index, most: int) -> Index:
+    """At most so many of the rows (K,), evenly chosen, the first and the last among them."""
+    return rows if rows.size <= most else rows[np.linspace(0, rows.size - 1, most).astype(np.int64)]

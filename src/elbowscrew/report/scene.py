@@ -6,7 +6,8 @@ from typing import Any, Final
 
 import numpy as np
 
-from elbowscrew.geometry.arrays import Float, evenly_thinned
+from elbowscrew.geometry._blocks import evenly_thinned
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.report.charts import COLORS
 from elbowscrew.view.finished import FinishedTrial
 from elbowscrew.view.scene import Region, bodies_in_space, directions_across, joint_bundle

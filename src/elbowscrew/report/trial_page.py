@@ -9,7 +9,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowscrew.geometry.arrays import evenly_thinned
+from elbowscrew.geometry._blocks import evenly_thinned
 from elbowscrew.joints import Joint
 from elbowscrew.report.methods import citations_of, methods_of
 from elbowscrew.report.pages import UNSHOWABLE, render, unshowable, write_page

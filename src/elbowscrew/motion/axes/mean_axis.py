@@ -6,8 +6,9 @@ from typing import Final
 
 import numpy as np
 
+from elbowscrew.geometry._blocks import evenly_thinned
 from elbowscrew.geometry._small_angle import length
-from elbowscrew.geometry.arrays import Float, evenly_thinned
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import MeanAxis
 from elbowscrew.motion.difference import angle_of_lines, direction_between, piercing
 

@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowscrew.choices import ExpressIn
-from elbowscrew.geometry.arrays import Float, evenly_thinned
+from elbowscrew.geometry._blocks import evenly_thinned
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_quaternion import conjugate, pose_from_dual_quat, transform_lines
 from elbowscrew.geometry.sensitivity import NORMAL_95
 from elbowscrew.model import FittedJoint, JointAxis, JointMotion, PoseNoise

@@ -16,7 +16,8 @@ from typing import Final, Generic, NamedTuple, Self, TypeVar
 import numpy as np
 
 from elbowscrew.geometry import dual_quaternion as dq
-from elbowscrew.geometry.arrays import Float, Index, evenly_thinned
+from elbowscrew.geometry._blocks import evenly_thinned
+from elbowscrew.geometry.arrays import Float, Index
 from elbowscrew.geometry.twist import adjoint
 
 M = TypeVar("M", bound="Mechanism")
