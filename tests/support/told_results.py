@@ -143,60 +143,62 @@ class MotiveFile:
 
 
 class Page(HTMLParser):
-    """Texts of a page: cards and facts by their terms, rows of tables by their first cell, and all in one piece."""
+    """What a page says: rows of its tables, terms with what stands beside them, and every other text in one piece.
+
+    Of a chart its description and its keys, not its ticks.
+    """
+
+    _EMPTY = ("meta", "link", "input", "br", "img")
+    _BLOCKS = ("th", "td", "dt", "dd", "p", "li", "figcaption", "desc")
 
     def __init__(self, text: str) -> None:
         super().__init__()
-        self.pieces: list[str] = []
         self.rows: list[list[str]] = []
         self.terms: dict[str, list[str]] = {}
-        self.paragraphs: dict[str, list[str]] = {}
-        self._open: list[tuple[str, str]] = []
-        self._cell: list[str] | None = None
+        self.texts: list[str] = []
+        self._open: list[str] = []
+        self._cell: list[str] = []
         self._term = ""
         self.feed(text)
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        if tag in ("meta", "link", "input", "br", "img"):
+        if tag in self._EMPTY:
             return
-        self._open.append((tag, dict(attrs).get("class") or ""))
+        self._open.append(tag)
         if tag == "tr":
             self.rows.append([])
-        if tag in ("th", "td", "dt", "dd", "figcaption", "p", "li"):
+        elif tag in self._BLOCKS or (tag == "span" and not set(self._BLOCKS) & set(self._open)):
             self._cell = []
 
     def handle_endtag(self, tag: str) -> None:
-        while self._open and self._open[-1][0] != tag:
+        while self._open and self._open[-1] != tag:
             self._open.pop()
-        look = self._open.pop()[1] if self._open else ""
-        if self._cell is None or tag not in ("th", "td", "dt", "dd", "figcaption", "p", "li"):
-            return
-        text, self._cell = " ".join("".join(self._cell).split()), None
-        if tag in ("th", "td") and self.rows:
+        if self._open:
+            self._open.pop()
+        text = " ".join("".join(self._cell).split())
+        if tag in ("th", "td"):
             self.rows[-1].append(text)
         elif tag == "dt":
             self._term = text
             self.terms[text] = []
         elif tag == "dd":
             self.terms[self._term].append(text)
+        elif tag in self._BLOCKS or (tag == "span" and not set(self._BLOCKS) & set(self._open)):
+            self.texts.append(text)
         else:
-            self.paragraphs.setdefault(look or tag, []).append(text)
+            return
+        self._cell = []
 
     def handle_data(self, data: str) -> None:
-        if any(tag in ("script", "style") for tag, _ in self._open):
+        if {"script", "style"} & set(self._open) or ("svg" in self._open and "desc" not in self._open):
             return
-        self.pieces.append(data)
-        if self._cell is not None:
-            self._cell.append(data)
+        self._cell.append(data)
 
     @property
     def text(self) -> str:
-        return " ".join(" ".join(self.pieces).split())
-
-    def row(self, first: str) -> list[str]:
-        """Cells after the first one of the only row that begins so."""
-        (found,) = [row for row in self.rows if row and row[0].startswith(first)]
-        return found[1:]
+        """All of it."""
+        rows = [cell for row in self.rows for cell in row]
+        return " ".join([*self.texts, *rows, *(text for texts in self.terms.values() for text in texts)])
 
 
 def leaves(value: Any, path: tuple[str, ...] = ()) -> dict[tuple[str, ...], Any]:
