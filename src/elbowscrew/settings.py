@@ -20,6 +20,7 @@ from pydantic import BaseModel, ValidationError, field_validator, model_validato
 
 from elbowscrew.choices import (
     FRAMES,
+    STATED_JOINTS,
     AngleUnit,
     BlendName,
     ExportName,
@@ -30,6 +31,7 @@ from elbowscrew.choices import (
     LengthUnit,
     MethodName,
     RotationType,
+    StatedJoint,
 )
 from elbowscrew.declaring import (
     BODIES,
@@ -126,6 +128,10 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
     signed: Literal["auto", "yes", "no"] = setting(
         "auto", "Give theta a sense: where one axis dominates the motion, always, or never.", MOTION
     )
+    joint_type: Literal["auto", StatedJoint] | str = setting(
+        "auto", f"Type of joint: {', '.join(STATED_JOINTS[:-1])} or {STATED_JOINTS[-1]}; auto finds it.", MOTION,
+        metavar="TYPE",
+    )  # fmt: skip
     skin_motion: tuple[float, ...] | None = setting(
         None, "How far a cluster moves as a whole on its bone with the motion: mm, or mm and degrees.", MOTION,
         metavar="MM[,DEG]", shown="not stated", min_length=1, max_length=2,
@@ -198,6 +204,11 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
         return tuple(dict.fromkeys(kind for kind in self.figure_format if kind != "none"))
 
     @property
+    def stated_joint(self) -> StatedJoint | None:
+        """The type of joint that is stated; None where it is found."""
+        return next((name for name in STATED_JOINTS if name == self.joint_type), None)
+
+    @property
     def model_method(self) -> str:
         """The interpolation, the default resolved."""
         return self.method or ("dlb" if self.tolerance_mm is None else "sclerp")
@@ -240,6 +251,16 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
             )
             raise ValueError(msg)
         return self
+
+    @field_validator("joint_type", mode="before")
+    @classmethod
+    def _known_joint(cls, value: object) -> object:
+        """Take the types with a hyphen, too."""
+        name = value.replace("-", "_") if isinstance(value, str) else value
+        if name not in ("auto", *STATED_JOINTS):
+            msg = f"expected auto, {', '.join(STATED_JOINTS)}"
+            raise ValueError(msg)
+        return name
 
     @field_validator("lowpass_hz", mode="before")
     @classmethod

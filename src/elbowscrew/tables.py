@@ -6,7 +6,7 @@ they are, and `columns` turns a result into named columns in the units asked for
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
 from typing import TYPE_CHECKING, Any, Final
@@ -151,6 +151,30 @@ ANATOMY_COLUMNS: Final = (
     _column("axis_distance", "axis_distance", Quantity.LENGTH),
 )
 
+
+def _joint_angles(*names: str) -> tuple[Column, ...]:
+    """Columns of a joint with these angles, each with its standard deviation."""
+    angles = [
+        Column(name=name + ending, attribute=attribute, component=k, quantity=Quantity.ANGLE)
+        for k, name in enumerate(names)
+        for ending, attribute in (("", "angle"), ("_sd", "angle_sd"))
+    ]
+    return (
+        _column("frame", "frame", Quantity.INTEGER),
+        _column("time_s", "time_s", Quantity.NUMBER),
+        *angles,
+        _column("residual", "residual_rotation", Quantity.ANGLE),
+        _column("residual", "residual_translation", Quantity.LENGTH),
+    )
+
+
+JOINT_ANGLE_COLUMNS: Final = {
+    1: _joint_angles("angle1"),
+    2: _joint_angles("angle1", "angle2"),
+    3: _joint_angles("rotation_x", "rotation_y", "rotation_z"),
+}
+"""Columns of ``joint_angles.csv``, by how many angles the joint has."""
+
 MOTION_COLUMNS: Final = (
     _column("frame", "frame", Quantity.INTEGER),
     _column("time_s", "time_s", Quantity.NUMBER),
@@ -225,8 +249,9 @@ TABLES: Final = {
     "cycles": CYCLE_COLUMNS,
     "repetition_curve": CURVE_COLUMNS,
     "anatomy": ANATOMY_COLUMNS,
+    "joint_angles": JOINT_ANGLE_COLUMNS[2],
 }
-"""The tables of a result, each a file of its name, and their columns."""
+"""The tables of a result, each a file of its name, and their columns: those of the joint's angles with two axes."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -415,13 +440,13 @@ def as_read_back(
     return in_si(there, quantity, angle_unit, length_unit, out=None if there is values else there)
 
 
-def attributes(read: Mapping[str, NDArray[Any]], table: tuple[Column, ...]) -> dict[str, NDArray[Any]]:
+def attributes(read: Sequence[NDArray[Any]], table: tuple[Column, ...]) -> dict[str, NDArray[Any]]:
     """Put columns together to the attributes that they were made from; the inverse of `Column.values`.
 
     Parameters
     ----------
-    read : mapping of str to ndarray, shape (N,)
-        By the names of the columns without units; SI units and radians, flags as 0 and 1.
+    read : sequence of ndarray, shape (N,)
+        One a column; SI units and radians, flags as 0 and 1.
     table : tuple of Column
 
     Returns
@@ -429,12 +454,12 @@ def attributes(read: Mapping[str, NDArray[Any]], table: tuple[Column, ...]) -> d
     dict of str to ndarray
         Shape (N,), or (N, k) of k components; flags as bool.
     """
-    parts: dict[str, list[Column]] = {}
-    for column in table:
-        parts.setdefault(column.attribute, []).append(column)
+    parts: dict[str, list[tuple[Column, NDArray[Any]]]] = {}
+    for column, values_of in zip(table, read, strict=True):
+        parts.setdefault(column.attribute, []).append((column, values_of))
     found = {}
-    for attribute, columns_of in parts.items():
-        values = [read[column.name] for column in columns_of]
+    for attribute, pairs in parts.items():
+        columns_of, values = [column for column, _ in pairs], [one for _, one in pairs]
         if columns_of[0].component is not None:
             found[attribute] = np.stack(values, axis=1)
         elif columns_of[0].quantity is Quantity.FLAG:

@@ -54,7 +54,7 @@ def texts(values: list[Any]) -> list[str]:
 def test_parquet_holds_what_the_csv_holds(folder: Path) -> None:
     tables = sorted(path.stem for path in folder.glob("*.csv"))
     assert tables == sorted(path.stem for path in folder.glob("*.parquet"))
-    assert len(tables) == 9
+    assert len(tables) == 10
     for name in tables:
         expected = cells(folder / f"{name}.csv")
         table = pq.read_table(folder / f"{name}.parquet")
@@ -89,13 +89,15 @@ def test_the_storage_is_as_opensim_reads_it(folder: Path, analysis: elbowscrew.A
     end = lines.index("endheader")
     header = dict(line.split("=") for line in lines[1:end])
     labels, *rows = [line.split("\t") for line in lines[end + 1 :]]
-    assert header == {"version": "1", "nRows": "159", "nColumns": "5", "inDegrees": "yes"}
-    assert labels == ["time", "theta", "flexion", "carrying", "pronation"]
-    assert {len(row) for row in rows} == {5}
+    assert header == {"version": "1", "nRows": "159", "nColumns": "6", "inDegrees": "yes"}
+    assert labels == ["time", "theta", "flexion", "carrying", "pronation", "angle1"]
+    assert {len(row) for row in rows} == {6}
     values = np.array(rows, dtype=np.float64)
     assert (np.diff(values[:, 0]) > 0.0).all()
     assert np.isnan(values[:, 1]).any()
     np.testing.assert_array_equal(values[:, 1], np.degrees(analysis.screw.angle))
+    assert analysis.joint_angles is not None
+    np.testing.assert_array_equal(values[:, 5], np.degrees(analysis.joint_angles.angle[:, 0]) + 0.0)
 
 
 def test_radians_are_told_to_opensim(tmp_path: Path) -> None:

@@ -148,8 +148,9 @@ def summary_of(told: Told) -> dict[str, Any]:
 USUAL: dict[str, Any] = {
     "pose-method": "svd", "reference-window": 1, "express-in": "distal", "max-gap": 0.1, "frozen": "lost",
     "max-turn": 3000.0, "max-speed": 15.0, "min-tracked": 50.0, "min-rate": 0.25, "min-angle": 10.0, "noise": "auto",
-    "signed": "auto", "robust": False, "no-cycles": False, "phases": "movement", "blend": "piecewise", "knots": "law",
-    "angle-unit": "deg", "length-unit": "mm", "figure-format": ["png"], "export": [],
+    "signed": "auto", "joint-type": "auto", "robust": False, "no-cycles": False, "phases": "movement",
+    "blend": "piecewise", "knots": "law", "angle-unit": "deg", "length-unit": "mm", "figure-format": ["png"],
+    "export": [],
 }  # fmt: skip
 """Settings as the documentation states them, but for those that are found from the recording."""
 

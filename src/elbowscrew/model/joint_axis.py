@@ -184,7 +184,7 @@ class JointAxis(ArrayRecord):
     Attributes
     ----------
     single : bool
-        Whether the motion has one axis at all; without, no fit is given.
+        Whether the motion has one axis at all, or is stated to have one; without, no fit is given.
     hinge, screw_hinge : FittedJoint or None
         Maximum likelihood; the screw-hinge slides in proportion to its angle.
     weighted_mean, sara : LineEstimate
@@ -192,6 +192,8 @@ class JointAxis(ArrayRecord):
         rotation approach (Ehrig, Taylor, Duda and Heller 2007).
     unexplained : float
         RMS rotation that a hinge leaves over the RMS rotation about it: 0 for a hinge, 1 and more for a ball joint.
+    stated : {"hinge", "screw_hinge"} or None
+        Which of both the joint is stated to be.
     noise : mapping of str to PoseNoise or None
         Of "proximal" and "distal".
     wander : AxisWander or None
@@ -212,12 +214,15 @@ class JointAxis(ArrayRecord):
     wander: AxisWander | None = None
     mean_axis: MeanLine | None = None
     path: AxisPath | None = None
+    stated: Literal["hinge", "screw_hinge"] | None = None
 
     @property
     def preferred(self) -> Literal["hinge", "screw_hinge"] | None:
         """The fit to believe: the screw-hinge where its pitch is beyond what a hinge shows, else the hinge."""
         if self.hinge is None or self.screw_hinge is None:
             return None
+        if self.stated is not None:
+            return self.stated
         pitched = abs(self.screw_hinge.pitch) > self.screw_hinge.pitch_sure
         return "screw_hinge" if pitched else "hinge"
 

@@ -3,12 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowscrew import tables
+from elbowscrew.choices import StatedJoint
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.model.array_record import ArrayRecord
 
-JointTypeName = Literal["rigid", "hinge", "screw_hinge", "two_axes", "ball", "free", "undetermined"]
+if TYPE_CHECKING:
+    import pandas as pd
+
+JointTypeName = Literal[StatedJoint, "undetermined"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -108,6 +116,11 @@ class TwoAxes(ArrayRecord):
     foot2: Measure | None
     offset: Measure | None
 
+    @property
+    def lines(self) -> tuple[JointLine, JointLine]:
+        """Both axes."""
+        return self.axis1, self.axis2
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class BallJoint(ArrayRecord):
@@ -160,9 +173,10 @@ class JointType(ArrayRecord):
     ball : BallJoint or None
     second_rotation : SecondRotation or None
         Beside a hinge.
-    angle, angle_sd : ndarray, shape (F, k)
-        Of each frame, rad, from the reference pose: one of a hinge, two of two axes, the rotation vector of a ball.
-    residual_rotation, residual_translation : ndarray, shape (F,)
+    angle, angle_sd : ndarray, shape (N, k)
+        Of each frame, rad, from the reference pose: one of a hinge, two of two axes, the rotation vector of a ball in
+        the proximal body's axes, none of a rigid joint. NaN where there is no pose.
+    residual_rotation, residual_translation : ndarray, shape (N,)
         That the joint leaves in each frame, rad and m.
     """
 
@@ -177,3 +191,41 @@ class JointType(ArrayRecord):
     angle_sd: Float
     residual_rotation: Float
     residual_translation: Float
+
+    @property
+    def has_angles(self) -> bool:
+        """Whether it is a joint that has angles, and the motion tells them."""
+        tried = [candidate.valid for candidate in self.candidates if candidate.type == self.type]
+        return bool(self.angle.shape[1] and all(tried))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class JointAngles(ArrayRecord):
+    """The joint's own angles in every frame, zero at the reference pose; NaN where they are not known.
+
+    Attributes
+    ----------
+    frame, time_s : ndarray, shape (N,)
+    angle, angle_sd : ndarray, shape (N, k)
+        rad: about the axis of a hinge, about both axes, or the rotation vector of a ball in the proximal body's axes.
+        The standard deviation is that by the noise of the frame and of the reference, for given axes, scaled by the
+        residuals where these are larger; NaN in frames that were filled.
+    residual_rotation, residual_translation : ndarray, shape (N,)
+        That the joint leaves of each measured pose, rad and m.
+    """
+
+    frame: NDArray[np.int64]
+    time_s: Float
+    angle: Float
+    angle_sd: Float
+    residual_rotation: Float
+    residual_translation: Float
+
+    @property
+    def table(self) -> tuple[tables.Column, ...]:
+        """Columns of ``joint_angles.csv`` for this joint."""
+        return tables.JOINT_ANGLE_COLUMNS[self.angle.shape[1]]
+
+    def to_frame(self, angle_unit: tables.AngleUnit = "deg", length_unit: tables.LengthUnit = "mm") -> pd.DataFrame:
+        """Return the columns of ``joint_angles.csv``."""
+        return tables.data_frame(self, self.table, angle_unit, length_unit)

@@ -15,7 +15,7 @@ from elbowscrew.model.anatomy import AnatomicalMotion
 from elbowscrew.model.array_record import ArrayRecord
 from elbowscrew.model.axes import HelicalSteps, InstantaneousMotion
 from elbowscrew.model.joint_axis import JointAxis
-from elbowscrew.model.joint_type import JointType
+from elbowscrew.model.joint_type import JointAngles, JointType
 from elbowscrew.model.modeled import BodyPoints, InterpolatedMotion, Keyframes, PhaseLaw, Selection
 from elbowscrew.model.quality import BodyQuality
 from elbowscrew.model.recording import QualityWarning, Recording, RigidBody
@@ -175,7 +175,9 @@ class Analysis(ArrayRecord):
     mean_axis : MeanAxis
     joint_axis : JointAxis
     joint_type : JointType or None
-        Which joint it is, where the motion has no single axis.
+        Which joint it is; None where positions tell nothing.
+    joint_angles : JointAngles or None
+        None of a joint that has none, or is not determined.
     instantaneous : InstantaneousMotion
     steps : HelicalSteps or None
         None if none were asked for.
@@ -214,6 +216,7 @@ class Analysis(ArrayRecord):
     mean_axis: MeanAxis
     joint_axis: JointAxis
     joint_type: JointType | None
+    joint_angles: JointAngles | None
     instantaneous: InstantaneousMotion
     steps: HelicalSteps | None
     phases: MovementPhases

@@ -18,7 +18,13 @@ from elbowscrew.motion.axes.measured import (
 )
 from elbowscrew.motion.interpolation.model_building import JointModel, build_model
 from elbowscrew.motion.interpolation.model_errors import model_errors
-from elbowscrew.motion.joint.measured import axis_of_type, joint_axis_warnings, measured_joint_axis, measured_joint_type
+from elbowscrew.motion.joint.measured import (
+    axis_of_type,
+    joint_axis_warnings,
+    measured_joint_angles,
+    measured_joint_axis,
+    measured_joint_type,
+)
 from elbowscrew.motion.movements.measured import cut_warnings, measured_cuts
 from elbowscrew.motion.movements.phases import movement_phases
 from elbowscrew.motion.movements.repetitions import cycle_curves_of, repeatability_of, repetitions_of
@@ -71,7 +77,7 @@ def analyze(recording: Recording, settings: Settings | None = None, *, landmarks
     elapsed = measured.elapsed
     mean = measured_mean_axis(measured)
     joint_axis = measured_joint_axis(measured, mean, wanted)
-    joint_type = measured_joint_type(measured, joint_axis, robust=wanted.robust)
+    joint_type = measured_joint_type(measured, joint_axis, wanted)
     joint_axis = axis_of_type(joint_axis, joint_type)
     instantaneous = measured_instantaneous_motion(measured, wanted)
     velocity, near = instantaneous.angular_velocity, pose_from_dual_quat(measured.change)[1]
@@ -122,6 +128,7 @@ def analyze(recording: Recording, settings: Settings | None = None, *, landmarks
         mean_axis=mean,
         joint_axis=joint_axis,
         joint_type=joint_type,
+        joint_angles=measured_joint_angles(measured, joint_type, wanted),
         instantaneous=instantaneous if sense.signed else without_sense(instantaneous),
         steps=measured_steps(measured, wanted),
         phases=movement_phases(cuts.movements.onset_s, cuts.movements.offset_s, elapsed),

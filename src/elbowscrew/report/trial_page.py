@@ -40,6 +40,7 @@ _FILES: Final = (
     ("steps.csv", "axes from step to step"),
     ("anatomy.csv", "anatomical angles"),
     ("summary.json", "results, quality, settings, provenance"),
+    ("joint_angles.csv", "the joint's own angles, frame by frame"),
     ("joint.json", "joint axis by all estimators"),
 )
 

@@ -97,6 +97,9 @@ def _write_sto(folder: Path, analysis: Analysis, _summary: Mapping[str, Any]) ->
     if analysis.anatomy is not None:
         bones = analysis.anatomy
         series |= {"flexion": bones.flexion, "carrying": bones.carrying_angle, "pronation": bones.pronation}
+    if analysis.joint_angles is not None:
+        own = analysis.joint_angles
+        series |= {column.name: column.values(own) for column in own.table if column.attribute == "angle"}
     columns = [screw.time_s, *(angle_in(angle, unit) for angle in series.values())]
     header = (
         "elbowscrew",

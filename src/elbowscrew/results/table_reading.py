@@ -74,6 +74,12 @@ def read_columns(
     ResultError
         If the table is missing, cut, or lacks a column.
     """
+    values = _read(path, table, angle_unit, length_unit)
+    return {column.name: one for column, one in zip(table, values, strict=True)}
+
+
+def _read(path: Path, table: tuple[Column, ...], angle_unit: AngleUnit, length_unit: LengthUnit) -> list[NDArray[Any]]:
+    """Read columns, in the order of the table."""
     suffixes = unit_suffixes(angle_unit, length_unit)
     try:
         with path.open(encoding="utf-8", newline="") as stream:
@@ -96,10 +102,10 @@ def read_columns(
     except (ValueError, IndexError, csv.Error) as error:
         msg = f"{path}: not the table that was written: {error}; analyze the trial again"
         raise ResultError(msg) from error
-    return {
-        column.name: in_si(_joined(block, column.quantity), column.quantity, angle_unit, length_unit)
+    return [
+        in_si(_joined(block, column.quantity), column.quantity, angle_unit, length_unit)
         for column, block in zip(table, blocks, strict=True)
-    }
+    ]
 
 
 def read_result(
@@ -121,7 +127,7 @@ def read_result(
     ResultError
         As `read_columns`.
     """
-    return kind(**attributes(read_columns(path, table, angle_unit, length_unit), table))
+    return kind(**attributes(_read(path, table, angle_unit, length_unit), table))
 
 
 def _whole_lines(stream: TextIO) -> list[str]:

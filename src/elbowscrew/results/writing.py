@@ -49,7 +49,9 @@ def _results(analysis: Analysis) -> list[tuple[str, object, tuple[tables.Column,
         "steps": analysis.steps,
         "anatomy": analysis.anatomy,
     }
-    return [(name, result, tables.TABLES[name]) for name, result in found.items() if result is not None]
+    given = [(name, result, tables.TABLES[name]) for name, result in found.items() if result is not None]
+    angles = analysis.joint_angles
+    return given if angles is None else [*given, ("joint_angles", angles, angles.table)]
 
 
 def write_csv(path: Path, columns: dict[str, NDArray[Any]], *, quoted: bool = False) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Final, NamedTuple
+from typing import Final, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,7 +33,9 @@ from elbowscrew.motion.screws.pose_noise import JointNoise
 from elbowscrew.motion.screws.uncertainty import joint_covariance
 
 _MOST_FRAMES: Final = 20_000
-_LARGEST_UNEXPLAINED: Final = 0.25
+LARGEST_UNEXPLAINED: Final = 0.25
+"""Share of its rotation that a joint with a single axis may leave, RMS over RMS."""
+
 # Without a stated noise: a common cluster's, whose rotation and translation only have to be weighed against each other.
 _COMMON_NOISE: Final = np.diag([6e-6] * 3 + [1e-8] * 3)
 
@@ -49,6 +51,7 @@ def estimate_joint_axis(
     robust: bool,
     markers: tuple[BodyMarkers, ...] = (),
     skin: tuple[SkinMotion, ...] = (),
+    stated: Literal["hinge", "screw_hinge"] | None = None,
 ) -> JointAxis:
     """Estimate the joint's axis from all measured frames.
 
@@ -69,6 +72,8 @@ def estimate_joint_axis(
         Of every body that moves; empty if one of them has none.
     skin : tuple of SkinMotion
         How the clusters are stated to move as a whole on their bones.
+    stated : {"hinge", "screw_hinge"}, optional
+        That the joint is stated to be, whatever it leaves.
     """
     rows, poses, covariance = fitted_frames(joint, noise, noise_gain)
     start = transform_lines(joint.reference, mean_line)
@@ -78,7 +83,7 @@ def estimate_joint_axis(
     about_mean = hinge.angle - np.average(hinge.angle, weights=hinge.weight)
     spread = _rms(about_mean[:, None], hinge.weight)
     unexplained = _rms(hinge.residual[:, :2], hinge.weight) / spread if spread > 0.0 else np.inf
-    single = bool(unexplained <= _LARGEST_UNEXPLAINED)
+    single = bool(stated is not None or unexplained <= LARGEST_UNEXPLAINED)
     told = noise.known is not None
     clusters = tuple(ClusterMotion(segment=one.segment, shape=one.shape, rms=one.rms[rows]) for one in markers)
     influences = {screw: influence_of_fit(fit, poses, covariance) for screw, fit in fits.items()} if single else {}
@@ -97,6 +102,7 @@ def estimate_joint_axis(
         sara=line_estimate(proximal_line, distal_line, joint, express_in),
         unexplained=unexplained,
         noise={"proximal": noise.proximal, "distal": noise.distal},
+        stated=stated,
     )
     if found.best is None:
         return found
@@ -115,9 +121,13 @@ def fitted_frames(joint: JointMotion, noise: JointNoise, noise_gain: Float) -> t
     rows = np.flatnonzero(joint.measured)
     rows = evenly_thinned(rows, _MOST_FRAMES)
     poses = joint.dual_quat_proximal_distal[rows]
+    return rows, poses, noise_gain[rows, None, None] * joint_covariance(poses, *assumed_noise(noise))
+
+
+def assumed_noise(noise: JointNoise) -> tuple[PoseNoise | None, PoseNoise]:
+    """Noise of both bodies: the stated one, else that of a common cluster, which only its shape counts of."""
     assumed = PoseNoise(covariance=_COMMON_NOISE, source="assumed", marker_noise=None)
-    proximal, distal = noise.known or (assumed if noise.proximal_moves else None, assumed)
-    return rows, poses, noise_gain[rows, None, None] * joint_covariance(poses, proximal, distal)
+    return noise.known or (assumed if noise.proximal_moves else None, assumed)
 
 
 class BodyMarkers(NamedTuple):

@@ -7,16 +7,26 @@ from typing import Final
 
 import numpy as np
 
+from elbowscrew.choices import StatedJoint
 from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat
 from elbowscrew.joints import side_of
 from elbowscrew.model import JointAxis, MeanAxis, QualityWarning, RigidBody
-from elbowscrew.model.joint_type import JointType
+from elbowscrew.model.joint_type import JointAngles, JointType
+from elbowscrew.motion.joint.every_frame import Everywhere
 from elbowscrew.motion.joint.interval import SkinMotion
-from elbowscrew.motion.joint.joint_axis import BodyMarkers, distal_line, estimate_joint_axis, fitted_frames
+from elbowscrew.motion.joint.joint_axis import (
+    LARGEST_UNEXPLAINED,
+    BodyMarkers,
+    assumed_noise,
+    distal_line,
+    estimate_joint_axis,
+    fitted_frames,
+)
 from elbowscrew.motion.joint.nonrigid import Segment
 from elbowscrew.motion.joint.typed import identify_joint
 from elbowscrew.motion.screws.measurement import Measurement
 from elbowscrew.motion.screws.pose_noise import STILL_STRETCH
+from elbowscrew.motion.screws.uncertainty import joint_covariance
 from elbowscrew.settings import Settings
 
 _LARGE_NOISE_RATIO: Final = 2.0
@@ -45,30 +55,92 @@ def measured_joint_axis(measured: Measurement, mean: MeanAxis, settings: Setting
         robust=settings.robust,
         markers=_markers(measured),
         skin=_skin(measured, settings),
+        stated=settings.stated_joint if settings.stated_joint in ("hinge", "screw_hinge") else None,
     )
 
 
-def measured_joint_type(measured: Measurement, joint_axis: JointAxis, *, robust: bool) -> JointType | None:
-    """Tell which joint it is where one axis leaves much; None where it does not, or positions tell nothing."""
-    best = joint_axis.best
-    if best is not None and (joint_axis.unexplained <= _MUCH_SHARE or best.residual_rotation <= _MUCH_ROTATION):
-        return None
+def measured_joint_type(measured: Measurement, joint_axis: JointAxis, settings: Settings) -> JointType | None:
+    """Tell which joint it is; richer types are tried where one axis leaves much. None where positions tell nothing."""
+    best, stated = joint_axis.best, settings.stated_joint
+    if stated == "free":
+        return _without_numbers(stated, "free, as stated")
+    plain = stated is None and best is not None
+    if best is not None and joint_axis.unexplained > _MUCH_SHARE and best.residual_rotation > _MUCH_ROTATION:
+        plain = False
     _, poses, covariance = fitted_frames(measured.joint, measured.noise, measured.noise_gain)
     if not np.ptp(pose_from_dual_quat(poses)[1], axis=0).max() > _LEAST_SHIFT:
         return None
-    return identify_joint(
+    found = identify_joint(
         poses,
         covariance,
         measured.joint.reference,
         noise_known=measured.noise.known is not None,
-        robust=robust,
+        robust=settings.robust,
+        forced=joint_axis.preferred if plain else stated,
         left=side_of(measured.distal.name) == "left",
+        everywhere=_everywhere(measured, settings),
+    )
+    if plain:
+        reason = f"one axis leaves {100.0 * joint_axis.unexplained:.2g} % of the rotation; richer types were not tried"
+        found = replace(found, status="approximate", reason=reason, candidates=())
+    return found
+
+
+def _without_numbers(name: StatedJoint, reason: str) -> JointType:
+    return JointType(
+        type=name,
+        status="forced",
+        reason=reason,
+        candidates=(),
+        two_axes=None,
+        ball=None,
+        second_rotation=None,
+        angle=np.zeros((0, 0)),
+        angle_sd=np.zeros((0, 0)),
+        residual_rotation=np.zeros(0),
+        residual_translation=np.zeros(0),
+    )
+
+
+def _everywhere(measured: Measurement, settings: Settings) -> Everywhere:
+    """All frames, with the noise that the joint is fitted with."""
+    proximal, distal = assumed_noise(measured.noise)
+    joint = measured.joint
+    return Everywhere(
+        joint.dual_quat_proximal_distal,
+        lambda rows: joint_covariance(joint.dual_quat_proximal_distal[rows], proximal, distal),
+        measured.noise_gain,
+        joint_covariance(joint.reference, proximal, distal) / settings.reference_window,
+    )
+
+
+def measured_joint_angles(
+    measured: Measurement, joint_type: JointType | None, settings: Settings
+) -> JointAngles | None:
+    """Give the joint's own angles in every frame, a hinge's with the sense of theta; None of a joint without any."""
+    if joint_type is None or not joint_type.has_angles:
+        return None
+    valid = measured.screw.valid
+    angle, deviation = joint_type.angle.copy(), np.where(valid[:, None], joint_type.angle_sd, np.nan)
+    if settings.reference_window == 1:  # the reference is that very frame
+        angle[measured.joint.reference_row], deviation[measured.joint.reference_row] = 0.0, 0.0
+    if angle.shape[1] == 1 and np.nansum(angle[:, 0] * measured.course) < 0.0:
+        angle = -angle
+    return JointAngles(
+        frame=measured.screw.frame,
+        time_s=measured.screw.time_s,
+        angle=angle,
+        angle_sd=deviation,
+        residual_rotation=np.where(valid, joint_type.residual_rotation, np.nan),
+        residual_translation=np.where(valid, joint_type.residual_translation, np.nan),
     )
 
 
 def axis_of_type(joint_axis: JointAxis, joint_type: JointType | None) -> JointAxis:
-    """Leave out the fit of one axis where the joint was found to have more than one."""
-    if joint_type is None or joint_type.type not in ("two_axes", "ball", "free"):
+    """Leave out the fit of one axis where the joint was found, or is stated, to have more than one or none."""
+    if joint_type is None or joint_type.type in ("hinge", "screw_hinge", "undetermined"):
+        return joint_axis
+    if joint_type.type == "rigid" and joint_type.status != "forced":
         return joint_axis
     return replace(joint_axis, single=False, hinge=None, screw_hinge=None, wander=None, mean_axis=None, path=None)
 
@@ -105,8 +177,9 @@ def joint_axis_warnings(
     joint_axis: JointAxis, joint_type: JointType | None, measured: Measurement
 ) -> tuple[QualityWarning, ...]:
     """Say where there is no single axis, and what its error bars stand on."""
-    warnings = []
-    if not joint_axis.single:
+    warnings = [*_doubts_of_type(joint_axis, joint_type)]
+    stated = joint_type is not None and joint_type.status == "forced"
+    if not joint_axis.single and not (stated and joint_axis.unexplained <= LARGEST_UNEXPLAINED):
         left = joint_axis.unexplained
         share = f"{100.0 * left:.0f} % of its rotation" if left < 1.0 else "more rotation than there is about it"
         found = "" if joint_type is None else f"; {_FOUND.get(joint_type.type, 'what it is, is undetermined')}"
@@ -134,3 +207,29 @@ def joint_axis_warnings(
         )
         warnings.append(QualityWarning(code="noise-from-jitter", message=message))
     return tuple(warnings)
+
+
+def _doubts_of_type(joint_axis: JointAxis, joint_type: JointType | None) -> list[QualityWarning]:
+    """Say where the joint was stated to be what the motion does not show, and where it does not show both axes."""
+    if joint_type is None:
+        return []
+    stated, code = joint_type.status == "forced", "stated-joint"
+    if stated and joint_type.type in ("hinge", "screw_hinge") and joint_axis.unexplained > LARGEST_UNEXPLAINED:
+        message = (
+            f"the joint is stated to be a {joint_type.type.replace('_', '-')}, but one axis leaves "
+            f"{100.0 * joint_axis.unexplained:.0f} % as much rotation as there is about it: no axis of this motion is "
+            "that joint's; leave --joint-type out to see which joint it is"
+        )
+    elif any(candidate.type == joint_type.type and not candidate.valid for candidate in joint_type.candidates):
+        what = "two axes" if joint_type.type == "two_axes" else "a ball joint"
+        message = f"the joint is stated to be {what}, but the motion does not determine it: it has no angles here"
+    elif joint_type.two_axes is not None and not all(line.determined for line in joint_type.two_axes.lines):
+        told = (
+            "the joint is stated to have two axes, but the motion does not determine"
+            if stated
+            else ("the joint has two axes, but the motion does not determine the directions of")
+        )
+        message, code = f"{told} both: what each angle is of is as uncertain", code if stated else "axis-undetermined"
+    else:
+        return []
+    return [QualityWarning(code=code, message=message)]

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Final
 
 import numpy as np
 
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry.arrays import Float
-from elbowscrew.geometry.quaternion import rotation_matrix_from_quat
 from elbowscrew.geometry.sensitivity import NORMAL_95, confidence_radius
 from elbowscrew.model.joint_type import BallJoint, JointLine, JointType, Measure, SecondRotation, TwoAxes
 from elbowscrew.motion.joint.choice import Choice, choose_type, middle_range
+from elbowscrew.motion.joint.every_frame import Everywhere, FrameNumbers, numbers_everywhere, reference_numbers
 from elbowscrew.motion.joint.fitting import Fitted, shared_covariance
-from elbowscrew.motion.joint.likelihood import Fit, Mechanism, Poses, fit_mechanism, fit_robustly, settled
+from elbowscrew.motion.joint.likelihood import Fit, Mechanism, Poses, fit_mechanism, fit_robustly
 from elbowscrew.motion.joint.lines import Z_LINE
 from elbowscrew.motion.joint.simple_types import Ball, OneAxis
 from elbowscrew.motion.joint.two_axes import TwoAxesMechanism, angle_sd, axes_geometry, geometry_covariance
@@ -37,6 +36,7 @@ def identify_joint(
     robust: bool = False,
     forced: Fitted | None = None,
     left: bool = False,
+    everywhere: Everywhere | None = None,
 ) -> JointType:
     """Tell which joint moved so, and where its axes or its center are.
 
@@ -56,6 +56,8 @@ def identify_joint(
         Take this type.
     left : bool
         Of a left side the second axis points away from the joint, so that pronation is positive.
+    everywhere : Everywhere, optional
+        The frames whose angles are wanted; those that the joint is fitted to by default.
 
     Returns
     -------
@@ -71,49 +73,41 @@ def identify_joint(
     most, _ = poses.thinned(_MOST_FRAMES)
     fit = fit_mechanism(found.mechanism.placed(most.joint), most)
     fit = fit_robustly(fit, most) if robust else fit
+    if everywhere is None:
+        of_each = np.broadcast_to(covariance, (len(joint), 6, 6))
+        everywhere = Everywhere(joint, lambda rows: of_each[rows], np.ones(len(joint)))
     mechanism = fit.mechanism
-    start = settled(mechanism, Poses(reference[None], most.whitener[:1]), rounds=5).mechanism
+    scale = max(fit.variance, 1.0 if noise_known else 0.0)
     if isinstance(mechanism, TwoAxesMechanism):
-        at = _oriented(mechanism.zeroed(start.frames[0]), left=left)
+        start = reference_numbers(mechanism, everywhere, reference)
+        at = _oriented(mechanism.zeroed(start.own[0]), left=left)
         written = fit_mechanism(at, most, iterations=0, weight=fit.weight)
-        two_axes = _two_axes(written, reference, noise_known=noise_known)
-        return _result(choice, settled(at, poses), two_axes=two_axes, scale=fit)
-    every: Fit[Mechanism] = settled(mechanism, poses)
-    if isinstance(mechanism, OneAxis):
-        angle = _near_zero(every.mechanism.frames - start.frames[0])
-        sense = 1.0 if angle.max() >= -angle.min() else -1.0
-        every = every._replace(mechanism=replace(every.mechanism, frames=sense * angle))
-        return _result(choice, every, second=_second_rotation(choice, reference, noise_known=noise_known), scale=fit)
+        every = numbers_everywhere(at, everywhere, reference)
+        every = every._replace(angle=_near_zero(every.angle))
+        return _result(choice, every, scale, two_axes=_two_axes(written, reference, noise_known=noise_known))
+    every = numbers_everywhere(mechanism, everywhere, reference)
     if isinstance(mechanism, Ball):
-        turned = dq.multiply(every.mechanism.frames, dq.conjugate(start.frames[0]))
-        vector = 2.0 * dq.log(dq.canonical(turned))[:, :3]
-        R = rotation_matrix_from_quat(every.mechanism.frames[:, :4])
-        every = every._replace(
-            mechanism=replace(every.mechanism, frames=vector),
-            own_covariance=R @ every.own_covariance @ np.swapaxes(R, -1, -2),
-        )
-        return _result(choice, every, ball=_ball(fit, mechanism, noise_known=noise_known), scale=fit)
-    return _result(choice, every._replace(mechanism=replace(mechanism, frames=np.zeros((len(joint), 0)))))
+        return _result(choice, every, scale, ball=_ball(fit, mechanism, noise_known=noise_known))
+    if isinstance(mechanism, OneAxis):
+        angle = _near_zero(every.angle)
+        sense = 1.0 if np.nanmax(angle) >= -np.nanmin(angle) else -1.0
+        second = _second_rotation(choice, reference, noise_known=noise_known)
+        return _result(choice, every._replace(angle=sense * angle), scale, second=second)
+    return _result(choice, every, scale)
 
 
 def _result(
     choice: Choice,
-    every: Fit[Mechanism] | None,
+    every: FrameNumbers | None,
+    scale: float = 1.0,
     *,
     two_axes: TwoAxes | None = None,
     ball: BallJoint | None = None,
     second: SecondRotation | None = None,
-    scale: Fit[Mechanism] | None = None,
 ) -> JointType:
-    empty = np.zeros((0, 0))
-    angle, deviation = empty, empty
-    if every is not None:
-        angle = every.mechanism.frames
-        if two_axes is not None or angle.shape[1] == 1:
-            angle = _near_zero(angle)
-        ratio = 1.0 if scale is None else max(scale.variance, 1.0)
-        deviation = np.sqrt(ratio * np.diagonal(every.own_covariance, axis1=1, axis2=2))
-    residual = np.zeros((0, 6)) if every is None else every.residual
+    """Put a result together; `scale` is how many times the stated variance the residuals have."""
+    if every is None:
+        every = FrameNumbers(np.zeros((0, 0)), np.zeros((0, 0)), np.zeros(0), np.zeros(0))
     return JointType(
         type=choice.type,
         status=choice.status,
@@ -122,19 +116,20 @@ def _result(
         two_axes=two_axes,
         ball=ball,
         second_rotation=second,
-        angle=angle,
-        angle_sd=deviation,
-        residual_rotation=np.linalg.norm(residual[:, :3], axis=1),
-        residual_translation=np.linalg.norm(residual[:, 3:], axis=1),
+        angle=every.angle,
+        angle_sd=np.sqrt(scale) * every.angle_sd,
+        residual_rotation=every.residual_rotation,
+        residual_translation=every.residual_translation,
     )
 
 
 def _near_zero(angle: Float) -> Float:
     """Take off the whole turns that the frame nearest the reference pose has."""
-    if not len(angle):
+    known = angle[np.isfinite(angle).all(axis=1)]
+    if not known.size:
         return angle
-    turns = np.round(angle / (2.0 * np.pi))
-    nearest = np.argmin(np.sum(np.abs(angle - 2.0 * np.pi * turns), axis=1))
+    turns = np.round(known / (2.0 * np.pi))
+    nearest = np.argmin(np.sum(np.abs(known - 2.0 * np.pi * turns), axis=1))
     return np.asarray(angle - 2.0 * np.pi * turns[nearest])
 
 
