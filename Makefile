@@ -22,6 +22,7 @@ test-oldest:  ## all tests at the oldest versions allowed, in an environment of 
 
 docs:  ## tables of the documents made anew, links and names in them checked
 	$(BIN)/python docs/make_settings.py
+	$(BIN)/python docs/make_schemas.py
 	$(BIN)/pytest -q tests/test_docs.py
 
 bench:  ## every stage beside what one would use instead

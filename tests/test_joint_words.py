@@ -15,7 +15,7 @@ from elbowscrew.cli import render
 from elbowscrew.errors import ResultError
 from elbowscrew.report.methods import methods_of
 from elbowscrew.results.read_back import read_finished
-from elbowscrew.saving import read_summary
+from elbowscrew.results.summary_reading import read_summary
 
 ANY = re.compile(
     r"(?i)\b(upper arm|forearm|arm|elbow|humer\w*|flexion|extension|pronation|thigh|shank|knee|hand"

@@ -6,13 +6,14 @@ import json
 import os
 import tempfile
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, Literal
+from typing import TYPE_CHECKING, Literal
 
 from elbowscrew import tables
-from elbowscrew.errors import ElbowscrewError, OutputError, UsageError
+from elbowscrew.errors import ElbowscrewError, UsageError
 from elbowscrew.model import Analysis, Comparison, Landmarks, RebuiltMotion, TrialsComparison
+from elbowscrew.model.comparison_summary_types import ComparisonSummary, TrialsSummary
+from elbowscrew.model.summary_types import Summary
 from elbowscrew.motion.analysis import analyze
 from elbowscrew.reading.registry import read_recording
 from elbowscrew.reading.source import sha256_of
@@ -28,6 +29,7 @@ from elbowscrew.results.staging import (
     write_files,
 )
 from elbowscrew.results.summary import summary_from_analysis
+from elbowscrew.results.summary_reading import JOINT, SUMMARY
 from elbowscrew.results.writing import write_csv, write_tables
 from elbowscrew.settings import Settings
 from elbowscrew.view.figure_names import SAVED_FIGURES
@@ -35,8 +37,6 @@ from elbowscrew.view.finished import FinishedTrial
 
 if TYPE_CHECKING:
     from elbowscrew.simulate import SimulatedTrial
-
-SUMMARY: Final = "summary.json"
 
 
 def analyze_file(path: Path, settings: Settings, *, landmarks: Landmarks | None = None) -> Analysis:
@@ -108,21 +108,36 @@ def save_analysis(
     True
     """
     target = Path(folder)
+    write_result(analysis, target, force=force, figure_formats=figure_formats, exports=exports, report=report)
+    return target
+
+
+def write_result(
+    analysis: Analysis,
+    target: Path,
+    *,
+    force: bool = False,
+    figure_formats: Sequence[str] | None = None,
+    exports: Sequence[str] | None = None,
+    report: bool = True,
+) -> Summary:
+    """Do what `save_analysis` does, and give the summary that was written."""
     formats = _known_formats(analysis.settings.figure_formats if figure_formats is None else tuple(figure_formats))
     others = analysis.settings.export if exports is None else tuple(exports)
     check_exports(others)
-    summary, joint = summary_from_analysis(analysis), joint_summary(analysis)
+    found, joint = summary_from_analysis(analysis), joint_summary(analysis)
     with result_folder(target, force=force) as staged:
         write_tables(staged, analysis)
-        joint = _write_json(staged / "joint.json", joint)
-        shown = as_finished(analysis, staged, summary, joint)
+        _write_json(staged / JOINT, joint)
+        shown = as_finished(analysis, staged, found, joint)
         if formats:
             _write_figures(staged, shown, formats)
-        write_exports(staged, analysis, summary, others)
-        summary = _write_json(staged / SUMMARY, {**summary, "files": digests(staged)})  # when all else is there
+        write_exports(staged, analysis, found, others)
+        summary: Summary = {**found, "files": digests(staged)}  # when all else is there
+        _write_json(staged / SUMMARY, summary)
         if report:
-            write_trial_page(staged, replace(shown, summary=summary))
-    return target
+            write_trial_page(staged, shown)
+    return summary
 
 
 def _known_formats(formats: tuple[str, ...]) -> tuple[str, ...]:
@@ -133,38 +148,14 @@ def _known_formats(formats: tuple[str, ...]) -> tuple[str, ...]:
     return formats
 
 
-def read_summary(folder: str | os.PathLike[str]) -> dict[str, Any]:
-    """Read the ``summary.json`` of a result folder.
-
-    Raises
-    ------
-    OutputError
-        If there is no such result, or it is damaged.
-    """
-    path = Path(folder) / SUMMARY
-    try:
-        summary = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError, RecursionError) as error:
-        msg = f"{path}: cannot be read as a summary: {getattr(error, 'strerror', None) or error}; analyze again"
-        raise OutputError(msg) from error
-    if not isinstance(summary, dict) or "elbowscrew" not in summary:
-        msg = f"{path}: no summary of elbowscrew; give a result folder"
-        raise OutputError(msg)
-    return summary
-
-
 def digests(folder: Path) -> dict[str, str]:
     """SHA-256 of the files of a result folder, all but the summary that holds them and the report made from it."""
     names = (name for name in RESULT_FILES if name not in (SUMMARY, "report.html") and (folder / name).is_file())
     return {name: sha256_of(folder / name) for name in names}
 
 
-def _write_json(path: Path, content: Mapping[str, Any]) -> dict[str, Any]:
-    """Write an object, and give it as it reads back."""
-    text = json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False)
-    path.write_text(text + "\n", encoding="utf-8")
-    written: dict[str, Any] = json.loads(text)
-    return written
+def _write_json(path: Path, content: Mapping[str, object]) -> None:
+    path.write_text(json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False) + "\n", encoding="utf-8")
 
 
 def _write_figures(staged: Path, trial: FinishedTrial, formats: Sequence[str]) -> None:
@@ -346,15 +337,27 @@ def save_comparison(
     ...     (save_comparison(found, f"{folder}/result", figure_formats=()) / "compare.csv").exists()
     True
     """
+    target = Path(folder)
+    write_comparison(comparison, target, force=force, figure_formats=figure_formats)
+    return target
+
+
+def write_comparison(
+    comparison: Comparison | TrialsComparison,
+    target: Path,
+    *,
+    force: bool = False,
+    figure_formats: Sequence[str] | None = None,
+) -> ComparisonSummary | TrialsSummary:
+    """Do what `save_comparison` does, and give the summary that was written."""
     from elbowscrew.results.comparison_summary import comparison_summary, trials_summary
 
-    target = Path(folder)
     settings = comparison.settings
     formats = _known_formats(settings.figure_formats if figure_formats is None else tuple(figure_formats))
     units = settings.angle_unit, settings.length_unit
     if isinstance(comparison, Comparison):
         columns = tables.columns(comparison.models, tables.COMPARISON_COLUMNS, *units)
-        summary = comparison_summary(comparison)
+        summary: ComparisonSummary | TrialsSummary = comparison_summary(comparison)
     else:
         columns = tables.columns(comparison.models, tables.TRIALS_COMPARISON_COLUMNS, *units)
         summary = trials_summary(comparison)
@@ -366,4 +369,4 @@ def save_comparison(
             from elbowscrew.report.figure_files import files_of
 
             _write_all(staged / "figures", files_of({"compare": lambda: comparison_figure(comparison)}, formats))
-    return target
+    return summary

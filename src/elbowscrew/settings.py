@@ -209,12 +209,12 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
         return next((name for name in STATED_JOINTS if name == self.joint_type), None)
 
     @property
-    def model_method(self) -> str:
+    def model_method(self) -> MethodName:
         """The interpolation, the default resolved."""
         return self.method or ("dlb" if self.tolerance_mm is None else "sclerp")
 
     @property
-    def model_law(self) -> str:
+    def model_law(self) -> LawName:
         """The law of motion, the default resolved."""
         return self.law or ("cycloidal" if self.tolerance_mm is None else "linear")
 
@@ -380,8 +380,8 @@ def settings_from(config: Path | None = None, options: Mapping[str, Any] | None 
     given = {option_name(key): value for key, value in (options or {}).items() if value is not None}
     table = _read_toml(config) if config is not None else {}
     if config is not None:
-        _validate(table, str(config))
-    return _validate({**table, **given}, "settings")
+        checked_settings(table, str(config))
+    return checked_settings({**table, **given}, "settings")
 
 
 def _read_cycles(path: Path) -> list[tuple[float, float]]:
@@ -443,7 +443,14 @@ def options_from_settings(settings: Settings) -> dict[str, Any]:
     return {option_name(field): value for field, value in settings.model_dump(mode="json").items()}
 
 
-def _validate(values: Mapping[str, Any], place: str) -> Settings:
+def checked_settings(values: Mapping[str, Any], place: str) -> Settings:
+    """Make settings of values by the names of their options.
+
+    Raises
+    ------
+    UsageError
+        If a name or a value is not a possible one; it begins with the place and names the key.
+    """
     try:
         return settings_from_options(values)
     except ValidationError as error:

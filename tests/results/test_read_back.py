@@ -17,7 +17,7 @@ from elbowscrew import Analysis, Settings, analyze, save_analysis, simulate_tria
 from elbowscrew.errors import ResultError
 from elbowscrew.plots import FIGURES
 from elbowscrew.plots.style import publication_style, settle
-from elbowscrew.results.read_back import as_finished, is_result, read_finished, read_summary
+from elbowscrew.results.read_back import as_finished, is_result, read_finished
 from elbowscrew.view.finished import FinishedTrial
 from elbowscrew.view.shown import Shown
 
@@ -75,7 +75,7 @@ def test_tables_come_back_as_they_were(pair: Pair, part: str) -> None:
 @pytest.mark.parametrize("part", ["screw", "interpolated", "repetitions", "keyframes", "phases", "joint"])
 def test_a_result_at_hand_has_the_very_numbers_of_the_one_read_back(pair: Pair, part: str) -> None:
     folder, read = pair.finished.folder, pair.finished
-    at_hand = as_finished(pair.analysis, folder, read_summary(folder / "summary.json"), read.joint_summary)
+    at_hand = as_finished(pair.analysis, folder, read.summary, read.joint_summary)
     for field in fields(getattr(read, part)):
         one, other = getattr(getattr(read, part), field.name), getattr(getattr(at_hand, part), field.name)
         if isinstance(one, np.ndarray):

@@ -53,7 +53,7 @@ def analyze(
     from elbowscrew.reading.landmarks import read_landmarks
     from elbowscrew.results.exporting import check_exports
     from elbowscrew.results.staging import check_result_folder
-    from elbowscrew.saving import analyze_file, read_summary, save_analysis
+    from elbowscrew.saving import analyze_file, write_result
     from elbowscrew.settings import settings_from
 
     settings = settings_from(config, given)
@@ -61,8 +61,7 @@ def analyze(
     check_result_folder(target, force=force)  # before the work, not after it
     check_exports(settings.export)
     analysis = analyze_file(trial, settings, landmarks=None if landmarks is None else read_landmarks(landmarks))
-    save_analysis(analysis, target, force=force, report=page)
-    summary = read_summary(target)
+    summary = write_result(analysis, target, force=force, report=page)
     render.warnings(summary["warnings"])
     if json_output:
         render.json_object(summary)

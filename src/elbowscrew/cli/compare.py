@@ -102,9 +102,9 @@ def compare(
     from elbowscrew.cli import render
     from elbowscrew.errors import ElbowscrewError
     from elbowscrew.reading.registry import read_recording, recordings_in
-    from elbowscrew.results.comparison_summary import comparison_summary, trials_summary
+    from elbowscrew.results.recording_summary import warnings_summary
     from elbowscrew.results.staging import COMPARISON, check_result_folder
-    from elbowscrew.saving import save_comparison
+    from elbowscrew.saving import write_comparison
     from elbowscrew.settings import settings_from
 
     settings = settings_from(config, given)
@@ -118,10 +118,9 @@ def compare(
         from elbowscrew.comparing import compare_trials
 
         over_trials = compare_trials(recordings_in(trial), settings, plan)
-        save_comparison(over_trials, target, force=force)
+        summary = write_comparison(over_trials, target, force=force)
         for path, error in over_trials.failures:
             render.note(f"{path}: {error}" if path not in str(error) else str(error))
-        summary = trials_summary(over_trials)
         failed = bool(over_trials.failures)
     else:
         from elbowscrew.motion.interpolation.comparison import compare as compare_recording
@@ -132,9 +131,8 @@ def compare(
         except ElbowscrewError as error:
             msg = f"{trial}: {error}"
             raise type(error)(msg) from error
-        save_comparison(comparison, target, force=force)
-        summary = comparison_summary(comparison)
-        render.warnings(summary["warnings"])
+        summary = write_comparison(comparison, target, force=force)
+        render.warnings(warnings_summary(comparison.warnings))
         failed = False
     if json_output:
         render.json_object(summary)

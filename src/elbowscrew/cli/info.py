@@ -30,7 +30,7 @@ def info(
     from elbowscrew.cli import render
     from elbowscrew.errors import NoBodiesError
     from elbowscrew.reading.registry import read_recording
-    from elbowscrew.results.summary import summary_from_recording
+    from elbowscrew.results.recording_summary import summary_from_recording
     from elbowscrew.settings import settings_from
 
     settings = settings_from(None, given)

@@ -6,7 +6,7 @@ import json
 import sys
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from rich.console import Console, RenderableType
 from rich.table import Table
@@ -15,6 +15,20 @@ from rich.text import Text
 from elbowscrew.cli.text import NobodyReads, one_line, printable
 
 if TYPE_CHECKING:
+    from elbowscrew.model.comparison_summary_types import ComparisonSummary, ModelChoice, TrialsSummary
+    from elbowscrew.model.joint_summary_types import JointLineSummary, JointTypeSummary
+    from elbowscrew.model.summary_types import (
+        AnalysisSummary,
+        FileSummary,
+        JointWords,
+        ModelSummary,
+        MotionSummary,
+        QualitySummary,
+        SelectionSummary,
+        SpreadSummary,
+        TrialSummary,
+        WarningSummary,
+    )
     from elbowscrew.paper import PrintedValue
     from elbowscrew.study.study import StudyResult
     from elbowscrew.study.trials import Skipped
@@ -25,7 +39,7 @@ _SKIPPED_TOLD = 5
 _FAILURES_TOLD = 10
 
 
-def warnings(found: Iterable[Mapping[str, Any]]) -> None:
+def warnings(found: Iterable[WarningSummary]) -> None:
     """Write one line a warning; notes are for those who look at the recording."""
     for warning in found:
         if warning["severity"] != "warning":
@@ -38,7 +52,7 @@ def note(text: str) -> None:
     sys.stderr.write(f"elbowscrew: {one_line(text)}\n")
 
 
-def json_object(value: Mapping[str, Any]) -> None:
+def json_object(value: Mapping[str, object]) -> None:
     """Write one JSON object."""
     emit(json.dumps(value, indent=2, ensure_ascii=True, allow_nan=False) + "\n")
 
@@ -50,7 +64,7 @@ def files(folder: Path) -> None:
             sys.stderr.write(f"{printable(str(path))}\n")
 
 
-def analysis_table(summary: Mapping[str, Any], folder: Path) -> None:
+def analysis_table(summary: AnalysisSummary, folder: Path) -> None:
     """Write the result of one trial at a glance."""
     trial, motion, model = summary["trial"], summary["motion"], summary["interpolation"]
     rows = [
@@ -95,7 +109,7 @@ def analysis_table(summary: Mapping[str, Any], folder: Path) -> None:
     _print_rows(printable(summary["source"]["name"] or ""), rows)
 
 
-def info_table(summary: Mapping[str, Any]) -> None:
+def info_table(summary: FileSummary) -> None:
     """Write what a file holds."""
     source, trial = summary["source"], summary["trial"]
     rotation = source["rotation"] or "no rotations"
@@ -123,34 +137,35 @@ def info_table(summary: Mapping[str, Any]) -> None:
         _print(Text("Notes", style="bold"), *(Text(one_line(f"{note['message']} [{note['code']}]")) for note in notes))
 
 
-def comparison_table(summary: Mapping[str, Any], folder: Path) -> None:
+def comparison_table(summary: ComparisonSummary | TrialsSummary, folder: Path) -> None:
     """Write the best models of each number of keyframes, and the fewest keyframes within the tolerance."""
-    several = "trials" in summary
     table = Table(box=None, pad_edge=False, header_style="bold")
     for column in ("N", "Method", "Law", "Keyframes from", "RMS, mm", "Max, mm", "ns/frame"):
         text = column in ("Method", "Law", "Keyframes from")
-        table.add_column(column, justify="left" if text else "right", no_wrap=not several)
-    for best in summary["best_by_keyframes"]:
-        table.add_row(
-            str(best["keyframes_per_phase"]),
-            best["method"] + ("" if best["blend"] == "piecewise" else " global"),
-            best["law"],
-            best["data"],
-            *(_mean_sd(best, name, several) for name in ("rms_displacement", "max_displacement")),
-            f"{best['ns_per_frame_mean' if several else 'ns_per_frame']:.0f}",
-        )
-    refused = summary.get("refused", 0)
-    rows = [("Models", f"{summary['models']} compared" + (f", {refused} of them refused" if refused else ""))]
-    if several:
-        rows.append(("Trials", f"{len(summary['trials'])} compared, {len(summary['failures'])} failed"))
+        table.add_column(column, justify="left" if text else "right", no_wrap="trials" not in summary)
+    models = f"{summary['models']} compared"
+    if "trials" in summary:
+        for mean in summary["best_by_keyframes"]:
+            rms = _mean_sd(mean["rms_displacement_mean_mm"], mean["rms_displacement_sd_mm"])
+            most = _mean_sd(mean["max_displacement_mean_mm"], mean["max_displacement_sd_mm"])
+            table.add_row(*_model(mean), rms, most, f"{mean['ns_per_frame_mean']:.0f}")
+        rows = [
+            ("Models", models),
+            ("Trials", f"{len(summary['trials'])} compared, {len(summary['failures'])} failed"),
+        ]
     else:
+        for one in summary["best_by_keyframes"]:
+            rms, most = _number(one["rms_displacement_mm"]), _number(one["max_displacement_mm"])
+            table.add_row(*_model(one), rms, most, f"{one['ns_per_frame']:.0f}")
+        refused = f", {summary['refused']} of them refused" if summary["refused"] else ""
+        rows = [("Models", models + refused)]
         rows += [(f"Fewest, {method}", _fewest(found)) for method, found in summary["selections"].items()]
     rows.append(("Results", str(folder)))
     _print(Text("RMS displacement of the distal body's points, for N keyframes in each phase", style="bold"), table)
     _print_rows("", rows)
 
 
-def _fewest(found: Mapping[str, Any]) -> str:
+def _fewest(found: SelectionSummary) -> str:
     count = f"{found['keyframes']} keyframes of {found['frames']} frames (1 : {found['compression_ratio']:.1f})"
     return f"{count} within {found['tolerance_mm']:g} mm: {_numbers(found['keyframe_frames'])}"
 
@@ -165,14 +180,16 @@ def _numbers(frames: Sequence[int]) -> str:
     return told if len(frames) <= _FRAMES_TOLD else f"{told} and {len(frames) - _FRAMES_TOLD} more"
 
 
-def _mean_sd(best: Mapping[str, Any], name: str, several: bool) -> str:
-    if not several:
-        return _number(best[f"{name}_mm"])
-    mean, sd = best[f"{name}_mean_mm"], best[f"{name}_sd_mm"]
+def _model(best: ModelChoice) -> tuple[str, str, str, str]:
+    method = best["method"] + ("" if best["blend"] == "piecewise" else " global")
+    return str(best["keyframes_per_phase"]), method, best["law"], best["data"]
+
+
+def _mean_sd(mean: float | None, sd: float | None) -> str:
     return _number(mean) + ("" if sd is None else f" ± {sd:.2f}")
 
 
-def _bodies_table(bodies: Iterable[Mapping[str, Any]]) -> None:
+def _bodies_table(bodies: Iterable[QualitySummary]) -> None:
     table = Table(box=None, pad_edge=False, header_style="bold")
     for column in ("Body", "Tracked", "Lost frames", "Fastest", "Fit, mm", "Error, mm"):
         table.add_column(column, overflow="fold")
@@ -188,7 +205,7 @@ def _bodies_table(bodies: Iterable[Mapping[str, Any]]) -> None:
     _print(table)
 
 
-def _spread(spread: Mapping[str, float] | None) -> str:
+def _spread(spread: SpreadSummary | None) -> str:
     """Median and maximum."""
     return "–" if spread is None else f"{spread['median']:.2f}, max {spread['largest']:.2f}"
 
@@ -238,13 +255,13 @@ def _print_rows(title: str, rows: Iterable[tuple[str, str]]) -> None:
     _print(*([Text(title, style="bold")] if title else []), table)
 
 
-def _body(body: Mapping[str, Any] | None, joint: Mapping[str, Any]) -> str:
+def _body(body: QualitySummary | None, joint: JointWords) -> str:
     if body is None:
         return f"still {joint['proximal']}"
     return f"{body['name']} ({100.0 * body['tracked_share']:.1f} % tracked)"
 
 
-def _frames(trial: Mapping[str, Any]) -> str:
+def _frames(trial: TrialSummary) -> str:
     lost = trial["frames"] - trial["measured_frames"] - trial["filled_frames"]
     parts = [f"{trial['frames']} at {trial['rate_hz']:.6g} Hz ({trial['duration_s']:.2f} s)"]
     parts += [f"{trial['filled_frames']} filled"] if trial["filled_frames"] else []
@@ -260,7 +277,7 @@ def _vector(values: Iterable[float], decimals: int) -> str:
     return ", ".join(f"{value:.{decimals}f}" for value in values)
 
 
-def _joint_axis(motion: Mapping[str, Any]) -> str:
+def _joint_axis(motion: MotionSummary) -> str:
     axis = motion["joint_axis"]
     if axis is None:
         return _joint_type(motion["joint_type"])
@@ -276,16 +293,15 @@ def _joint_axis(motion: Mapping[str, Any]) -> str:
     )
 
 
-def _joint_type(found: Mapping[str, Any]) -> str:
-    if found["type"] == "two_axes":
-        axes = found["two_axes"]
-        told = "; ".join(_one_of_two(axes[f"axis{k}"], k) for k in (1, 2))
+def _joint_type(found: JointTypeSummary) -> str:
+    axes, ball = found["two_axes"], found["ball"]
+    if axes is not None:
+        told = f"{_one_of_two(axes['axis1'], 'proximal')}; {_one_of_two(axes['axis2'], 'distal')}"
         apart = f"{axes['angle_between_deg']:.1f} deg"
         if axes["distance_mm"] is not None:
             apart += f" and {abs(axes['distance_mm']):.1f} mm"
         return f"two axes ({found['status']}): {told}; {apart} apart (intervals {found['interval_note']})"
-    if found["type"] == "ball":
-        ball = found["ball"]
+    if ball is not None:
         return (
             f"ball ({found['status']}): center ({_vector(ball['center_in_proximal_mm'], 1)}) mm in the proximal body "
             f"within {ball['radius95_mm']:.2g} mm ({found['interval_note']})"
@@ -293,9 +309,9 @@ def _joint_type(found: Mapping[str, Any]) -> str:
     return f"none: the motion has no single axis ({found['type'].replace('_', ' ')}: {found['reason']})"
 
 
-def _one_of_two(axis: Mapping[str, Any], number: int) -> str:
-    body = ("proximal", "distal")[number - 1]
-    direction = _vector(axis[f"direction_in_{body}"], 4)
+def _one_of_two(axis: JointLineSummary, body: Literal["proximal", "distal"]) -> str:
+    number = 1 if body == "proximal" else 2
+    direction = _vector(axis["direction_in_proximal"] if number == 1 else axis["direction_in_distal"], 4)
     if not axis["determined"]:
         return f"axis {number} undetermined, {axis['range_deg']:.0f} deg about it"
     return (
@@ -304,7 +320,7 @@ def _one_of_two(axis: Mapping[str, Any], number: int) -> str:
     )
 
 
-def _radius(model: Mapping[str, Any]) -> str:
+def _radius(model: ModelSummary) -> str:
     return f"radius of gyration {model['points']['radius_of_gyration_mm']:g} mm"
 
 

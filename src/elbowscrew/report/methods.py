@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from typing import Any, Final
+from collections.abc import Iterator
+from typing import Final
 
+from elbowscrew.model.joint_summary_types import NoiseOfBodies
+from elbowscrew.model.summary_types import ModelSummary, TrialSummary
+from elbowscrew.results.joint_summary import preferred_fit
 from elbowscrew.view.finished import FinishedTrial
 
 _METHODS: Final = {
@@ -89,7 +92,7 @@ def _sentences(trial: FinishedTrial) -> Iterator[str]:
     yield f"Computations were made with elbowscrew {summary['elbowscrew']} (Pennestrì and Valentini 2010)."
 
 
-def _recording(trial: FinishedTrial, figures: Mapping[str, Any]) -> Iterator[str]:
+def _recording(trial: FinishedTrial, figures: TrialSummary) -> Iterator[str]:
     settings = trial.settings
     if settings.resample_hz is None:
         yield f"Poses of the segments were recorded at {figures['rate_hz']:.6g} Hz."
@@ -121,8 +124,8 @@ def _recording(trial: FinishedTrial, figures: Mapping[str, Any]) -> Iterator[str
         yield f"{missing}; no gaps were filled."
 
 
-def _noise(noise: Mapping[str, Any]) -> Iterator[str]:
-    sources = sorted({body["source"] for body in noise.values() if body is not None})
+def _noise(noise: NoiseOfBodies) -> Iterator[str]:
+    sources = sorted({body["source"] for body in (noise["proximal"], noise["distal"]) if body is not None})
     if sources:
         yield (
             "Standard deviations of angle, translation and axis are propagated from the noise of the poses "
@@ -132,15 +135,14 @@ def _noise(noise: Mapping[str, Any]) -> Iterator[str]:
 
 def _joint_axis(trial: FinishedTrial) -> Iterator[str]:
     joint = trial.joint_summary
-    preferred = joint["preferred"]
-    if preferred is None:
+    preferred, fit = joint["preferred"], preferred_fit(joint)
+    if preferred is None or fit is None:
         yield (
             "The motion has no single axis (a hinge leaves more than a quarter of its rotation unexplained); the mean "
             "of the helical axes, weighted by sin²(θ/2), is given (Woltring 1994)."
         )
     else:
         robust = ", frames weighted by Tukey's biweight" if trial.settings.robust else ""
-        fit = joint[preferred]
         why = "exceeds" if preferred == "screw_hinge" else "does not exceed"
         yield (
             f"The joint axis was fitted to the relative poses of {fit['frames']} frames by maximum likelihood as a "
@@ -190,7 +192,7 @@ def _model(trial: FinishedTrial) -> Iterator[str]:
     )
 
 
-def _laws(trial: FinishedTrial, model: Mapping[str, Any]) -> Iterator[str]:
+def _laws(trial: FinishedTrial, model: ModelSummary) -> Iterator[str]:
     """Tell phases and laws; which law a best fit chose stands in the summary."""
     settings, phases = trial.settings, model["phases"]
     count = f"{phases} phase{'s' if phases > 1 else ''}"

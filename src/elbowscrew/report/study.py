@@ -7,17 +7,18 @@ import os
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
 from elbowscrew import tables
 from elbowscrew.errors import ResultError
 from elbowscrew.geometry.arrays import Float
+from elbowscrew.model.summary_types import Summary
 from elbowscrew.reading.source import longest_cell
-from elbowscrew.results.read_back import UNREADABLE, check_version, is_result, read_summary
+from elbowscrew.results.read_back import is_result
+from elbowscrew.results.summary_reading import read_summary, settings_in
 from elbowscrew.results.table_reading import read_columns
-from elbowscrew.settings import settings_from_options
 from elbowscrew.view.decimation import drawn_rows
 
 CONDITION: Final = "condition"
@@ -38,7 +39,7 @@ class StudyTrial:
     ----------
     folder : str
         The result's folder relative to the study's, with slashes.
-    summary : mapping
+    summary : Summary
         Its ``summary.json``.
     time_s, theta : ndarray, shape (M,)
         Seconds and degrees; of long trials as many points as a thumbnail needs.
@@ -49,7 +50,7 @@ class StudyTrial:
     """
 
     folder: str
-    summary: Mapping[str, Any]
+    summary: Summary
     time_s: Float
     theta: Float
     page: bool
@@ -128,14 +129,9 @@ def read_study(folder: Path, factors: Sequence[str] | None = None) -> Study:
 
 
 def _trial(result: Path, name: str) -> StudyTrial:
-    summary = read_summary(result / "summary.json")
-    check_version(result, summary)
-    try:
-        settings = settings_from_options(summary["settings"])
-        columns = read_columns(result / "screw.csv", _THETA, settings.angle_unit, settings.length_unit)
-    except UNREADABLE as error:
-        msg = f"{result}: not a result of this version of the program: {' '.join(str(error).split())}"
-        raise ResultError(msg) from error
+    summary = read_summary(result)
+    settings = settings_in(summary, result)
+    columns = read_columns(result / "screw.csv", _THETA, settings.angle_unit, settings.length_unit)
     theta = np.degrees(columns["theta"])
     rows = drawn_rows(theta, keep_gaps=True, parts=_KEPT_BUCKETS)
     return StudyTrial(

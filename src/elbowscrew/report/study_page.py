@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 from urllib.parse import quote
@@ -11,6 +11,7 @@ import numpy as np
 from markupsafe import Markup
 
 from elbowscrew.geometry.arrays import Float
+from elbowscrew.model.summary_types import Summary
 from elbowscrew.report.charts import path_of
 from elbowscrew.report.distributions import LEAST, LIMIT, modified_z, strip_chart
 from elbowscrew.report.pages import UNSHOWABLE, render, unshowable, write_page
@@ -24,20 +25,19 @@ _ALL: Final = "all trials"
 
 
 class Measure(NamedTuple):
-    """A number that is compared over the trials, and where ``summary.json`` has it."""
+    """A number that is compared over the trials, and how it is read from ``summary.json``."""
 
     key: str
     title: str
     unit: str
-    section: str
-    name: str
+    read: Callable[[Summary], float | None]
     decimals: int
 
 
 MEASURES: Final = (
-    Measure("top", "Largest angle", "deg", "motion", "theta_max_deg", 1),
-    Measure("dispersion", "Dispersion of the axes", "deg", "motion", "axis_dispersion_deg", 2),
-    Measure("error", "Model error, RMS rotation", "deg", "interpolation", "rms_angle_error_deg", 2),
+    Measure("top", "Largest angle", "deg", lambda one: one["motion"]["theta_max_deg"], 1),
+    Measure("dispersion", "Dispersion of the axes", "deg", lambda one: one["motion"]["axis_dispersion_deg"], 2),
+    Measure("error", "Model error, RMS rotation", "deg", lambda one: one["interpolation"]["rms_angle_error_deg"], 2),
 )
 
 
@@ -118,19 +118,19 @@ def _row(trial: StudyTrial, scale: tuple[float, float]) -> dict[str, Any]:
         msg = "screw.csv has no rows"
         raise ValueError(msg)
     joint = motion["joint_axis"]
-    warnings = [str(one["code"]) for one in summary["warnings"] if one["severity"] == "warning"]
-    values = {one.key: summary[one.section][one.name] for one in MEASURES}
+    warnings = [one["code"] for one in summary["warnings"] if one["severity"] == "warning"]
+    values = {one.key: one.read(summary) for one in MEASURES}
     return {
         "folder": trial.folder,
         "link": quote(f"{trial.folder}/report.html", safe="/") if trial.page else None,
         "thumb": thumbnail(trial.time_s, trial.theta, scale),
         "factors": list(trial.factors.items()),
-        "frames": int(figures["frames"]),
-        "tracked": 100.0 * (1.0 - float(figures["missing_share"])),
+        "frames": figures["frames"],
+        "tracked": 100.0 * (1.0 - figures["missing_share"]),
         "cone": None if joint is None else joint["axis_cone95_deg"],
         "displacement": model["rms_displacement_mm"],
-        "repetitions": int(motion["repetitions"]),
-        "values": {key: np.nan if value is None else float(value) for key, value in values.items()},
+        "repetitions": motion["repetitions"],
+        "values": {key: np.nan if value is None else value for key, value in values.items()},
         "warnings": list(dict.fromkeys(warnings)),
         "outlier": [],
     }

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from elbowscrew.geometry._blocks import evenly_thinned
 from elbowscrew.joints import Joint
+from elbowscrew.model.joint_summary_types import EstimateSummary, JointSummary
 from elbowscrew.report.methods import citations_of, methods_of
 from elbowscrew.report.pages import UNSHOWABLE, render, unshowable, write_page
 from elbowscrew.report.scene import WIDEST, scene_of
@@ -22,6 +23,7 @@ from elbowscrew.report.trial_charts import (
     repetition_chart,
     theta_chart,
 )
+from elbowscrew.results.joint_summary import preferred_fit
 from elbowscrew.results.read_back import read_finished
 from elbowscrew.results.summary import settings_summary
 from elbowscrew.settings import SETTINGS, Settings
@@ -118,21 +120,22 @@ def _frame_names(words: Joint) -> dict[str, str]:
     }
 
 
-def _estimates(joint: Mapping[str, Any]) -> list[dict[str, Any]]:
+def _estimates(joint: JointSummary) -> list[dict[str, Any]]:
     """Rows of the table of the joint's axis, the preferred one marked."""
-    names = (
-        ("hinge", "Hinge, maximum likelihood"),
-        ("screw_hinge", "Screw-hinge, maximum likelihood"),
-        ("weighted_mean", "Weighted mean helical axis"),
-        ("sara", "SARA"),
-    )
+    estimates: list[tuple[str, EstimateSummary | None]] = [
+        ("Hinge, maximum likelihood", joint["hinge"]),
+        ("Screw-hinge, maximum likelihood", joint["screw_hinge"]),
+        ("Weighted mean helical axis", joint["weighted_mean"]),
+        ("SARA", joint["sara"]),
+    ]
+    best = preferred_fit(joint)
     blank = dict.fromkeys(
         ("axis_cone95_deg", "point_radius95_mm", "pitch_mm_per_rad", "residual_rotation_deg", "residual_translation_mm")
     )
     return [
-        {**blank, **joint[key], "name": name, "preferred": key == joint["preferred"]}
-        for key, name in names
-        if joint[key] is not None
+        {**blank, **estimate, "name": name, "preferred": estimate is best}
+        for name, estimate in estimates
+        if estimate is not None
     ]
 
 

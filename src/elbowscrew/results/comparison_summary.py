@@ -2,30 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any, Final
+from collections.abc import Mapping, Sequence
+from typing import Any, Final, TypeVar, cast
 
 import numpy as np
+from numpy.typing import NDArray
 
 from elbowscrew import tables
 from elbowscrew._version import __version__
 from elbowscrew.model import Comparison, TrialsComparison
-from elbowscrew.results.statistics import known
-from elbowscrew.results.summary import (
-    recording_summary,
-    selection_summary,
-    settings_summary,
-    source_summary,
-    warnings_summary,
+from elbowscrew.model.comparison_summary_types import (
+    ComparedModel,
+    ComparisonSummary,
+    ModelChoice,
+    ModelOverTrials,
+    TrialsSummary,
 )
+from elbowscrew.results.recording_summary import recording_summary, source_summary, warnings_summary
+from elbowscrew.results.statistics import known
+from elbowscrew.results.summary import selection_summary, settings_summary
 
 _BEST_TOLD: Final = 20
 _BEST_OF_EACH_TOLD: Final = 4
 
+Model = TypeVar("Model", bound=ModelChoice)
 
-def comparison_summary(comparison: Comparison) -> dict[str, Any]:
+
+def comparison_summary(comparison: Comparison) -> ComparisonSummary:
     """Say phases, laws, the best models and the selections of one recording; degrees and millimeters."""
     frame, phases = comparison.frame, comparison.phases
+    models = _models(tables.columns(comparison.models, tables.COMPARISON_COLUMNS, "deg", "mm"), ComparedModel)
     return {
         "elbowscrew": __version__,
         "source": source_summary(comparison.recording),
@@ -40,7 +46,8 @@ def comparison_summary(comparison: Comparison) -> dict[str, Any]:
         },
         "models": int(comparison.models.rank.size),
         "refused": int((comparison.models.note != "").sum()),
-        **_best(tables.columns(comparison.models, tables.COMPARISON_COLUMNS, "deg", "mm")),
+        "best": models[:_BEST_TOLD],
+        "best_by_keyframes": _best_of_each(models),
         "selections": {
             method: selection_summary(selection, frame) for method, selection in comparison.selections.items()
         },
@@ -48,8 +55,9 @@ def comparison_summary(comparison: Comparison) -> dict[str, Any]:
     }
 
 
-def trials_summary(found: TrialsComparison) -> dict[str, Any]:
+def trials_summary(found: TrialsComparison) -> TrialsSummary:
     """Say the best models over several recordings, and what each recording's selection needs."""
+    models = _models(tables.columns(found.models, tables.TRIALS_COMPARISON_COLUMNS, "deg", "mm"), ModelOverTrials)
     return {
         "elbowscrew": __version__,
         "settings": settings_summary(found.settings),
@@ -66,24 +74,26 @@ def trials_summary(found: TrialsComparison) -> dict[str, Any]:
             {"path": path, "error": type(error).__name__, "message": str(error)} for path, error in found.failures
         ],
         "models": int(found.models.rank.size),
-        **_best(tables.columns(found.models, tables.TRIALS_COMPARISON_COLUMNS, "deg", "mm")),
+        "best": models[:_BEST_TOLD],
+        "best_by_keyframes": _best_of_each(models),
     }
 
 
-def _best(columns: Mapping[str, Any]) -> dict[str, list[dict[str, Any]]]:
-    """The best models of all, and those of each number of keyframes."""
-    made = [k for k in range(len(columns["rank"])) if "note" not in columns or not columns["note"][k]]
-    counts = columns["keyframes_per_phase"]
-    of_each = [
-        k for count in np.unique(counts[made]) for k in [k for k in made if counts[k] == count][:_BEST_OF_EACH_TOLD]
-    ]
-    return {
-        "best": [_model(columns, k) for k in made[:_BEST_TOLD]],
-        "best_by_keyframes": [_model(columns, k) for k in of_each],
-    }
+def _models(columns: Mapping[str, NDArray[Any]], _kind: type[Model]) -> list[Model]:
+    """Turn the columns of a table of models into rows, the best first; those that were refused are left out."""
+    rows = [k for k in range(len(columns["rank"])) if "note" not in columns or not columns["note"][k]]
+    return [cast(Model, _model(columns, k)) for k in rows]  # a test holds its keys and the columns together
 
 
-def _model(columns: Mapping[str, Any], row: int) -> dict[str, Any]:
+def _best_of_each(models: Sequence[Model]) -> list[Model]:
+    """Take the best models of each number of keyframes."""
+    by_count: dict[int, list[Model]] = {}
+    for model in models:
+        by_count.setdefault(model["keyframes_per_phase"], []).append(model)
+    return [model for count in sorted(by_count) for model in by_count[count][:_BEST_OF_EACH_TOLD]]
+
+
+def _model(columns: Mapping[str, NDArray[Any]], row: int) -> dict[str, str | int | float | None]:
     return {
         name: _plain(values[row])
         for name, values in columns.items()
@@ -91,7 +101,7 @@ def _model(columns: Mapping[str, Any], row: int) -> dict[str, Any]:
     }
 
 
-def _plain(value: Any) -> Any:
+def _plain(value: Any) -> str | int | float | None:
     if isinstance(value, str):
         return str(value)
     return int(value) if isinstance(value, int | np.integer) else known(value)

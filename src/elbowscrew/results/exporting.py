@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from elbowscrew.errors import UsageError
 from elbowscrew.model import Analysis
+from elbowscrew.model.summary_types import AnalysisSummary
 from elbowscrew.results.writing import named_tables
 from elbowscrew.tables import angle_in
 
@@ -37,13 +38,13 @@ def check_exports(formats: Sequence[str]) -> None:
             raise UsageError(msg)
 
 
-def write_exports(folder: Path, analysis: Analysis, summary: Mapping[str, Any], formats: Sequence[str]) -> None:
+def write_exports(folder: Path, analysis: Analysis, summary: AnalysisSummary, formats: Sequence[str]) -> None:
     """Write the tables in the formats asked for; the summary goes along where a format has a place for it."""
     for name in dict.fromkeys(formats):
         EXPORTS[name].write(folder, analysis, summary)
 
 
-def _write_parquet(folder: Path, analysis: Analysis, summary: Mapping[str, Any]) -> None:
+def _write_parquet(folder: Path, analysis: Analysis, summary: AnalysisSummary) -> None:
     """Write each table as one file; what is not known is null, and the summary stands in the file's metadata."""
     import pyarrow as pa
     import pyarrow.parquet as pq
@@ -62,7 +63,7 @@ def _arrow_array(pa: Any, values: NDArray[Any]) -> Any:
     return pa.array(values.tolist() if values.dtype.kind == "U" else values)
 
 
-def _write_mat(folder: Path, analysis: Analysis, summary: Mapping[str, Any]) -> None:
+def _write_mat(folder: Path, analysis: Analysis, summary: AnalysisSummary) -> None:
     """Write one file with a structure for each table, and the summary as JSON; not known is NaN."""
     from scipy.io import savemat
 
@@ -87,7 +88,7 @@ def _matlab_array(values: NDArray[Any]) -> NDArray[Any]:
     return values + 0.0 if values.dtype.kind == "f" else values
 
 
-def _write_sto(folder: Path, analysis: Analysis, _summary: Mapping[str, Any]) -> None:
+def _write_sto(folder: Path, analysis: Analysis, _summary: AnalysisSummary) -> None:
     """Write the angle over time as OpenSim's storage: a few header lines, then a table with tabs.
 
     Frames without an angle say NaN: left out, OpenSim would draw its splines across the gap.
@@ -129,7 +130,7 @@ class Export(NamedTuple):
         The file it writes; one that begins with a point is the ending of one file for each table.
     """
 
-    write: Callable[[Path, Analysis, Mapping[str, Any]], None]
+    write: Callable[[Path, Analysis, AnalysisSummary], None]
     library: str | None
     file: str
 

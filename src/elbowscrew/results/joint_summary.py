@@ -18,15 +18,30 @@ from elbowscrew.model import (
     PoseNoise,
     RigidBody,
 )
+from elbowscrew.model.joint_summary_types import (
+    AnatomySummary,
+    BodiesSummary,
+    DispersionSummary,
+    EstimateSummary,
+    FitSummary,
+    JointSummary,
+    MeanAxisSummary,
+    NoiseSummary,
+    PoseSummary,
+    RepeatabilitySummary,
+    Vector,
+    WanderSummary,
+)
+from elbowscrew.motion.screws.frames import frame_called
 from elbowscrew.results.joint_type_summary import joint_type_summary
 from elbowscrew.results.statistics import known, rms, statistic
 
 
-def joint_summary(analysis: Analysis) -> dict[str, Any]:
+def joint_summary(analysis: Analysis) -> JointSummary:
     """Estimates of the joint's axis with their intervals, the dispersion about it, and the noise behind them."""
     axis = analysis.joint_axis
     return {
-        "expressed_in": analysis.settings.express_in,
+        "expressed_in": frame_called(analysis.settings.express_in, analysis.named_joint)[0],
         "joint_type": joint_type_summary(analysis),
         "single_axis": axis.single,
         "preferred": axis.preferred,
@@ -38,14 +53,14 @@ def joint_summary(analysis: Analysis) -> dict[str, Any]:
         "weighted_mean": _line(axis.weighted_mean),
         "sara": _line(axis.sara),
         "dispersion": dispersion_summary(analysis),
-        "noise": {name: _noise(noise) for name, noise in axis.noise.items()},
+        "noise": {"proximal": _noise(axis.noise["proximal"]), "distal": _noise(axis.noise["distal"])},
         "repeatability": _repeatability(analysis),
         "anatomy": _anatomy(analysis.anatomy),
         "bodies": _bodies(analysis),
     }
 
 
-def dispersion_summary(analysis: Analysis) -> dict[str, float | None]:
+def dispersion_summary(analysis: Analysis) -> DispersionSummary:
     """How far the finite axes of the frames lie from their mean, in direction and in place."""
     mean = analysis.mean_axis
     deviation, distance = np.degrees(mean.deviation), 1000.0 * mean.distance
@@ -63,6 +78,11 @@ def dispersion_summary(analysis: Analysis) -> dict[str, float | None]:
     }
 
 
+def preferred_fit(joint: JointSummary) -> FitSummary | None:
+    """Give the fit to believe; None where the motion has no single axis."""
+    return None if joint["preferred"] is None else joint[joint["preferred"]]
+
+
 INTERVAL_METHODS: Final = {
     "A": "from the markers' motion among themselves",
     "B": "from the residuals of the joint's model and how they go together in time",
@@ -71,64 +91,58 @@ INTERVAL_METHODS: Final = {
 """What an interval stands on."""
 
 
-def _fitted(fit: FittedJoint | None) -> dict[str, Any] | None:
+def _fitted(fit: FittedJoint | None) -> FitSummary | None:
     if fit is None:
         return None
-    figures = {
-        "axis_sd_deg": float(np.degrees(fit.axis_sd)),
-        "axis_cone95_deg": float(np.degrees(fit.axis_cone)),
-        "point_sd_mm": 1000.0 * fit.point_sd,
-        "point_radius95_mm": 1000.0 * fit.point_radius,
-        "sensitivity_deg_per_deg": fit.sensitivity,
-        "pitch_mm_per_rad": 1000.0 * fit.pitch,
-        "pitch_sd_mm_per_rad": 1000.0 * fit.pitch_sd,
-        "residual_rotation_deg": float(np.degrees(fit.residual_rotation)),
-        "residual_translation_mm": 1000.0 * fit.residual_translation,
-        "noise_ratio": fit.noise_ratio,
-        "frames_that_count_as_one": fit.correlation,
-        "outlier_share": float(np.mean(fit.weight < 0.5)),
-    }
     return {
         **_line(fit.line),
         "frames": int(fit.used.size),
-        **{name: known(value) for name, value in figures.items()},
+        "axis_sd_deg": known(np.degrees(fit.axis_sd)),
+        "axis_cone95_deg": known(np.degrees(fit.axis_cone)),
+        "point_sd_mm": known(1000.0 * fit.point_sd),
+        "point_radius95_mm": known(1000.0 * fit.point_radius),
+        "sensitivity_deg_per_deg": known(fit.sensitivity),
+        "pitch_mm_per_rad": known(1000.0 * fit.pitch),
+        "pitch_sd_mm_per_rad": known(1000.0 * fit.pitch_sd),
+        "residual_rotation_deg": known(np.degrees(fit.residual_rotation)),
+        "residual_translation_mm": known(1000.0 * fit.residual_translation),
+        "noise_ratio": known(fit.noise_ratio),
+        "frames_that_count_as_one": known(fit.correlation),
+        "outlier_share": known(np.mean(fit.weight < 0.5)),
         "decided_by": fit.decided_by,
         "interval_method": None if fit.decided_by is None else INTERVAL_METHODS[fit.decided_by],
     }
 
 
-def _wander(wander: AxisWander | None) -> dict[str, Any] | None:
+def _wander(wander: AxisWander | None) -> WanderSummary | None:
     if wander is None:
         return None
-    figures = {
-        "size_deg": float(np.degrees(wander.turn)),
-        "size_sd_deg": float(np.degrees(wander.turn_sd)),
-        "size_mm": 1000.0 * wander.shift,
-        "size_sd_mm": 1000.0 * wander.shift_sd,
-        "unseen_deg": float(np.degrees(wander.unseen_turn)),
-        "unseen_mm": 1000.0 * wander.unseen_shift,
+    return {
+        "size_deg": known(np.degrees(wander.turn)),
+        "size_sd_deg": known(np.degrees(wander.turn_sd)),
+        "size_mm": known(1000.0 * wander.shift),
+        "size_sd_mm": known(1000.0 * wander.shift_sd),
+        "unseen_deg": known(np.degrees(wander.unseen_turn)),
+        "unseen_mm": known(1000.0 * wander.unseen_shift),
+        "significant": wander.significant,
     }
-    return {**{name: known(value) for name, value in figures.items()}, "significant": wander.significant}
 
 
-def _mean_axis(mean: MeanLine | None) -> dict[str, Any] | None:
+def _mean_axis(mean: MeanLine | None) -> MeanAxisSummary | None:
     if mean is None:
         return None
-    figures = {
-        "axis_sd_deg": float(np.degrees(mean.axis_sd)),
-        "axis_cone95_deg": float(np.degrees(mean.axis_cone)),
-        "point_sd_mm": 1000.0 * mean.point_sd,
-        "point_radius95_mm": 1000.0 * mean.point_radius,
-    }
     return {
         **_line(mean.line),
-        **{name: known(value) for name, value in figures.items()},
+        "axis_sd_deg": known(np.degrees(mean.axis_sd)),
+        "axis_cone95_deg": known(np.degrees(mean.axis_cone)),
+        "point_sd_mm": known(1000.0 * mean.point_sd),
+        "point_radius95_mm": known(1000.0 * mean.point_radius),
         "decided_by": mean.decided_by,
         "interval_method": None if mean.decided_by is None else INTERVAL_METHODS[mean.decided_by],
     }
 
 
-def _line(line: LineEstimate) -> dict[str, list[float]]:
+def _line(line: LineEstimate) -> EstimateSummary:
     return {
         "direction": line.direction.tolist(),
         "point_mm": (1000.0 * line.point).tolist(),
@@ -139,22 +153,19 @@ def _line(line: LineEstimate) -> dict[str, list[float]]:
     }
 
 
-def _repeatability(analysis: Analysis) -> dict[str, Any]:
+def _repeatability(analysis: Analysis) -> RepeatabilitySummary:
     found = analysis.repeatability
-    figures = {
-        "icc": found.icc,
-        "cmc": found.cmc,
-        "axis_sd_deg": float(np.degrees(found.axis_sd)),
-        "point_sd_mm": 1000.0 * found.point_sd,
-        "theta_max_sd_deg": float(np.degrees(found.top_sd)),
-    }
     return {
         "repetitions": int(analysis.repetitions.number.size),
-        **{name: known(value) for name, value in figures.items()},
+        "icc": known(found.icc),
+        "cmc": known(found.cmc),
+        "axis_sd_deg": known(np.degrees(found.axis_sd)),
+        "point_sd_mm": known(1000.0 * found.point_sd),
+        "theta_max_sd_deg": known(np.degrees(found.top_sd)),
     }
 
 
-def _anatomy(motion: AnatomicalMotion | None) -> dict[str, Any] | None:
+def _anatomy(motion: AnatomicalMotion | None) -> AnatomySummary | None:
     if motion is None:
         return None
     return {
@@ -167,7 +178,7 @@ def _anatomy(motion: AnatomicalMotion | None) -> dict[str, Any] | None:
     }
 
 
-def _bodies(analysis: Analysis) -> dict[str, Any]:
+def _bodies(analysis: Analysis) -> BodiesSummary:
     """Say where the bodies are at the reference, and where their markers: with `screw.csv`, all that figures show."""
     joint = analysis.joint
     return {
@@ -178,19 +189,19 @@ def _bodies(analysis: Analysis) -> dict[str, Any]:
     }
 
 
-def _pose(dual_quat: Float) -> dict[str, list[float]]:
+def _pose(dual_quat: Float) -> PoseSummary:
     quat, position = pose_from_dual_quat(dual_quat)
     return {"quaternion": quat.tolist(), "position_mm": (1000.0 * position).tolist()}
 
 
-def _markers(body: RigidBody | None) -> list[list[float]] | None:
+def _markers(body: RigidBody | None) -> list[Vector] | None:
     if body is None or body.marker_offsets is None:
         return None
     offsets = 1000.0 * body.marker_offsets
     return [offset.tolist() for offset in offsets if np.isfinite(offset).all()]
 
 
-def _noise(noise: PoseNoise | None) -> dict[str, Any] | None:
+def _noise(noise: PoseNoise | None) -> NoiseSummary | None:
     if noise is None:
         return None
     deviation = np.sqrt(np.diag(noise.covariance))

@@ -2,13 +2,21 @@
 
 from __future__ import annotations
 
-from typing import Any, Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
 from elbowscrew.geometry.sensitivity import NORMAL_95
 from elbowscrew.model import Analysis
-from elbowscrew.model.joint_type import JointLine, JointType, Measure, TwoAxes
+from elbowscrew.model.joint_summary_types import (
+    BallSummary,
+    CandidateSummary,
+    JointLineSummary,
+    JointTypeSummary,
+    SecondRotationSummary,
+    TwoAxesSummary,
+)
+from elbowscrew.model.joint_type import BallJoint, JointLine, JointTypeName, Measure, SecondRotation, TwoAxes
 from elbowscrew.results.statistics import known
 
 _MILLIMETERS: Final = 1000.0
@@ -19,17 +27,25 @@ INTERVAL_NOTE: Final = (
 """What the intervals of two axes and of a center stand on."""
 
 
-def joint_type_summary(analysis: Analysis) -> dict[str, Any]:
+def joint_type_summary(analysis: Analysis) -> JointTypeSummary:
     """Type, status and reason; of two axes and of a center their numbers."""
     found, axis = analysis.joint_type, analysis.joint_axis
     if found is None:
-        kind = axis.preferred or "undetermined"
-        status = None if axis.preferred is None else "approximate"
+        kind: JointTypeName = axis.preferred or "undetermined"
         reason = f"one axis leaves {100.0 * axis.unexplained:.2g} % of the rotation; richer types were not tried"
         if axis.preferred is None:
             reason = "the positions tell nothing of where the joint is"
-        return {"type": kind, "status": status, "reason": reason, "candidates": [], **_numbers(None)}
-    candidates = [
+        return {
+            "type": kind,
+            "status": None if axis.preferred is None else "approximate",
+            "reason": reason,
+            "candidates": [],
+            "two_axes": None,
+            "ball": None,
+            "second_rotation": None,
+            "interval_note": None,
+        }
+    candidates: list[CandidateSummary] = [
         {
             "type": one.type,
             "residual_deg": known(_DEGREES * one.residual_rotation),
@@ -46,45 +62,51 @@ def joint_type_summary(analysis: Analysis) -> dict[str, Any]:
         "status": found.status,
         "reason": found.reason,
         "candidates": candidates,
-        **_numbers(found),
+        "two_axes": None if found.two_axes is None else _two_axes(found.two_axes),
+        "ball": None if found.ball is None else _ball(found.ball),
+        "second_rotation": None if found.second_rotation is None else _second_rotation(found.second_rotation),
+        "interval_note": INTERVAL_NOTE,
     }
 
 
-def _numbers(found: JointType | None) -> dict[str, Any]:
-    second = None if found is None else found.second_rotation
-    ball = None if found is None else found.ball
+def _ball(found: BallJoint) -> BallSummary:
     return {
-        "two_axes": None if found is None or found.two_axes is None else _two_axes(found.two_axes),
-        "ball": None
-        if ball is None
-        else {
-            "center_in_proximal_mm": (_MILLIMETERS * ball.center_proximal).tolist(),
-            "center_in_distal_mm": (_MILLIMETERS * ball.center_distal).tolist(),
-            "radius95_mm": known(_MILLIMETERS * ball.radius),
-        },
-        "second_rotation": None
-        if second is None
-        else {
-            "range_deg": known(_DEGREES * second.range),
-            "axis": None if second.axis is None else _line(second.axis),
-        },
-        "interval_note": None if found is None else INTERVAL_NOTE,
+        "center_in_proximal_mm": (_MILLIMETERS * found.center_proximal).tolist(),
+        "center_in_distal_mm": (_MILLIMETERS * found.center_distal).tolist(),
+        "radius95_mm": known(_MILLIMETERS * found.radius),
     }
 
 
-def _two_axes(found: TwoAxes) -> dict[str, Any]:
+def _second_rotation(found: SecondRotation) -> SecondRotationSummary:
+    return {"range_deg": known(_DEGREES * found.range), "axis": None if found.axis is None else _line(found.axis)}
+
+
+def _two_axes(found: TwoAxes) -> TwoAxesSummary:
+    angle, distance = _measure(found.angle_between, _DEGREES), _measure(found.distance, _MILLIMETERS)
+    offset = _measure(found.offset, _MILLIMETERS)
+    foot1, foot2 = _measure(found.foot1, _MILLIMETERS), _measure(found.foot2, _MILLIMETERS)
     return {
         "axis1": _line(found.axis1),
         "axis2": _line(found.axis2),
-        **_measure("angle_between_deg", found.angle_between, _DEGREES),
-        **_measure("distance_mm", found.distance, _MILLIMETERS),
-        **_measure("parallel_offset_mm", found.offset, _MILLIMETERS),
-        **_measure("foot1_mm", found.foot1, _MILLIMETERS),
-        **_measure("foot2_mm", found.foot2, _MILLIMETERS),
+        "angle_between_deg": angle.value,
+        "angle_between_deg_low": angle.low,
+        "angle_between_deg_high": angle.high,
+        "distance_mm": distance.value,
+        "distance_mm_low": distance.low,
+        "distance_mm_high": distance.high,
+        "parallel_offset_mm": offset.value,
+        "parallel_offset_mm_low": offset.low,
+        "parallel_offset_mm_high": offset.high,
+        "foot1_mm": foot1.value,
+        "foot1_mm_low": foot1.low,
+        "foot1_mm_high": foot1.high,
+        "foot2_mm": foot2.value,
+        "foot2_mm_low": foot2.low,
+        "foot2_mm_high": foot2.high,
     }
 
 
-def _line(line: JointLine) -> dict[str, Any]:
+def _line(line: JointLine) -> JointLineSummary:
     determined = line.determined and line.axis_cone < 0.5 * np.pi
     return {
         "direction_in_proximal": line.direction_proximal.tolist(),
@@ -99,11 +121,18 @@ def _line(line: JointLine) -> dict[str, Any]:
     }
 
 
-def _measure(name: str, found: Measure | None, scale: float) -> dict[str, float | None]:
-    value, sd = (None, None) if found is None else (scale * found.value, scale * NORMAL_95 * found.sd)
-    known_sd = value is not None and sd is not None and np.isfinite(sd)
-    return {
-        name: value if value is None else known(value),
-        f"{name}_low": value - sd if known_sd and value is not None and sd is not None else None,
-        f"{name}_high": value + sd if known_sd and value is not None and sd is not None else None,
-    }
+class _Interval(NamedTuple):
+    """A number with its 95 % limits; None where not known."""
+
+    value: float | None = None
+    low: float | None = None
+    high: float | None = None
+
+
+def _measure(found: Measure | None, scale: float) -> _Interval:
+    if found is None:
+        return _Interval()
+    value, reach = scale * found.value, scale * NORMAL_95 * found.sd
+    if not np.isfinite(reach):
+        return _Interval(known(value))
+    return _Interval(known(value), value - reach, value + reach)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple, cast
 
@@ -11,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowscrew import tables
-from elbowscrew._version import __version__
 from elbowscrew.errors import ResultError
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_quaternion import dual_quat_from_pose
@@ -25,8 +22,12 @@ from elbowscrew.model import (
     Repetitions,
     ScrewMotion,
 )
+from elbowscrew.model.joint_summary_types import DispersionSummary, JointSummary, LineSummary, PoseSummary, Vector
+from elbowscrew.model.summary_types import AnalysisSummary, JointWords, ModelSummary, MovementSummary, QualitySummary
+from elbowscrew.results.joint_summary import preferred_fit
+from elbowscrew.results.summary_reading import read_joint_summary, read_summary, settings_in
 from elbowscrew.results.table_reading import AsRead, read_columns, read_result
-from elbowscrew.settings import settings_from_options
+from elbowscrew.settings import Settings
 from elbowscrew.view.finished import (
     FinishedBody,
     FinishedClock,
@@ -40,57 +41,13 @@ from elbowscrew.view.finished import (
 
 Columns = dict[str, NDArray[Any]]
 
-UNREADABLE = (KeyError, TypeError, ValueError, IndexError, AttributeError)
+UNREADABLE = (KeyError, TypeError, ValueError, IndexError, AttributeError, OverflowError)
 """What a result from elsewhere, or one that somebody edited, raises where it is not as it was written."""
 
 
 def is_result(folder: Path) -> bool:
     """Tell whether a folder holds the result of one trial."""
     return (folder / "summary.json").is_file() and (folder / "screw.csv").is_file()
-
-
-def read_summary(path: Path) -> dict[str, Any]:
-    """Read ``summary.json`` or ``joint.json`` of a result.
-
-    Raises
-    ------
-    ResultError
-        If there is none, or it is not what was written.
-    """
-    try:
-        content = json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        msg = (
-            f"{path.parent}: holds no finished result: {path.name}: {error.strerror or error}; analyze the trial first"
-        )
-        raise ResultError(msg) from error
-    except (ValueError, RecursionError) as error:
-        msg = f"{path}: not JSON: {error}; analyze the trial again"
-        raise ResultError(msg) from error
-    if not isinstance(content, dict):
-        msg = f"{path}: expected an object, found {type(content).__name__}; analyze the trial again"
-        raise ResultError(msg)
-    return content
-
-
-def check_version(folder: Path, summary: Mapping[str, Any]) -> None:
-    """Refuse a result whose tables and keys have the names of another version.
-
-    Up to 0.1 they were an elbow's: the segments were ``arm`` and ``forearm``.
-
-    Raises
-    ------
-    ResultError
-        Naming both versions.
-    """
-    written = str(summary.get("elbowscrew"))
-    trial = summary.get("trial")
-    if isinstance(trial, Mapping) and "forearm" in trial:
-        msg = (
-            f"{folder}: written by elbowscrew {written}, whose names this version ({__version__}) does not read; "
-            "analyze the trial again"
-        )
-        raise ResultError(" ".join(msg.split()))
 
 
 def read_finished(folder: Path) -> FinishedTrial:
@@ -110,11 +67,11 @@ def read_finished(folder: Path) -> FinishedTrial:
     ResultError
         If the folder holds no finished result, or a damaged one.
     """
-    summary = read_summary(folder / "summary.json")
-    joint_summary = read_summary(folder / "joint.json")
-    check_version(folder, summary)
+    summary = read_summary(folder)
+    joint_summary = read_joint_summary(folder)
+    settings = settings_in(summary, folder)
     try:
-        return _finished(folder, summary, joint_summary, _read_tables(folder, summary))
+        return _finished(folder, summary, joint_summary, settings, _read_tables(folder, settings))
     except UNREADABLE as error:
         msg = (
             f"{folder}: not a result of this version of the program: {type(error).__name__} {error}; "
@@ -124,7 +81,7 @@ def read_finished(folder: Path) -> FinishedTrial:
 
 
 def as_finished(
-    analysis: Analysis, folder: Path, summary: Mapping[str, Any], joint_summary: Mapping[str, Any]
+    analysis: Analysis, folder: Path, summary: AnalysisSummary, joint_summary: JointSummary
 ) -> FinishedTrial:
     """Give what `read_finished` reads of a folder that an analysis was just written to, without reading the tables.
 
@@ -132,8 +89,8 @@ def as_finished(
     ----------
     analysis : Analysis
     folder : Path
-    summary, joint_summary : mapping
-        As the two JSON files read back.
+    summary : AnalysisSummary
+    joint_summary : JointSummary
     """
     units = analysis.settings.angle_unit, analysis.settings.length_unit
     curve = None
@@ -146,7 +103,9 @@ def as_finished(
         repetitions=cast(Repetitions, AsRead(analysis.repetitions, tables.REPETITION_COLUMNS, *units)),
         curve=curve,
     )
-    return _finished(folder, summary, joint_summary, given)
+    told = {"method": analysis.settings.model_method, "law": analysis.settings.model_law}
+    settings = analysis.settings.model_copy(update=told)
+    return _finished(folder, summary, joint_summary, settings, given)
 
 
 class _Tables(NamedTuple):
@@ -156,8 +115,7 @@ class _Tables(NamedTuple):
     curve: Columns | None
 
 
-def _read_tables(folder: Path, summary: Mapping[str, Any]) -> _Tables:
-    settings = settings_from_options(summary["settings"])
+def _read_tables(folder: Path, settings: Settings) -> _Tables:
     units = settings.angle_unit, settings.length_unit
     curve = folder / "repetition_curve.csv"
     return _Tables(
@@ -171,7 +129,7 @@ def _read_tables(folder: Path, summary: Mapping[str, Any]) -> _Tables:
 
 
 def _finished(
-    folder: Path, summary: Mapping[str, Any], joint_summary: Mapping[str, Any], read: _Tables
+    folder: Path, summary: AnalysisSummary, joint_summary: JointSummary, settings: Settings, read: _Tables
 ) -> FinishedTrial:
     bodies, trial = joint_summary["bodies"], summary["trial"]
     frame = _Frames(read.screw.frame)
@@ -179,7 +137,7 @@ def _finished(
         folder=folder,
         summary=summary,
         joint_summary=joint_summary,
-        settings=settings_from_options(summary["settings"]),
+        settings=settings,
         recording=FinishedClock(rate_hz=float(trial["rate_hz"])),
         proximal=None if trial["proximal"] is None else _body(trial["proximal"], bodies["proximal_markers_mm"]),
         distal=_body(trial["distal"], bodies["distal_markers_mm"]),
@@ -198,11 +156,11 @@ def _finished(
     )
 
 
-def _named_joint(joint: Mapping[str, Any]) -> Joint:
-    return joint_called(str(joint["name"]), str(joint["proximal"]), str(joint["distal"]))
+def _named_joint(joint: JointWords) -> Joint:
+    return joint_called(joint["name"], joint["proximal"], joint["distal"])
 
 
-def _pose(pose: dict[str, Any]) -> Float:
+def _pose(pose: PoseSummary) -> Float:
     return dual_quat_from_pose(np.array(pose["quaternion"], dtype=np.float64), _millimeters(pose["position_mm"]))
 
 
@@ -211,31 +169,35 @@ def _millimeters(values: Any) -> Float:
     return np.array(values, dtype=np.float64) / 1000.0
 
 
-def _body(trial: dict[str, Any], markers: Any) -> FinishedBody:
+def _body(trial: QualitySummary, markers: list[Vector] | None) -> FinishedBody:
     offsets = None if markers is None else _millimeters(markers).reshape(-1, 3)
-    return FinishedBody(name=str(trial["name"]), marker_offsets=offsets)
+    return FinishedBody(name=trial["name"], marker_offsets=offsets)
 
 
-def _line(line: dict[str, Any]) -> FinishedLine:
+def _line(line: LineSummary) -> FinishedLine:
     return FinishedLine(direction=np.array(line["direction"], dtype=np.float64), point=_millimeters(line["point_mm"]))
 
 
-def _mean(mean: dict[str, Any], dispersion: dict[str, Any]) -> FinishedMean:
+def _mean(mean: LineSummary, dispersion: DispersionSummary) -> FinishedMean:
     line = _line(mean)
-    spread = float(np.radians(dispersion["direction_95_deg"])), dispersion["place_95_mm"] / 1000.0
+    spread = float(np.radians(_number(dispersion["direction_95_deg"]))), _number(dispersion["place_95_mm"]) / 1000.0
     return FinishedMean(direction=line.direction, point=line.point, spread95=spread)
 
 
-def _joint_axis(joint: Mapping[str, Any]) -> FinishedJointAxis:
-    preferred = joint["preferred"]
+def _number(value: float | None) -> float:
+    return np.nan if value is None else value
+
+
+def _joint_axis(joint: JointSummary) -> FinishedJointAxis:
+    fit = preferred_fit(joint)
     best = None
-    if preferred is not None:
-        fit = joint[preferred]
-        cone, radius = (
-            np.nan if fit[name] is None else float(fit[name]) for name in ("axis_cone95_deg", "point_radius95_mm")
+    if fit is not None:
+        best = FinishedFit(
+            line=_line(fit),
+            axis_cone=float(np.radians(_number(fit["axis_cone95_deg"]))),
+            point_radius=_number(fit["point_radius95_mm"]) / 1000.0,
         )
-        best = FinishedFit(line=_line(fit), axis_cone=float(np.radians(cone)), point_radius=radius / 1000.0)
-    return FinishedJointAxis(preferred=preferred, best=best, weighted_mean=_line(joint["weighted_mean"]))
+    return FinishedJointAxis(preferred=joint["preferred"], best=best, weighted_mean=_line(joint["weighted_mean"]))
 
 
 class _Frames:
@@ -257,7 +219,7 @@ class _Frames:
         raise ValueError(msg)
 
 
-def _phases(movements: list[dict[str, int]], frame: _Frames) -> MovementPhases:
+def _phases(movements: list[MovementSummary], frame: _Frames) -> MovementPhases:
     onset = frame.rows([movement["onset_frame"] for movement in movements])
     offset = frame.rows([movement["offset_frame"] for movement in movements])
     moving = np.zeros(frame.frame.size, dtype=bool)
@@ -266,7 +228,7 @@ def _phases(movements: list[dict[str, int]], frame: _Frames) -> MovementPhases:
     return MovementPhases(onset_rows=onset, offset_rows=offset, moving=moving)
 
 
-def _keyframes(model: Mapping[str, Any], phase: np.ma.MaskedArray[Any, Any], frame: _Frames) -> Keyframes:
+def _keyframes(model: ModelSummary, phase: np.ma.MaskedArray[Any, Any], frame: _Frames) -> Keyframes:
     """Read the keyframes; a phase begins where its number first stands, and the last one ends at the last keyframe."""
     row = frame.rows(model["keyframes"])
     known = np.ma.masked_array(phase)

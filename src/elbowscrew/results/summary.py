@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import platform
-from collections.abc import Iterable
-from dataclasses import asdict
 from functools import cache
 from importlib.metadata import version
 from typing import Any, Final
@@ -13,23 +11,33 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowscrew._version import __version__
-from elbowscrew.errors import SettingError
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.joints import side_between
-from elbowscrew.model import Analysis, BodyQuality, JointAxis, Landmarks, QualityWarning, Recording, Selection, Spread
-from elbowscrew.model.anatomy import LANDMARKS
-from elbowscrew.motion.tracking.quality import body_quality, check_bodies, clock_quality
-from elbowscrew.motion.tracking.selection import choose_bodies
-from elbowscrew.reading.options import ASK_FOR_MARKERS
+from elbowscrew.model import Analysis, JointAxis, Landmarks, Selection
+from elbowscrew.model.anatomy import Landmark
+from elbowscrew.model.summary_types import (
+    AnalysisSummary,
+    JointAxisSummary,
+    JointWords,
+    LandmarksSummary,
+    LandmarkSummary,
+    ModelSummary,
+    MotionSummary,
+    PhaseLawSummary,
+    SelectionSummary,
+    TrialSummary,
+)
+from elbowscrew.motion.screws.frames import frame_called
 from elbowscrew.results.joint_summary import INTERVAL_METHODS
 from elbowscrew.results.joint_type_summary import joint_type_summary
+from elbowscrew.results.recording_summary import quality_summary, recording_summary, source_summary, warnings_summary
 from elbowscrew.results.statistics import known, rms, statistic
 from elbowscrew.settings import Settings, options_from_settings
 
 _LIBRARIES: Final = ("numpy", "scipy", "matplotlib", "pandas", "pydantic")
 
 
-def summary_from_analysis(analysis: Analysis) -> dict[str, Any]:
+def summary_from_analysis(analysis: Analysis) -> AnalysisSummary:
     """Results, quality, settings and provenance, ready for JSON; units in the names, None where nothing is known.
 
     Angles are degrees and lengths millimeters here, whatever the units of the tables.
@@ -41,8 +49,8 @@ def summary_from_analysis(analysis: Analysis) -> dict[str, Any]:
 
     Returns
     -------
-    dict
-        What stands in ``summary.json``.
+    AnalysisSummary
+        What stands in ``summary.json``, but for the files beside it.
 
     Examples
     --------
@@ -56,28 +64,11 @@ def summary_from_analysis(analysis: Analysis) -> dict[str, Any]:
         "source": source_summary(analysis.recording),
         "settings": settings_summary(analysis.settings),
         "landmarks": landmarks_summary(None if analysis.anatomy is None else analysis.anatomy.landmarks),
-        "trial": {**recording_summary(analysis.recording), **_trial(analysis)},
+        "trial": _trial(analysis),
         "motion": _motion(analysis),
         "interpolation": _interpolation(analysis),
         "warnings": warnings_summary(analysis.warnings),
         "versions": library_versions(),
-    }
-
-
-def summary_from_recording(recording: Recording, settings: Settings | None = None) -> dict[str, Any]:
-    """What a file holds, ready for JSON: source, clock, bodies with their tracking, and which is which segment."""
-    checked, warnings = check_bodies(recording, recording.bodies, settings or Settings())
-    quality = [body_quality(raw, found, recording) for raw, found in zip(recording.bodies, checked, strict=True)]
-    return {
-        "elbowscrew": __version__,
-        "source": source_summary(recording),
-        "trial": {**recording_summary(recording), "bodies": [quality_summary(body) for body in quality]},
-        "markers": [
-            {"name": marker.name, "seen_share": float(np.isfinite(marker.position).all(axis=1).mean())}
-            for marker in recording.markers
-        ],
-        "roles": _roles(recording),
-        "warnings": warnings_summary((*recording.warnings, *warnings)),
     }
 
 
@@ -86,20 +77,24 @@ def settings_summary(settings: Settings) -> dict[str, Any]:
     return {**options_from_settings(settings), "method": settings.model_method, "law": settings.model_law}
 
 
-def landmarks_summary(landmarks: Landmarks | None) -> dict[str, Any] | None:
+def landmarks_summary(landmarks: Landmarks | None) -> LandmarksSummary | None:
     """The landmarks as they were asked for: markers' names, or coordinates."""
     if landmarks is None:
         return None
-    given = {name: getattr(landmarks, name) for name in LANDMARKS}
     return {
         "side": landmarks.side,
-        **{
-            name: {"markers": list(place.markers)}
-            if place.point is None
-            else {"body": place.frame, "mm": (1000.0 * place.point).tolist()}
-            for name, place in given.items()
-        },
+        "EL": _landmark(landmarks.EL),
+        "EM": _landmark(landmarks.EM),
+        "US": _landmark(landmarks.US),
+        "RS": _landmark(landmarks.RS),
+        "GH": _landmark(landmarks.GH),
     }
+
+
+def _landmark(asked: Landmark) -> LandmarkSummary:
+    if asked.point is None or asked.frame is None:
+        return {"markers": list(asked.markers)}
+    return {"body": asked.frame, "mm": (1000.0 * asked.point).tolist()}
 
 
 def library_versions() -> dict[str, str]:
@@ -113,83 +108,10 @@ def _version_of(library: str) -> str:
     return version(library)
 
 
-def warnings_summary(warnings: Iterable[QualityWarning]) -> list[dict[str, Any]]:
-    """Warnings, those that matter first."""
-    return [asdict(warning) for warning in sorted(warnings, key=lambda warning: warning.severity != "warning")]
-
-
-def quality_summary(quality: BodyQuality) -> dict[str, Any]:
-    """Figures of one body, units in the names."""
-    return {
-        "name": quality.name,
-        "id": quality.identifier,
-        "tracked_share": quality.tracked_share,
-        "lost_frames": dict(quality.lost_frames),
-        "sign_flips": quality.sign_flips,
-        "leaps": quality.leaps,
-        "fastest_turn_deg_s": float(np.degrees(quality.fastest_turn)),
-        "fastest_speed_m_s": quality.fastest_speed,
-        "marker_residual_mm": _spread_mm(quality.marker_residual),
-        "reported_error_mm": _spread_mm(quality.reported_error),
-        "pivot_offset_mm": None if quality.pivot_offset is None else 1000.0 * quality.pivot_offset,
-        "shape_deviation": quality.shape_deviation,
-        "markers": quality.markers,
-    }
-
-
-def _spread_mm(spread: Spread | None) -> dict[str, float] | None:
-    return None if spread is None else {name: 1000.0 * value for name, value in asdict(spread).items()}
-
-
-def _roles(recording: Recording) -> dict[str, str | None]:
-    if not recording.bodies:
-        return {
-            "proximal": None,
-            "distal": None,
-            "joint": None,
-            "text": f"no rigid bodies; {ASK_FOR_MARKERS} to analyze",
-        }
-    try:
-        chosen = choose_bodies(recording, None, None)
-    except SettingError as error:
-        return {"proximal": None, "distal": None, "joint": None, "text": str(error)}
-    joint, distal = chosen.joint, chosen.distal.name
-    name = chosen.proximal.name if chosen.proximal is not None else None
-    first = f"{joint.proximal.name} {name!r}" if name is not None else f"{joint.proximal.name} that stands still"
-    text = f"{first}, {joint.distal.name} {distal!r}"
-    return {"proximal": name, "distal": distal, "joint": joint.name, "text": text}
-
-
-def source_summary(recording: Recording) -> dict[str, Any]:
-    """Where the recording came from."""
-    source = recording.source
-    if source is None:
-        return {"name": None, "sha256": None, "layout": None, "take": None, "length_unit": None, "rotation": None}
-    return {
-        "name": _printable(source.path.replace("\\", "/").rsplit("/", 1)[-1]),
-        "sha256": source.sha256,
-        "layout": source.layout,
-        "take": source.take_name,
-        "length_unit": source.length_unit,
-        "rotation": source.rotation_type,
-    }
-
-
-def recording_summary(recording: Recording) -> dict[str, Any]:
-    """Frames, rate and clock of a recording."""
-    return {
-        "frames": int(recording.frame.size),
-        "first_frame": int(recording.frame[0]),
-        "last_frame": int(recording.frame[-1]),
-        "rate_hz": recording.rate_hz,
-        "duration_s": float(recording.time_s[-1] - recording.time_s[0]),
-        "clock": asdict(clock_quality(recording)),
-    }
-
-
-def _trial(analysis: Analysis) -> dict[str, Any]:
+def _trial(analysis: Analysis) -> TrialSummary:
     screw = analysis.screw
     return {
+        **recording_summary(analysis.recording),
         "joint": _joint_words(analysis),
         "bodies": [{"name": body.name, "id": body.identifier} for body in analysis.recording.bodies],
         "proximal": None if analysis.proximal is None else quality_summary(analysis.quality[0]),
@@ -203,7 +125,7 @@ def _trial(analysis: Analysis) -> dict[str, Any]:
     }
 
 
-def _joint_words(analysis: Analysis) -> dict[str, str | None]:
+def _joint_words(analysis: Analysis) -> JointWords:
     """Say what the joint and its segments are called, for a page made from the result alone."""
     joint, proximal = analysis.named_joint, analysis.proximal
     return {
@@ -214,13 +136,13 @@ def _joint_words(analysis: Analysis) -> dict[str, str | None]:
     }
 
 
-def _motion(analysis: Analysis) -> dict[str, Any]:
+def _motion(analysis: Analysis) -> MotionSummary:
     screw, axis = analysis.screw, analysis.mean_axis
     angle = np.degrees(np.where(screw.valid, screw.angle, np.nan))
     slide = 1000.0 * np.where(screw.valid, screw.slide, np.nan)
     return {
-        "theta_max_deg": statistic(np.nanmax, angle),
-        "theta_min_deg": statistic(np.nanmin, angle),
+        "theta_max_deg": float(np.nanmax(angle)),
+        "theta_min_deg": float(np.nanmin(angle)),
         "theta_max_frame": int(screw.frame[int(np.nanargmax(angle))]),
         "signed": analysis.sense.signed,
         "dominant_axis": {"direction": analysis.sense.direction.tolist(), "ratio": analysis.sense.ratio},
@@ -234,7 +156,7 @@ def _motion(analysis: Analysis) -> dict[str, Any]:
             {"onset_frame": int(screw.frame[onset]), "offset_frame": int(screw.frame[offset])}
             for onset, offset in zip(analysis.phases.onset_rows, analysis.phases.offset_rows, strict=True)
         ],
-        "expressed_in": analysis.settings.express_in,
+        "expressed_in": frame_called(analysis.settings.express_in, analysis.named_joint)[0],
         "axis_frames": int((screw.axis_known & screw.valid).sum()),
         "mean_axis": {"direction": axis.direction.tolist(), "point_mm": (1000.0 * axis.point).tolist()},
         "axis_dispersion_deg": float(np.degrees(axis.dispersion)),
@@ -249,9 +171,9 @@ def _motion(analysis: Analysis) -> dict[str, Any]:
     }
 
 
-def _joint_axis(axis: JointAxis) -> dict[str, Any] | None:
+def _joint_axis(axis: JointAxis) -> JointAxisSummary | None:
     """Say the preferred fit with its interval; the rest stands in ``joint.json``."""
-    if axis.best is None:
+    if axis.best is None or axis.preferred is None:
         return None
     return {
         "model": axis.preferred,
@@ -265,7 +187,7 @@ def _joint_axis(axis: JointAxis) -> dict[str, Any] | None:
     }
 
 
-def _interpolation(analysis: Analysis) -> dict[str, Any]:
+def _interpolation(analysis: Analysis) -> ModelSummary:
     modeled, settings = analysis.interpolated, analysis.settings
     # A theta that was not measured is no measure of the model.
     theta_error = np.degrees(np.where(analysis.screw.valid, modeled.angle - analysis.screw.angle, np.nan))
@@ -307,7 +229,7 @@ def _interpolation(analysis: Analysis) -> dict[str, Any]:
     }
 
 
-def _phase_laws(analysis: Analysis) -> list[dict[str, Any]]:
+def _phase_laws(analysis: Analysis) -> list[PhaseLawSummary]:
     """Law of each phase, and between which frames it runs."""
     frame = analysis.screw.frame
     return [
@@ -322,7 +244,7 @@ def _phase_laws(analysis: Analysis) -> list[dict[str, Any]]:
     ]
 
 
-def selection_summary(found: Selection, frame: NDArray[np.int64]) -> dict[str, Any]:
+def selection_summary(found: Selection, frame: NDArray[np.int64]) -> SelectionSummary:
     """Keyframes that were chosen, and the error over the number of keyframes."""
     return {
         "tolerance_mm": 1000.0 * found.tolerance,
@@ -340,8 +262,3 @@ def selection_summary(found: Selection, frame: NDArray[np.int64]) -> dict[str, A
 
 def _frame_of_max(frame: NDArray[np.int64], values: Float) -> int | None:
     return int(frame[int(np.nanargmax(values))]) if np.isfinite(values).any() else None
-
-
-def _printable(text: str) -> str:
-    """File names may hold bytes that are no text; JSON may not."""
-    return text.encode("utf-8", "replace").decode("utf-8")

@@ -8,6 +8,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from elbowscrew.model.summary_types import Summary
 from elbowscrew.results.table_text import safe_cell
 from elbowscrew.tables import FAILURE_COLUMNS, AngleUnit, LengthUnit, study_header, study_values
 
@@ -56,14 +57,14 @@ class StudyRow:
     path : str
     columns : mapping
         What the manifest says.
-    summary : mapping
+    summary : Summary
         The trial's ``summary.json``.
     """
 
     trial: str
     path: str
     columns: Mapping[str, str]
-    summary: Mapping[str, Any]
+    summary: Summary
 
 
 def summary_table(

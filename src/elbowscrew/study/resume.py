@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 from elbowscrew._version import __version__
 from elbowscrew.choices import FRAMES
-from elbowscrew.errors import OutputError
+from elbowscrew.errors import ResultError
 from elbowscrew.joints import JOINT_NAMES, ends_called, joints_of
+from elbowscrew.model.summary_types import Summary
 from elbowscrew.reading.source import sha256_of
 from elbowscrew.results.summary import landmarks_summary, library_versions, settings_summary
-from elbowscrew.saving import digests, read_summary
+from elbowscrew.results.summary_reading import read_summary
+from elbowscrew.saving import digests
 from elbowscrew.study.task import TrialTask
 
 
@@ -23,24 +24,23 @@ def is_current(task: TrialTask) -> bool:
     """
     try:
         summary = read_summary(task.folder)
-        source = summary.get("source") or {}
-        return bool(
+        return (
             summary["elbowscrew"] == __version__
-            and summary.get("versions") == library_versions()
-            and summary.get("settings") == _settings(task, summary)
-            and summary.get("landmarks") == landmarks_summary(task.landmarks)
-            and source.get("sha256") == sha256_of(task.path)
-            and summary.get("files") == digests(task.folder)
+            and summary["versions"] == library_versions()
+            and summary["settings"] == _settings(task, summary)
+            and summary["landmarks"] == landmarks_summary(task.landmarks)
+            and summary["source"]["sha256"] == sha256_of(task.path)
+            and summary["files"] == digests(task.folder)
         )
-    except (OSError, OutputError, AttributeError):
+    except (OSError, ResultError):
         return False
 
 
-def _settings(task: TrialTask, summary: Mapping[str, Any]) -> dict[str, Any]:
+def _settings(task: TrialTask, summary: Summary) -> dict[str, Any]:
     """Settings as the result would tell them: a segment's word is the frame that it is in the result's joint."""
     asked = settings_summary(task.settings)
     if task.settings.express_in not in FRAMES:
-        name = ((summary.get("trial") or {}).get("joint") or {}).get("name")
+        name = summary["trial"]["joint"]["name"]
         ends = ends_called(task.settings.express_in, joints_of(name if name in JOINT_NAMES else "elbow"))
         asked["express-in"] = ends.pop() if len(ends) == 1 else None  # not known: analyze again
     return asked

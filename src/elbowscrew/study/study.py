@@ -8,13 +8,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from elbowscrew.errors import OutputError, UsageError
+from elbowscrew.errors import OutputError, ResultError, UsageError
 from elbowscrew.model import Landmarks
+from elbowscrew.model.summary_types import Summary
 from elbowscrew.reading.landmarks import read_landmarks
 from elbowscrew.report.study_page import write_study_page
 from elbowscrew.results.exporting import check_exports
 from elbowscrew.results.staging import is_summary, replace_file
-from elbowscrew.saving import SUMMARY, read_summary
+from elbowscrew.results.summary_reading import SUMMARY, read_summary
 from elbowscrew.settings import settings_from
 from elbowscrew.study.executors import OpenExecutor
 from elbowscrew.study.folder import batch_folder
@@ -239,9 +240,9 @@ def _remove_tables(folder: Path) -> None:
             raise OutputError(msg) from error
 
 
-def _summary_of(task: TrialTask) -> dict[str, Any]:
+def _summary_of(task: TrialTask) -> Summary:
     try:
         return read_summary(task.folder)
-    except OutputError as error:
+    except ResultError as error:
         msg = f"{task.folder}: the result is not there; the workers must share this folder, and nobody else write to it"
         raise OutputError(msg) from error

@@ -12,9 +12,11 @@ from numpy.typing import NDArray
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.joints import Joint
 from elbowscrew.model.array_record import ArrayRecord
+from elbowscrew.model.joint_summary_types import JointSummary
 from elbowscrew.model.modeled import InterpolatedMotion, Keyframes
 from elbowscrew.model.repetitions import MovementPhases, Repetitions
 from elbowscrew.model.results import ScrewMotion
+from elbowscrew.model.summary_types import AnalysisSummary
 
 if TYPE_CHECKING:
     from elbowscrew.settings import Settings
@@ -85,8 +87,10 @@ class FinishedTrial(ArrayRecord):
     Attributes
     ----------
     folder : Path
-    summary, joint_summary : mapping
-        ``summary.json`` and ``joint.json``, degrees and millimeters.
+    summary : AnalysisSummary
+        ``summary.json``.
+    joint_summary : JointSummary
+        ``joint.json``.
     settings : Settings
     recording : FinishedClock
     proximal : FinishedBody or None
@@ -108,8 +112,8 @@ class FinishedTrial(ArrayRecord):
     """
 
     folder: Path
-    summary: Mapping[str, Any]
-    joint_summary: Mapping[str, Any]
+    summary: AnalysisSummary
+    joint_summary: JointSummary
     settings: Settings
     recording: FinishedClock
     proximal: FinishedBody | None

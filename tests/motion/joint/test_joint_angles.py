@@ -137,6 +137,7 @@ def test_two_axes_that_the_motion_does_not_show_are_told() -> None:
     analysis = analyze(hinged(angle, noise=5e-4), Settings(joint_type="two_axes"))
     found = joint_summary(analysis)["joint_type"]
     assert (found["type"], found["status"]) == ("two_axes", "forced")
+    assert found["two_axes"] is not None
     assert found["two_axes"]["axis2"]["determined"] is False
     assert found["two_axes"]["axis2"]["cone95_deg"] is None
     warned = {warning.code for warning in analysis.warnings}

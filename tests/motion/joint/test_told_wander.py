@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 from cluster_noise import NEAR, Hinge, seen, wandering, white
@@ -137,7 +139,7 @@ def test_an_axis_that_stays_has_a_bound_and_no_path() -> None:
     assert axis.mean_axis is None
     assert axis.path is None
     assert axis.headline is axis.best
-    found = joint_summary(analysis)
+    found: Any = joint_summary(analysis)
     assert found["mean_axis"] is None
     assert found["wander"]["significant"] is False
     assert found["wander"]["size_deg"] < found["wander"]["unseen_deg"]
@@ -147,7 +149,7 @@ def test_an_axis_that_stays_has_a_bound_and_no_path() -> None:
 def test_an_axis_that_drifts_is_told_with_its_mean() -> None:
     """The simulated line tilts by 12 deg in proportion to the angle."""
     analysis = analyze(simulate_trial(seed=6, axis_drift_deg=12.0).recording, Settings(express_in="proximal"))
-    found = joint_summary(analysis)
+    found: Any = joint_summary(analysis)
     assert found["wander"]["significant"] is True
     assert found["wander"]["size_deg"] > found["wander"]["unseen_deg"] > 0.0
     assert found["mean_axis"]["direction"] == found["mean_axis"]["direction_in_proximal"]

@@ -1,0 +1,311 @@
+"""What stands in ``joint.json`` as types, so that a misspelled key is an error of the type checker.
+
+A text below a key says what it is where name and unit do not; `docs/schemas` is made from it. Angles are degrees and
+lengths millimeters; None is what is not known or not defined.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+from typing_extensions import TypedDict
+
+from elbowscrew.choices import ExpressIn
+from elbowscrew.model.joint_type import JointTypeName
+
+Vector = Annotated[list[float], Field(min_length=3, max_length=3)]
+Quaternion = Annotated[list[float], Field(min_length=4, max_length=4)]
+FitName = Literal["hinge", "screw_hinge"]
+
+
+class LineSummary(TypedDict):
+    """A line: its direction, a unit vector, and its point nearest the origin."""
+
+    direction: Vector
+    point_mm: Vector
+
+
+class EstimateSummary(LineSummary):
+    """An estimate of the joint's axis, in the frame the screws are expressed in and in those of the bodies."""
+
+    direction_in_proximal: Vector
+    point_in_proximal_mm: Vector
+    direction_in_distal: Vector
+    point_in_distal_mm: Vector
+
+
+class FitSummary(EstimateSummary):
+    """A hinge or screw-hinge fitted to all relative poses by maximum likelihood."""
+
+    frames: int
+    """Frames that it was fitted to."""
+    axis_sd_deg: float | None
+    """Standard deviation of the direction, both components together."""
+    axis_cone95_deg: float | None
+    """Half-angle of the cone that holds the direction with 95 %."""
+    point_sd_mm: float | None
+    """Standard deviation of the axis' place, both components together."""
+    point_radius95_mm: float | None
+    """Radius of the circle across the axis that holds its place with 95 %."""
+    sensitivity_deg_per_deg: float | None
+    """Degrees that the axis turns for each degree that a cluster turns on its bone with the motion."""
+    pitch_mm_per_rad: float | None
+    """Slide for each radian; 0 for a hinge."""
+    pitch_sd_mm_per_rad: float | None
+    residual_rotation_deg: float | None
+    """RMS rotation across the axis that the fit leaves."""
+    residual_translation_mm: float | None
+    """RMS translation at the axis that the fit leaves."""
+    noise_ratio: float | None
+    """RMS of the whitened residuals: 1 where the stated noise explains them."""
+    frames_that_count_as_one: float | None
+    """Integrated autocorrelation of the residuals: 1 for white noise."""
+    outlier_share: float | None
+    """Share of the frames that weigh less than half."""
+    decided_by: Literal["A", "B", "J"] | None
+    """What the interval stands on, in a letter."""
+    interval_method: str | None
+    """What the interval stands on, in words."""
+
+
+class WanderSummary(TypedDict):
+    """How far the joint's axis moves while the joint goes from one end of its range to the other."""
+
+    size_deg: float | None
+    """By how much its direction turns."""
+    size_sd_deg: float | None
+    size_mm: float | None
+    """By how much it moves across itself, at its point nearest the distal body's origin at the reference."""
+    size_sd_mm: float | None
+    unseen_deg: float | None
+    """Up to so much an axis may turn without being told from one that stays."""
+    unseen_mm: float | None
+    """Up to so much it may move without being told from one that stays."""
+    significant: bool
+    """Whether one of both is beyond what an axis that stays shows in 0.27 % of the trials."""
+
+
+class MeanAxisSummary(EstimateSummary):
+    """Mean over the range of an axis that wanders; in each body, the mean of the places it takes in that body."""
+
+    axis_sd_deg: float | None
+    """Standard deviation of the direction, both components together."""
+    axis_cone95_deg: float | None
+    """Half-angle of the cone that holds the direction with 95 %."""
+    point_sd_mm: float | None
+    """Standard deviation of the axis' place, both components together."""
+    point_radius95_mm: float | None
+    """Radius of the circle across the axis that holds its place with 95 %."""
+    decided_by: Literal["A", "B", "J"] | None
+    """What the interval stands on, in a letter."""
+    interval_method: str | None
+    """What the interval stands on, in words."""
+
+
+class CandidateSummary(TypedDict):
+    """A type of joint that was tried."""
+
+    type: JointTypeName
+    residual_deg: float | None
+    """RMS rotation that it leaves."""
+    residual_mm: float | None
+    """RMS translation that it leaves."""
+    heldout_variance: float | None
+    """Whitened variance of frames that it was not fitted to, for each degree of freedom."""
+    shared: int
+    """Numbers that all frames share."""
+    per_frame: int
+    """Numbers that each frame has of its own."""
+    valid: bool
+    """Whether the frames determine it."""
+
+
+class JointLineSummary(TypedDict):
+    """One of two axes, in the frames of the bodies with the joint in its reference pose."""
+
+    direction_in_proximal: Vector
+    point_in_proximal_mm: Vector
+    direction_in_distal: Vector
+    point_in_distal_mm: Vector
+    cone95_deg: float | None
+    """Half-angle of the cone that holds the direction with 95 %."""
+    radius95_mm: float | None
+    """Radius of the circle across the axis that holds its place with 95 %."""
+    range_deg: float | None
+    """Rotation about it, from the 5 % to the 95 % quantile."""
+    angle_sd_deg: float | None
+    """Median standard deviation of the rotation of a frame."""
+    determined: bool
+    """Whether the motion shows it well enough to be told."""
+
+
+class TwoAxesSummary(TypedDict):
+    """Two axes, the first fixed in the proximal body, the second in the distal one; low and high are 95 % limits."""
+
+    axis1: JointLineSummary
+    axis2: JointLineSummary
+    angle_between_deg: float | None
+    """Folded to 90 degrees at most."""
+    angle_between_deg_low: float | None
+    angle_between_deg_high: float | None
+    distance_mm: float | None
+    """Along the common normal, positive on the side of axis 1 x axis 2; None for parallel axes."""
+    distance_mm_low: float | None
+    distance_mm_high: float | None
+    parallel_offset_mm: float | None
+    """Distance of parallel axes; None where they are not parallel."""
+    parallel_offset_mm_low: float | None
+    parallel_offset_mm_high: float | None
+    foot1_mm: float | None
+    """Foot of the common normal along axis 1, from its point nearest the body's origin."""
+    foot1_mm_low: float | None
+    foot1_mm_high: float | None
+    foot2_mm: float | None
+    """The same along axis 2."""
+    foot2_mm_low: float | None
+    foot2_mm_high: float | None
+
+
+class BallSummary(TypedDict):
+    """The center of a ball joint."""
+
+    center_in_proximal_mm: Vector
+    center_in_distal_mm: Vector
+    radius95_mm: float | None
+    """Radius that holds the center in the proximal body with 95 %."""
+
+
+class SecondRotationSummary(TypedDict):
+    """What rotates beside a hinge."""
+
+    range_deg: float | None
+    axis: JointLineSummary | None
+    """None where its direction is not determined."""
+
+
+class JointTypeSummary(TypedDict):
+    """Which type of joint moved."""
+
+    type: JointTypeName
+    status: Literal["determined", "approximate", "forced"] | None
+    reason: str
+    candidates: list[CandidateSummary]
+    """The types that were tried, simplest first."""
+    two_axes: TwoAxesSummary | None
+    ball: BallSummary | None
+    second_rotation: SecondRotationSummary | None
+    interval_note: str | None
+    """What the intervals of two axes and of a center stand on."""
+
+
+class DispersionSummary(TypedDict):
+    """How far the finite axes of the frames lie from their mean, in direction and in place."""
+
+    direction_median_deg: float | None
+    direction_rms_deg: float | None
+    direction_95_deg: float | None
+    """95th percentile."""
+    direction_max_deg: float | None
+    direction_excursion_deg: float
+    """Largest angle between two of the axes."""
+    place_median_mm: float | None
+    place_rms_mm: float | None
+    place_95_mm: float | None
+    """95th percentile."""
+    place_max_mm: float | None
+    place_excursion_mm: float
+    """Largest distance between two of the axes."""
+
+
+class NoiseSummary(TypedDict):
+    """Noise of one body's poses, alike in all frames, in the body's frame."""
+
+    source: str
+    """Where it is known from."""
+    marker_noise_mm: float | None
+    """Standard deviation of each coordinate of each marker."""
+    rotation_sd_deg: Vector
+    position_sd_mm: Vector
+
+
+class NoiseOfBodies(TypedDict):
+    """Noise of both bodies."""
+
+    proximal: NoiseSummary | None
+    distal: NoiseSummary | None
+
+
+class RepeatabilitySummary(TypedDict):
+    """How alike the cycles are."""
+
+    repetitions: int
+    icc: float | None
+    """ICC(A,1) of the angle over the cycles' own time."""
+    cmc: float | None
+    """Coefficient of multiple correlation."""
+    axis_sd_deg: float | None
+    """Standard deviation of the direction of the axis from cycle to cycle."""
+    point_sd_mm: float | None
+    """Standard deviation of its place."""
+    theta_max_sd_deg: float | None
+    """Standard deviation of the largest angle."""
+
+
+class AnatomySummary(TypedDict):
+    """The joint's axis against the bones."""
+
+    side: str
+    axis_angle_deg: float | None
+    """Between the joint axis and the line of the epicondyles."""
+    axis_distance_mm: float | None
+    """Of the joint axis from the point midway between the epicondyles."""
+    epicondyle_direction_in_proximal: Vector
+    epicondyle_midpoint_in_proximal_mm: Vector
+    landmarks_mm: dict[str, list[float]]
+    """The landmarks by name, each in the frame of its segment."""
+
+
+class PoseSummary(TypedDict):
+    """A pose: unit quaternion, scalar first, and place."""
+
+    quaternion: Quaternion
+    position_mm: Vector
+
+
+class BodiesSummary(TypedDict):
+    """Where the bodies are at the reference, and their markers in their own frames."""
+
+    distal_in_proximal: PoseSummary
+    proximal_in_lab: PoseSummary
+    proximal_markers_mm: list[Vector] | None
+    distal_markers_mm: list[Vector] | None
+
+
+class JointSummary(TypedDict):
+    """What ``joint.json`` holds: the joint as a whole, by all estimators."""
+
+    expressed_in: ExpressIn
+    """The frame of directions and points that name no other."""
+    joint_type: JointTypeSummary
+    single_axis: bool
+    """Whether the motion has one axis at all."""
+    preferred: FitName | None
+    """The fit to believe."""
+    unexplained_share: float | None
+    """RMS rotation that a hinge leaves over the RMS rotation about it."""
+    hinge: FitSummary | None
+    screw_hinge: FitSummary | None
+    wander: WanderSummary | None
+    """None where it cannot be told."""
+    mean_axis: MeanAxisSummary | None
+    """None where the axis does not wander."""
+    weighted_mean: EstimateSummary
+    """Mean of the finite helical axes with weights sin^2(theta/2)."""
+    sara: EstimateSummary
+    """Symmetrical axis of rotation approach."""
+    dispersion: DispersionSummary
+    noise: NoiseOfBodies
+    repeatability: RepeatabilitySummary
+    anatomy: AnatomySummary | None
+    bodies: BodiesSummary

@@ -1,0 +1,373 @@
+"""What ``summary.json`` and ``info`` say as types, so that a misspelled key is an error of the type checker.
+
+A text below a key says what it is where name and unit do not; `docs/schemas` is made from it. Angles are degrees and
+lengths millimeters; None is what is not known or not defined.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Literal, NotRequired
+
+from typing_extensions import TypedDict
+
+from elbowscrew.choices import BlendName, ExpressIn, KnotName, LawName, MethodName
+from elbowscrew.model.anatomy import LandmarkFrame, Side
+from elbowscrew.model.joint_summary_types import FitName, JointTypeSummary, LineSummary, Vector
+
+
+class SourceSummary(TypedDict):
+    """Where the recording came from; all None where it is not from a file."""
+
+    name: str | None
+    sha256: str | None
+    layout: str | None
+    """Format of the file."""
+    take: str | None
+    length_unit: str | None
+    rotation: str | None
+    """Quaternion, or the order of the Euler angles; empty where the file has no rotations."""
+
+
+class WarningSummary(TypedDict):
+    """Something that the reader of a result must know; those that matter come first."""
+
+    code: str
+    message: str
+    severity: Literal["warning", "note"]
+    """A note tells of what is harmless or has been put right without loss."""
+    frames: list[int]
+    """The first frames concerned, ten at most."""
+    count: int
+    """How many frames are concerned; 0 where it is not a matter of frames."""
+
+
+class ClockSummary(TypedDict):
+    """How even the clock is."""
+
+    missing_frames: int
+    frame_gaps: int
+    """In how many places frame numbers are left out."""
+    repeated_frames: int
+    """Places where the frame number does not increase."""
+    largest_offset_s: float
+    """How far the times stray from an even clock."""
+
+
+class SpreadSummary(TypedDict):
+    """Median, 95th percentile and largest."""
+
+    median: float
+    percentile_95: float
+    largest: float
+
+
+class BodySummary(TypedDict):
+    """A body of the file."""
+
+    name: str
+    id: str
+
+
+class QualitySummary(BodySummary):
+    """How far a body's poses can be trusted."""
+
+    tracked_share: float
+    """Share of the frames with a measured pose."""
+    lost_frames: dict[str, int]
+    """Lost frames by reason."""
+    sign_flips: int
+    """How often the quaternion, as it is in the file, changes its sign."""
+    leaps: int
+    fastest_turn_deg_s: float
+    fastest_speed_m_s: float
+    marker_residual_mm: SpreadSummary | None
+    """RMS distance of the markers seen from the body's own."""
+    reported_error_mm: SpreadSummary | None
+    """The error column of the file."""
+    pivot_offset_mm: float | None
+    """Distance of the body's origin from the centroid of its markers."""
+    shape_deviation: float | None
+    """Largest distance of the triangular factor from the identity, where poses come of the dual QR decomposition."""
+    markers: int
+
+
+class RecordingSummary(TypedDict):
+    """Frames, rate and clock of a recording."""
+
+    frames: int
+    first_frame: int
+    last_frame: int
+    rate_hz: float
+    duration_s: float
+    clock: ClockSummary
+
+
+class JointWords(TypedDict):
+    """What the joint and its segments are called."""
+
+    name: str
+    proximal: str
+    distal: str
+    side: str | None
+    """Left or right, where the bodies' names say it."""
+
+
+class TrialSummary(RecordingSummary):
+    """The recording, its bodies and their tracking."""
+
+    joint: JointWords
+    bodies: list[BodySummary]
+    """All bodies of the file."""
+    proximal: QualitySummary | None
+    """None where the file has no such body and it is taken to stand still."""
+    distal: QualitySummary
+    measured_frames: int
+    """Frames in which both bodies were tracked."""
+    filled_frames: int
+    """Frames of short gaps that were filled in."""
+    missing_share: float
+    """Share of the frames without a measured pose."""
+    reference_frame: int
+    """The frame that displacements count from."""
+    lowpass_hz: float | None
+    """Cut-off of the filter that the poses went through; None if they went through none."""
+    instantaneous_lowpass_hz: float | None
+    """Cut-off of the filter that the instantaneous axes come of."""
+
+
+class DominantAxis(TypedDict):
+    """What gives the angle its sense."""
+
+    direction: Vector
+    ratio: float
+    """Second eigenvalue of the second moments over the first: 0 for one axis, 1 for two that are alike."""
+
+
+class MovementSummary(TypedDict):
+    """A movement, from onset to offset."""
+
+    onset_frame: int
+    offset_frame: int
+
+
+class JointAxisSummary(LineSummary):
+    """The preferred fit of the joint's axis; all of it stands in ``joint.json``."""
+
+    model: FitName
+    axis_cone95_deg: float | None
+    """Half-angle of the cone that holds the direction with 95 %."""
+    point_radius95_mm: float | None
+    """Radius of the circle across the axis that holds its place with 95 %."""
+    pitch_mm_per_rad: float
+    """Slide for each radian; 0 for a hinge."""
+    interval_method: str | None
+    """What the interval stands on."""
+    sensitivity_deg_per_deg: float | None
+    """Degrees that the axis turns for each degree that a cluster turns on its bone with the motion."""
+
+
+class MotionSummary(TypedDict):
+    """The measured motion."""
+
+    theta_max_deg: float
+    theta_min_deg: float
+    theta_max_frame: int
+    signed: bool
+    """Whether theta has a sense, that of the dominant axis; else it is the size of the rotation."""
+    dominant_axis: DominantAxis
+    largest_jump_deg: float
+    """How far theta moves beyond the joint's own rotation from one frame to the next."""
+    inversion_frames: list[int]
+    """Where the motion turns back."""
+    slide_median_mm: float | None
+    slide_min_mm: float | None
+    slide_max_mm: float | None
+    repetitions: int
+    movements: list[MovementSummary]
+    expressed_in: ExpressIn
+    """The frame of axes and points."""
+    axis_frames: int
+    """Measured frames whose rotation is large enough for an axis."""
+    mean_axis: LineSummary
+    """Mean of the axes, weighted by sin^2(theta/2)."""
+    axis_dispersion_deg: float
+    """Median angle of the axes from their mean direction, both over equal steps of the angle."""
+    axis_dispersion_all_frames_deg: float | None
+    """Median angle over all frames with an axis."""
+    axis_dispersion_weighted_deg: float
+    """RMS angle from the mean axis, with its weights."""
+    axis_dispersion_rms_deg: float | None
+    axis_dispersion_max_deg: float | None
+    axis_distance_rms_mm: float | None
+    """RMS distance of the axes from the mean axis."""
+    single_axis: bool
+    """Whether the motion has one axis at all."""
+    joint_type: JointTypeSummary
+    joint_axis: JointAxisSummary | None
+    """None where the motion has no single axis."""
+
+
+class PhaseLawSummary(TypedDict):
+    """The law of motion of one phase of the model."""
+
+    law: str
+    peak: float | None
+    """Share of the phase at which the velocity is highest; None for the law's own."""
+    start_frame: int
+    end_frame: int
+    rms_displacement_mm: float | None
+    """RMS displacement from a screw motion under the law."""
+
+
+class SelectionPoint(TypedDict):
+    """The least error with so many keyframes."""
+
+    keyframes: int
+    max_rms_displacement_mm: float
+    rms_displacement_mm: float
+
+
+class SelectionSummary(TypedDict):
+    """The fewest keyframes within a tolerance."""
+
+    tolerance_mm: float
+    frames: int
+    """Frames that could be keyframes."""
+    keyframes: int
+    keyframe_frames: list[int]
+    compression_ratio: float
+    """Frames for each keyframe."""
+    complete: bool
+    """Whether the search looked at all pieces."""
+    curve: list[SelectionPoint]
+
+
+PointsSummary = TypedDict(
+    "PointsSummary",
+    {"from": str, "centroid_mm": Vector, "radius_of_gyration_mm": float},
+)
+"""The points over which the RMS displacement is averaged, and where they are from."""
+
+
+class ModelSummary(TypedDict):
+    """The model of the motion and its error at measured frames."""
+
+    method: MethodName
+    blend: BlendName
+    law: LawName
+    knots: KnotName
+    keyframes: list[int]
+    """Frames of the keyframes."""
+    phases: int
+    phase_laws: list[PhaseLawSummary]
+    selection: SelectionSummary | None
+    """How the keyframes were chosen, if a tolerance was given."""
+    covered_share: float
+    """Share of the recording's frames that the model covers."""
+    rmse_theta_deg: float | None
+    max_theta_error_deg: float | None
+    max_theta_error_frame: int | None
+    rms_angle_error_deg: float | None
+    """Of the angle between modeled and measured orientation."""
+    max_angle_error_deg: float | None
+    max_angle_error_frame: int | None
+    rms_translation_error_mm: float | None
+    """Of the distance between modeled and measured origin of the distal body."""
+    max_translation_error_mm: float | None
+    max_translation_error_frame: int | None
+    rms_displacement_mm: float | None
+    """RMS over the frames of the RMS displacement of the points."""
+    max_rms_displacement_mm: float | None
+    max_rms_displacement_frame: int | None
+    rms_axis_error_deg: float | None
+    """Of the angle between modeled and measured screw axis."""
+    max_axis_error_deg: float | None
+    max_axis_error_frame: int | None
+    rms_axis_distance_mm: float | None
+    """Of the distance between them."""
+    max_axis_distance_mm: float | None
+    max_axis_distance_frame: int | None
+    points: PointsSummary
+
+
+class LandmarkSummary(TypedDict):
+    """A landmark as it was asked for: by markers, or by its place in the frame of a body."""
+
+    markers: NotRequired[list[str]]
+    body: NotRequired[LandmarkFrame]
+    mm: NotRequired[Vector]
+
+
+class LandmarksSummary(TypedDict):
+    """The landmarks as they were asked for."""
+
+    side: Side
+    EL: LandmarkSummary
+    """Lateral epicondyle."""
+    EM: LandmarkSummary
+    """Medial epicondyle."""
+    US: LandmarkSummary
+    """Ulnar styloid."""
+    RS: LandmarkSummary
+    """Radial styloid."""
+    GH: LandmarkSummary
+    """Center of the glenohumeral joint."""
+
+
+class AnalysisSummary(TypedDict):
+    """What an analysis found, before it is in a folder."""
+
+    elbowscrew: str
+    """Version of the program."""
+    source: SourceSummary
+    settings: dict[str, Any]
+    """Every setting by the name of its option."""
+    landmarks: LandmarksSummary | None
+    trial: TrialSummary
+    motion: MotionSummary
+    interpolation: ModelSummary
+    warnings: list[WarningSummary]
+    versions: dict[str, str]
+    """Versions of Python and of the libraries that results stand on."""
+
+
+class Summary(AnalysisSummary):
+    """What ``summary.json`` holds: results, quality, every setting, and where they come from."""
+
+    files: dict[str, str]
+    """SHA-256 of the files beside it, all but the report."""
+
+
+class FileTrial(RecordingSummary):
+    """Frames, clock and bodies of a file."""
+
+    bodies: list[QualitySummary]
+
+
+class MarkerSummary(TypedDict):
+    """A marker that was asked for."""
+
+    name: str
+    seen_share: float
+    """Share of the frames in which it was seen."""
+
+
+class RolesSummary(TypedDict):
+    """Which body would be which segment."""
+
+    proximal: str | None
+    distal: str | None
+    joint: str | None
+    text: str
+
+
+class FileSummary(TypedDict):
+    """What ``info --json`` prints: what a file holds."""
+
+    elbowscrew: str
+    """Version of the program."""
+    source: SourceSummary
+    trial: FileTrial
+    markers: list[MarkerSummary]
+    roles: RolesSummary
+    warnings: list[WarningSummary]
