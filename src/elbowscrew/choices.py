@@ -25,8 +25,10 @@ SimulatedLaw = Literal["minimum-jerk", ClosedLaw]
 """Laws that synthetic trials move by."""
 SimulatedJointType = Literal["hinge", "screw-hinge", "two-axes", "ball"]
 """Joints that synthetic trials move in."""
-MethodName = Literal["dlb", "sclerp", "sdlb", "dib", "catmull-rom"]
+PoseMethodName = Literal["dlb", "sclerp", "sdlb", "dib", "catmull-rom"]
 """Interpolations of poses; functions of `elbowscrew.motion.interpolation.modeling`."""
+MethodName = Literal[PoseMethodName, "joint"]
+"""Interpolations of poses, and that of the joint's own angles."""
 KnotName = Literal["law", "chord", "uniform", "angle"]
 """Parameters of the keyframes: the law's own, or functions of `elbowscrew.motion.interpolation.keyframes`."""
 BlendName = Literal["piecewise", "global"]
@@ -46,6 +48,7 @@ ExportName = Literal["parquet", "mat", "sto"]
 
 CLOSED_LAWS: Final[tuple[ClosedLaw, ...]] = get_args(ClosedLaw)
 LAW_NAMES: Final[tuple[LawName, ...]] = get_args(LawName)
+POSE_METHOD_NAMES: Final[tuple[PoseMethodName, ...]] = get_args(PoseMethodName)
 METHOD_NAMES: Final[tuple[MethodName, ...]] = get_args(MethodName)
 METHOD_LABELS: Final[dict[str, str]] = {
     "dlb": "DLB",
@@ -53,6 +56,7 @@ METHOD_LABELS: Final[dict[str, str]] = {
     "sdlb": "sDLB",
     "dib": "DIB",
     "catmull-rom": "Catmull-Rom",
+    "joint": "Joint's angles",
 }
 """Methods as figures and charts call them."""
 KNOT_NAMES: Final[tuple[KnotName, ...]] = get_args(KnotName)

@@ -209,6 +209,46 @@ KEYFRAME_COLUMNS: Final = (
     _column("law_end_s", "law_end_of_each", Quantity.NUMBER),
 )
 
+
+def _shared(first: int, stem: str, quantity: Quantity, letters: Sequence[str] = "xyz") -> tuple[Column, ...]:
+    """Columns of what all poses of a joint share, from a place on in `KeyframeSet.shared_of_each`."""
+    return tuple(
+        Column(name=f"{stem}{letter}", attribute="shared_of_each", component=first + k, quantity=quantity)
+        for k, letter in enumerate(letters)
+    )
+
+
+_JOINT_TYPE: Final = (_column("joint_type", "joint_of_each", Quantity.LABEL),)
+_FIRST: Final = (*_shared(0, "axis1_", Quantity.NUMBER), *_shared(3, "point1_", Quantity.LENGTH))
+_SECOND: Final = (*_shared(6, "axis2_", Quantity.NUMBER), *_shared(9, "point2_", Quantity.LENGTH))
+_END: Final = (*_shared(13, "end_e", Quantity.NUMBER, "0123"), *_shared(17, "end_", Quantity.LENGTH))
+
+
+def _joint_angle(*names: str) -> tuple[Column, ...]:
+    return tuple(
+        Column(name=name, attribute="joint_angle", component=k, quantity=Quantity.ANGLE) for k, name in enumerate(names)
+    )
+
+
+KEYFRAME_JOINT_COLUMNS: Final = {
+    "hinge": (*_JOINT_TYPE, *_joint_angle("angle1"), *_FIRST, *_END),
+    "screw_hinge": (
+        *_JOINT_TYPE,
+        *_joint_angle("angle1"),
+        *_FIRST,
+        *_shared(12, "slide_per_radian", Quantity.LENGTH, ("",)),
+        *_END,
+    ),
+    "two_axes": (*_JOINT_TYPE, *_joint_angle("angle1", "angle2"), *_FIRST, *_SECOND, *_END),
+    "ball": (
+        *_JOINT_TYPE,
+        *_joint_angle("rotation_x", "rotation_y", "rotation_z"),
+        *_shared(3, "center_", Quantity.LENGTH),
+        *_END,
+    ),
+}
+"""Columns that follow in ``keyframes.csv`` where the joint's own angles are interpolated, by its type."""
+
 _COMPARED: Final = (
     _column("rank", "rank", Quantity.INTEGER),
     *(_column(name, name, Quantity.LABEL) for name in ("data", "method", "blend", "law", "knots")),

@@ -12,6 +12,7 @@ from elbowscrew import tables
 from elbowscrew.choices import StatedJoint
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.model.array_record import ArrayRecord
+from elbowscrew.model.joint_coordinates import JointCoordinates
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -173,6 +174,8 @@ class JointType(ArrayRecord):
     ball : BallJoint or None
     second_rotation : SecondRotation or None
         Beside a hinge.
+    coordinates : JointCoordinates or None
+        The motion that the joint allows; None of a joint without angles.
     angle, angle_sd : ndarray, shape (N, k)
         Of each frame, rad, from the reference pose: one of a hinge, two of two axes, the rotation vector of a ball in
         the proximal body's axes, none of a rigid joint. NaN where there is no pose.
@@ -187,6 +190,7 @@ class JointType(ArrayRecord):
     two_axes: TwoAxes | None
     ball: BallJoint | None
     second_rotation: SecondRotation | None
+    coordinates: JointCoordinates | None
     angle: Float
     angle_sd: Float
     residual_rotation: Float

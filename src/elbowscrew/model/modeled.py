@@ -12,6 +12,7 @@ from elbowscrew import tables
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat
 from elbowscrew.model.array_record import ArrayRecord
+from elbowscrew.model.joint_coordinates import JointCoordinates
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -68,12 +69,18 @@ class Keyframes(ArrayRecord):
         Their bounds are among the keyframes.
     knots : tuple of ndarray
         For each phase (one for a global blend) the parameter at its keyframes.
+    joint : JointCoordinates or None
+        The joint whose angles are interpolated, in the distal body's frame at the reference; None for poses.
+    joint_angle : ndarray, shape (K, k), or None
+        These angles, rad.
     """
 
     row: NDArray[np.int64]
     frame: NDArray[np.int64]
     phases: ModelPhases
     knots: tuple[Float, ...]
+    joint: JointCoordinates | None = None
+    joint_angle: Float | None = None
 
     @property
     def phase_bounds(self) -> NDArray[np.int64]:
@@ -104,6 +111,10 @@ class KeyframeSet(ArrayRecord):
     law : tuple of PhaseLaw
     law_start_s, law_end_s : ndarray, shape (P,)
         When the law of each phase runs.
+    joint : JointCoordinates or None
+        The joint whose angles are interpolated in place of the poses, in the frame they are expressed in.
+    joint_angle : ndarray, shape (K, k), or None
+        These angles, rad; of a ball the rotation vector.
     """
 
     frame: NDArray[np.int64]
@@ -117,6 +128,13 @@ class KeyframeSet(ArrayRecord):
     law: tuple[PhaseLaw, ...]
     law_start_s: Float
     law_end_s: Float
+    joint: JointCoordinates | None = None
+    joint_angle: Float | None = None
+
+    @property
+    def table(self) -> tuple[tables.Column, ...]:
+        """Columns of ``keyframes.csv`` for these keyframes."""
+        return tables.KEYFRAME_COLUMNS + (() if self.joint is None else tables.KEYFRAME_JOINT_COLUMNS[self.joint.type])
 
     @property
     def euler_parameters(self) -> Float:
@@ -159,9 +177,28 @@ class KeyframeSet(ArrayRecord):
         """When it ends, seconds."""
         return self.law_end_s[self.phase - 1]
 
+    @property
+    def joint_of_each(self) -> NDArray[np.str_]:
+        """The joint's type, as a column."""
+        return np.full(self.frame.size, "" if self.joint is None else self.joint.type)
+
+    @property
+    def shared_of_each(self) -> Float:
+        """What all poses of the joint share, as columns (K, 20): axis and point of each axis, slide a radian, end pose.
+
+        Unit vectors and Euler parameters as they are, the rest in meters.
+        """
+        if self.joint is None:
+            return np.full((self.frame.size, 20), np.nan)
+        axis, point = np.full((2, 3), np.nan), np.full((2, 3), np.nan)
+        axis[: len(self.joint.axis)], point[: len(self.joint.point)] = self.joint.axis, self.joint.point
+        quat, place = pose_from_dual_quat(self.joint.end)
+        row = np.concatenate([axis[0], point[0], axis[1], point[1], [self.joint.pitch], quat, place])
+        return np.tile(row, (self.frame.size, 1))
+
     def to_frame(self, angle_unit: tables.AngleUnit = "deg", length_unit: tables.LengthUnit = "mm") -> pd.DataFrame:
         """Return the columns of ``keyframes.csv``."""
-        return tables.data_frame(self, tables.KEYFRAME_COLUMNS, angle_unit, length_unit)
+        return tables.data_frame(self, self.table, angle_unit, length_unit)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)

@@ -82,7 +82,7 @@ def analyze(recording: Recording, settings: Settings | None = None, *, landmarks
     instantaneous = measured_instantaneous_motion(measured, wanted)
     velocity, near = instantaneous.angular_velocity, pose_from_dual_quat(measured.change)[1]
     cuts = measured_cuts(measured, wanted)
-    model = build_model(measured, cuts.movements, wanted)
+    model = build_model(measured, cuts.movements, wanted, joint_type)
     warnings = (
         measured.warnings + cut_warnings(cuts) + model.warnings + joint_axis_warnings(joint_axis, joint_type, measured)
     )

@@ -18,7 +18,14 @@ from elbowscrew.plots import style
 from elbowscrew.tables import LengthUnit, length_in
 
 _WIDTH_MM: Final = 170.0
-_BETWEEN_TWO: Final = {"dlb": "blend", "sclerp": "screw", "sdlb": "blend", "dib": "screw", "catmull-rom": "screw"}
+_BETWEEN_TWO: Final = {
+    "dlb": "blend",
+    "sclerp": "screw",
+    "sdlb": "blend",
+    "dib": "screw",
+    "catmull-rom": "screw",
+    "joint": "joint",
+}
 # Room for the legend, as a share of the logarithmic axis.
 _LEGEND_ROOM: Final = 0.45
 _MARKERS: Final = ("o", "s", "^", "D", "v", "P", "X", "*", "h")

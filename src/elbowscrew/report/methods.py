@@ -16,6 +16,7 @@ _METHODS: Final = {
     "sdlb": "dual quaternion linear blending of neighboring poses (sDLB)",
     "dib": "dual quaternion iterative blending (DIB)",
     "catmull-rom": "a Catmull-Rom spline of dual quaternions",
+    "joint": "interpolation of the joint's own angles",
 }
 _KNOTS: Final = {
     "law": "the law's value at its time",

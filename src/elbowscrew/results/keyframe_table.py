@@ -10,15 +10,16 @@ from typing import Any, Final, Literal, NoReturn, cast
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowscrew.choices import METHOD_NAMES
 from elbowscrew.errors import RecordingError, SettingError
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_quaternion import continuous_signs, dual_quat_from_pose, normalize
 from elbowscrew.geometry.quaternion import norm
 from elbowscrew.model import KeyframeSet, PhaseLaw
+from elbowscrew.model.joint_coordinates import MOVING_JOINTS, JointCoordinates
 from elbowscrew.motion.interpolation.keyframes import phase_time_share
 from elbowscrew.motion.interpolation.laws import LAWS, named_law
-from elbowscrew.motion.interpolation.modeling import METHODS
-from elbowscrew.tables import METERS
+from elbowscrew.tables import KEYFRAME_JOINT_COLUMNS, METERS, Quantity
 
 _POSE: Final = ("e0", "e1", "e2", "e3", "d_x", "d_y", "d_z")
 _UNIT_TOLERANCE: Final = 5e-3
@@ -95,6 +96,8 @@ def read_keyframes(
     if "knot" not in table.columns:
         pose = continuous_signs(pose)
     blend = table.word("blend", ("piecewise", "global"), "piecewise")
+    wanted = method or table.word("method", METHOD_NAMES, "dlb")
+    joint, joint_angle = _joint(table) if wanted == "joint" else (None, None)
     return KeyframeSet(
         frame=table.numbers("frame").astype(np.int64) if "frame" in table.columns else np.arange(count, dtype=np.int64),
         time_s=time_s,
@@ -102,12 +105,43 @@ def read_keyframes(
         knot=_knots(table, time_s, bounds, laws, (starts, ends), blend=blend, given=law is not None),
         angle=np.full(count, np.nan),
         dual_quat=pose,
-        method=method or table.word("method", tuple(METHODS), "dlb"),
+        method=wanted,
         blend=cast(Literal["piecewise", "global"], blend),
         law=laws,
         law_start_s=starts,
         law_end_s=ends,
+        joint=joint,
+        joint_angle=joint_angle,
     )
+
+
+def _joint(table: _Table) -> tuple[JointCoordinates, Float]:
+    """Read the joint whose angles are interpolated, and its angles (K, k)."""
+    if "joint_type" not in table.columns:
+        msg = f"{table.path}: --method joint: the file does not tell of a joint; give another, such as --method sclerp"
+        raise SettingError(msg)
+    kind = next(name for name in MOVING_JOINTS if name == table.word("joint_type", MOVING_JOINTS, ""))
+    columns = [column for column in KEYFRAME_JOINT_COLUMNS[kind] if column.quantity is not Quantity.LABEL]
+    read = {column: table.in_si(column.name, column.quantity) for column in columns}
+    angle = np.stack([values for column, values in read.items() if column.attribute == "joint_angle"], axis=1)
+    shared = np.full(max(column.component or 0 for column in columns) + 1, np.nan)
+    for column, values in read.items():
+        if column.attribute != "joint_angle" and column.component is not None:
+            table.check((values == values[0], f"{column.name} must be the same in all lines"))
+            shared[column.component] = values[0]
+    axes, end = shared[[0, 1, 2, 6, 7, 8]].reshape(2, 3), shared[13:17]
+    units = np.array([norm(end), *norm(axes)])
+    if (np.abs(units[np.isfinite(units)] - 1.0) > _UNIT_TOLERANCE).any():
+        table.refuse(table.lines[0], "axes must be unit vectors, and end_e0 to end_e3 a unit quaternion")
+    count = {"ball": 0, "two_axes": 2}.get(kind, 1)
+    joint = JointCoordinates(
+        type=kind,
+        axis=axes[:count] / norm(axes[:count])[:, None],
+        point=shared[[3, 4, 5, 9, 10, 11]].reshape(2, 3)[: max(count, 1)],
+        pitch=float(shared[12]) if kind == "screw_hinge" else 0.0,
+        end=dual_quat_from_pose(end / norm(end), shared[17:20]),
+    )
+    return joint, angle
 
 
 def _laws(table: _Table, first: NDArray[np.intp], law: str | None, law_peak: float | None) -> tuple[PhaseLaw, ...]:
@@ -197,6 +231,17 @@ class _Table:
             self.refuse(1, f"the column {name} is missing")
         cells = zip(self.columns[name], self.lines, strict=True)
         return np.array([self.number(cell, line, name) for cell, line in cells], dtype=np.float64)
+
+    def in_si(self, name: str, quantity: Quantity) -> Float:
+        """Numbers of a column with a unit, shape (K,), in SI units and radians."""
+        if quantity is Quantity.ANGLE:
+            if f"{name}_rad" in self.columns:
+                return self.numbers(f"{name}_rad")
+            return np.radians(self.numbers(f"{name}_deg"))
+        if quantity is Quantity.LENGTH:
+            unit = next((unit for unit in METERS if f"{name}_{unit}" in self.columns), "mm")
+            return METERS[unit] * self.numbers(f"{name}_{unit}")
+        return self.numbers(name)
 
     def number(self, cell: str, line: int, name: str) -> float:
         """Turn a cell into a number."""

@@ -41,7 +41,6 @@ def _results(analysis: Analysis) -> list[tuple[str, object, tuple[tables.Column,
     found: dict[str, object] = {
         "screw": analysis.screw,
         "interpolation": analysis.interpolated,
-        "keyframes": keyframes_of(analysis),
         "instantaneous": analysis.instantaneous,
         "repetitions": analysis.repetitions,
         "cycles": analysis.cycle_curves if analysis.repetitions.number.size else None,
@@ -49,7 +48,9 @@ def _results(analysis: Analysis) -> list[tuple[str, object, tuple[tables.Column,
         "steps": analysis.steps,
         "anatomy": analysis.anatomy,
     }
+    keyframes = keyframes_of(analysis)
     given = [(name, result, tables.TABLES[name]) for name, result in found.items() if result is not None]
+    given.insert(2, ("keyframes", keyframes, keyframes.table))
     angles = analysis.joint_angles
     return given if angles is None else [*given, ("joint_angles", angles, angles.table)]
 

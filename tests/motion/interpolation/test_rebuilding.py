@@ -24,6 +24,7 @@ CHOICES: list[dict[str, Any]] = [
     {"tolerance_mm": 4.0, "express_in": "lab"},
     {"tolerance_mm": 4.0, "law": "best", "method": "sdlb"},
     {"phases": "whole", "law": "best", "method": "sclerp"},
+    {"method": "joint", "express_in": "proximal", "keyframes": (0, 60, 211, 300, 449)},
 ]
 
 
@@ -77,6 +78,17 @@ def test_poses_without_anything_else(tmp_path: Path) -> None:
 GOOD = "time_s,e0,e1,e2,e3,d_x_mm,d_y_mm,d_z_mm{more}\n0,1,0,0,0,0,0,0{a}\n1,0,1,0,0,0,0,0{b}\n2,0,0,1,0,0,0,0{c}\n"
 
 
+def jointed(**changed: str | tuple[str, ...]) -> str:
+    """Three poses of a hinge."""
+    columns: dict[str, str | tuple[str, ...]] = {"method": "joint", "joint_type": "hinge", "axis1_x": "1"}
+    columns |= dict.fromkeys(("axis1_y", "axis1_z", "point1_x_mm", "point1_y_mm", "point1_z_mm"), "0")
+    columns |= {"end_e0": "1"} | dict.fromkeys(("end_e1", "end_e2", "end_e3", "end_x_mm", "end_y_mm", "end_z_mm"), "0")
+    columns |= changed
+    cells = [(one,) * 3 if isinstance(one, str) else one for one in columns.values()]
+    lines = ["".join(f",{cell}" for cell in line) for line in zip(*cells, strict=True)]
+    return GOOD.format(more="".join(f",{name}" for name in columns), **dict(zip("abc", lines, strict=True)))
+
+
 @pytest.mark.parametrize(
     ("text", "says"),
     [
@@ -101,6 +113,12 @@ GOOD = "time_s,e0,e1,e2,e3,d_x_mm,d_y_mm,d_z_mm{more}\n0,1,0,0,0,0,0,0{a}\n1,0,1
         (GOOD.format(more=",method", a=",dlb", b=",dib", c=",dlb"), "method: expected one of"),
         (GOOD.format(more=",law_start_s,law_end_s", a=",1,0", b=",1,0", c=",1,0"), ":2: law_start_s and law_end_s"),
         (GOOD.format(more=",e0", a=",1", b=",1", c=",1"), "stands twice"),
+        (GOOD.format(more=",method", a=",joint", b=",joint", c=",joint"), "does not tell of a joint"),
+        (jointed(), ":1: the column angle1_deg is missing"),
+        (jointed(angle1_deg="x"), ":2: angle1_deg: expected a number"),
+        (jointed(angle1_deg="10", axis1_x=("1", "1", "0")), ":4: axis1_x must be the same in all lines"),
+        (jointed(angle1_deg="10", axis1_x="0.9"), ":2: axes must be unit vectors"),
+        (jointed(angle1_deg="10", joint_type="saddle"), "joint_type: expected one of hinge"),
     ],
 )
 def test_what_is_wrong_with_a_file_is_told_with_its_line(text: str, says: str, tmp_path: Path) -> None:

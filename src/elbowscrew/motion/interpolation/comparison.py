@@ -21,13 +21,14 @@ from elbowscrew.model import (
     Recording,
     Selection,
 )
+from elbowscrew.motion.interpolation.joint_model import Interpolation, ModelJoint, interpolation_called
 from elbowscrew.motion.interpolation.keyframe_selection import select_keyframes
 from elbowscrew.motion.interpolation.keyframe_sources import ComparisonPlan, SourcePoses, keyframe_sources_of
 from elbowscrew.motion.interpolation.keyframes import keyframes_at, spread_rows
 from elbowscrew.motion.interpolation.law_fit import FittedLaw, laws_of
 from elbowscrew.motion.interpolation.model_building import body_points, phases_of
 from elbowscrew.motion.interpolation.model_errors import model_errors
-from elbowscrew.motion.interpolation.modeling import METHODS, ModeledPoses, model_motion
+from elbowscrew.motion.interpolation.modeling import FROM_NEIGHBORS, ModeledPoses, model_motion
 from elbowscrew.motion.interpolation.segment_errors import BASES
 from elbowscrew.motion.movements.measured import measured_cuts
 from elbowscrew.motion.screws.measurement import Measurement, measure
@@ -44,7 +45,7 @@ def compare(recording: Recording, settings: Settings | None = None, plan: Compar
     Each model's keyframes stand evenly in time in each phase of the motion. The difference is that from the measured
     motion, unfiltered and at its own rate, whatever the keyframes were taken from, so that all models have the same
     yardstick. Combinations that are the same model by definition are there once: between two poses DLB is sDLB, and
-    DIB and Catmull-Rom are ScLERP; with the law's knots ScLERP and sDLB do not know of the blend.
+    DIB and Catmull-Rom are ScLERP; with the law's knots ScLERP, sDLB and the joint's angles do not know of the blend.
 
     Parameters
     ----------
@@ -77,6 +78,7 @@ def compare(recording: Recording, settings: Settings | None = None, plan: Compar
     measured = measure(recording, raw)
     phases = phases_of(measured, measured_cuts(measured, raw).movements, raw)
     points = body_points(measured.distal, raw)
+    joint = _joint(measured, raw) if "joint" in plan.methods else None
     rows: list[dict[str, Any]] = []
     laws: dict[str, tuple[PhaseLaw, ...]] = {}
     for source in keyframe_sources_of(measured, phases, plan, wanted):
@@ -86,7 +88,11 @@ def compare(recording: Recording, settings: Settings | None = None, plan: Compar
                 name: () if isinstance(found, str) else tuple(one.law for one in found)
                 for name, found in fitted.items()
             }
-        rows += [_row(model, source, fitted[model.law], measured, points, raw) for model in models_of(plan)]
+        ways = {method: _way(method, source, joint) for method in {model.method for model in models_of(plan)}}
+        rows += [
+            _row(model, source, fitted[model.law], ways[model.method], measured, points, raw)
+            for model in models_of(plan)
+        ]
     tolerance = _DEFAULT_TOLERANCE if wanted.tolerance_mm is None else 1e-3 * wanted.tolerance_mm
     return Comparison(
         recording=measured.recording,
@@ -103,6 +109,21 @@ def compare(recording: Recording, settings: Settings | None = None, plan: Compar
         points=points,
         warnings=measured.warnings,
     )
+
+
+def _joint(measured: Measurement, settings: Settings) -> ModelJoint | str:
+    """Give the joint whose angles are interpolated, or why there is none."""
+    try:
+        return ModelJoint.of(measured, settings)
+    except SettingError as error:
+        return str(error)
+
+
+def _way(method: str, source: SourcePoses, joint: ModelJoint | str | None) -> Interpolation | str:
+    """Give the method with what it interpolates, or why it cannot."""
+    if method == "joint" and isinstance(joint, str):
+        return joint
+    return interpolation_called(method, source.pose, None if isinstance(joint, str) else joint)
 
 
 class PlannedModel(NamedTuple):
@@ -124,7 +145,7 @@ def models_of(plan: ComparisonPlan) -> Iterator[PlannedModel]:
         method, blend = model.method, model.blend
         if model.keyframes == 2 and blend == "piecewise":
             method = {"dlb": "sdlb", "dib": "sclerp", "catmull-rom": "sclerp"}.get(method, method)
-        if method in BASES and model.knots == "law":
+        if method in FROM_NEIGHBORS and model.knots == "law":
             blend = "piecewise"
         # Of knots that are but the phase's ends there is one choice.
         knots = "law" if model.keyframes == 2 and blend == "piecewise" else model.knots
@@ -155,6 +176,7 @@ def _row(
     model: PlannedModel,
     source: SourcePoses,
     laws: tuple[FittedLaw, ...] | str,
+    way: Interpolation | str,
     measured: Measurement,
     points: BodyPoints,
     settings: Settings,
@@ -170,6 +192,8 @@ def _row(
     }
     rows = spread_rows(source.phases, source.usable, measured.elapsed, model.keyframes)
     row["keyframes"] = rows.size
+    if isinstance(way, str):
+        return {**row, "note": way}
     if isinstance(laws, str):
         return {**row, "note": laws}
     functions = [law.function for law in laws]
@@ -185,7 +209,7 @@ def _row(
             piecewise=model.blend == "piecewise",
         )
         modeled, seconds = _timed(
-            lambda: model_motion(source.pose, measured.elapsed, keyframes, METHODS[model.method], functions)
+            lambda: model_motion(way.coordinates, measured.elapsed, keyframes, way.method, functions)
         )
     except SettingError as error:
         return {**row, "note": str(error)}

@@ -26,7 +26,7 @@ class ComparisonPlan:
 
     Attributes
     ----------
-    methods : tuple of {"dlb", "sclerp", "sdlb", "dib", "catmull-rom"}
+    methods : tuple of {"dlb", "sclerp", "sdlb", "dib", "catmull-rom", "joint"}
     laws : tuple of str
         Of the laws of motion, "best" and "empirical".
     blends : tuple of {"piecewise", "global"}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -18,12 +19,14 @@ from elbowscrew.model import (
     RigidBody,
     Selection,
 )
+from elbowscrew.model.joint_type import JointType
 from elbowscrew.motion.difference import DEFAULT_RADIUS, points_from_markers, points_from_radius
+from elbowscrew.motion.interpolation.joint_model import ModelJoint, interpolation_called
 from elbowscrew.motion.interpolation.keyframe_selection import select_keyframes
 from elbowscrew.motion.interpolation.keyframes import keyframes_at, phase_time, rows_of_frames
 from elbowscrew.motion.interpolation.law_fit import FittedLaw, laws_of
 from elbowscrew.motion.interpolation.model_phases import model_phases, one_phase, phases_of_keyframes
-from elbowscrew.motion.interpolation.modeling import METHODS, ModeledPoses, model_motion
+from elbowscrew.motion.interpolation.modeling import ModeledPoses, model_motion
 from elbowscrew.motion.movements.boundaries import Movements
 from elbowscrew.motion.screws.measurement import Measurement
 from elbowscrew.settings import Settings
@@ -41,7 +44,9 @@ class JointModel(NamedTuple):
     warnings: tuple[QualityWarning, ...]
 
 
-def build_model(measured: Measurement, movements: Movements, settings: Settings) -> JointModel:
+def build_model(
+    measured: Measurement, movements: Movements, settings: Settings, joint_type: JointType | None = None
+) -> JointModel:
     """Model a measured motion as the settings say.
 
     Parameters
@@ -49,15 +54,19 @@ def build_model(measured: Measurement, movements: Movements, settings: Settings)
     measured : Measurement
     movements : Movements
     settings : Settings
+    joint_type : JointType, optional
+        The joint whose angles are interpolated, if that is asked for; found by itself if it is not given.
 
     Raises
     ------
     SettingError
-        If the keyframes, knots or laws asked for do not fit the motion.
+        If the keyframes, knots or laws asked for do not fit the motion, or the joint has no angles to interpolate.
     AnalysisError
         If there is a pose in one frame only.
     """
     frame, elapsed, pose = measured.screw.frame, measured.elapsed, measured.displacement
+    method = settings.model_method
+    joint = ModelJoint.of(measured, settings, joint_type) if method == "joint" else None
     points = body_points(measured.distal, settings)
     rows = None
     if settings.keyframes is not None:
@@ -84,7 +93,10 @@ def build_model(measured: Measurement, movements: Movements, settings: Settings)
         laws=[law.function for law in laws],
         piecewise=settings.blend == "piecewise",
     )
-    poses = model_motion(pose, elapsed, keyframes, METHODS[settings.model_method], [law.function for law in laws])
+    coordinates, make, known = interpolation_called(method, pose, joint)
+    if known is not None:
+        keyframes = replace(keyframes, joint=known, joint_angle=coordinates[keyframes.row])
+    poses = model_motion(coordinates, elapsed, keyframes, make, [law.function for law in laws])
     return JointModel(
         keyframes=keyframes,
         inversion_rows=inversions,

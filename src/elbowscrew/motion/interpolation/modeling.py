@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any, Final, NamedTuple
+from typing import Any, Final, Literal, NamedTuple
 
 import numpy as np
 
-from elbowscrew.choices import METHOD_NAMES, functions_named
+from elbowscrew.choices import POSE_METHOD_NAMES, functions_named
 from elbowscrew.errors import SettingError
 from elbowscrew.geometry import catmull_rom, dib, dlb, lagrange_weights, sclerp, sdlb
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import Keyframes
+from elbowscrew.model.joint_coordinates import JointCoordinates
 from elbowscrew.motion.interpolation.keyframes import phase_time
+from elbowscrew.motion.joint.coordinates import joint_poses
 
 Method = Callable[[Float, Float, Float], Float]
 
@@ -64,13 +66,30 @@ def _between_neighbors(two_poses: Callable[..., Float]) -> Method:
 _sclerp: Final = _between_neighbors(sclerp)
 _sdlb: Final = _between_neighbors(sdlb)
 
-METHODS: Final[dict[str, Method]] = functions_named(METHOD_NAMES, globals())
+METHODS: Final[dict[str, Method]] = functions_named(POSE_METHOD_NAMES, globals())
 """Each takes keyframe poses (K, 8), their knots (K,) and parameters (n,) and gives poses (n, 8).
 
 The poses come from a sign-continuous series, which tells which way round the motion went, so no method looks for the
 shorter path of its own. A new method is one function above, and its name in
-`elbowscrew.choices.MethodName`.
+`elbowscrew.choices.PoseMethodName`.
 """
+FROM_NEIGHBORS: Final = frozenset({"sclerp", "sdlb", "joint"})
+"""Methods whose motion between two keyframes depends on these two alone."""
+
+
+def joint_method(joint: JointCoordinates) -> Method:
+    """Interpolate a joint's angles (K, k) in place of poses: evenly between neighbors, a ball's rotations by slerp.
+
+    About one axis or a center this is ScLERP of the poses that the joint has at the keyframes.
+    """
+
+    def angles(start: Float, end: Float, local: Float, *, way: str) -> Float:
+        return joint_poses(joint, start + local[:, None] * (end - start))
+
+    def rotations(start: Float, end: Float, local: Float, *, way: Literal["as given"]) -> Float:
+        return sclerp(joint_poses(joint, start), joint_poses(joint, end), local, way=way)
+
+    return _between_neighbors(rotations if joint.type == "ball" else angles)
 
 
 class ModeledPoses(NamedTuple):
@@ -82,7 +101,11 @@ class ModeledPoses(NamedTuple):
 
 
 def model_motion(
-    pose: Float, elapsed: Float, keyframes: Keyframes, method: Method, laws: Sequence[Callable[[Float], Float]]
+    coordinates: Float,
+    elapsed: Float,
+    keyframes: Keyframes,
+    method: Method,
+    laws: Sequence[Callable[[Float], Float]],
 ) -> ModeledPoses:
     """Interpolate the keyframes' poses under a time law (P 33-36).
 
@@ -92,13 +115,13 @@ def model_motion(
 
     Parameters
     ----------
-    pose : ndarray, shape (N, 8)
-        The measured motion, sign-continuous.
+    coordinates : ndarray, shape (N, 8) or (N, k)
+        The measured motion, sign-continuous, or the joint's angles.
     elapsed : ndarray, shape (N,)
         Seconds.
     keyframes : Keyframes
     method : callable
-        From `METHODS`.
+        From `METHODS`, or of `joint_method`.
     laws : sequence of callable
         One for each phase.
     """
@@ -114,7 +137,7 @@ def model_motion(
         phase[rows] = p + 1
         fraction[rows] = t
         if piecewise:
-            modeled[rows] = method(pose[members], keyframes.knots[p], t)
+            modeled[rows] = method(coordinates[members], keyframes.knots[p], t)
         else:
-            modeled[rows] = method(pose[keyframes.row], keyframes.knots[0], (p + t) / phases.count)
+            modeled[rows] = method(coordinates[keyframes.row], keyframes.knots[0], (p + t) / phases.count)
     return ModeledPoses(phase, fraction, modeled)

@@ -12,10 +12,11 @@ from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat
 from elbowscrew.model import Analysis, Keyframes, KeyframeSet, ModelPhases, RebuiltMotion
 from elbowscrew.motion.interpolation.laws import named_law
-from elbowscrew.motion.interpolation.modeling import METHODS, model_motion
+from elbowscrew.motion.interpolation.modeling import METHODS, Method, joint_method, model_motion
+from elbowscrew.motion.joint.coordinates import expressed_angles, expressed_joint
 from elbowscrew.motion.screws.frames import frame_called
 from elbowscrew.motion.screws.helical import helical_series
-from elbowscrew.motion.screws.relative import expressed
+from elbowscrew.motion.screws.relative import expressed, frame_change
 from elbowscrew.motion.screws.sense import sense_of
 
 _MIN_ANGLE: Final = float(np.radians(10.0))
@@ -48,8 +49,12 @@ def keyframes_of(analysis: Analysis) -> KeyframeSet:
         knot = np.concatenate(parts)
     else:
         knot = phases.count * keyframes.knots[0]
-    J = analysis.joint
-    D = expressed(analysis.displacement[rows], J, frame_called(settings.express_in, analysis.named_joint)[0])
+    J, express_in = analysis.joint, frame_called(settings.express_in, analysis.named_joint)[0]
+    D = expressed(analysis.displacement[rows], J, express_in)
+    joint, angle = keyframes.joint, keyframes.joint_angle
+    if joint is not None and angle is not None:
+        change = frame_change(J, express_in)
+        joint, angle = expressed_joint(joint, change), expressed_angles(joint, angle, change)
     time_s = analysis.screw.time_s[0] + analysis.elapsed
     return KeyframeSet(
         frame=keyframes.frame,
@@ -63,6 +68,8 @@ def keyframes_of(analysis: Analysis) -> KeyframeSet:
         law=analysis.laws,
         law_start_s=time_s[phases.law_rows[:, 0]],
         law_end_s=time_s[phases.law_rows[:, 1]],
+        joint=joint,
+        joint_angle=angle,
     )
 
 
@@ -103,8 +110,9 @@ def interpolate(keyframes: KeyframeSet, frames: int) -> RebuiltMotion:
     # One clock that has the frames wanted, the keyframes, and the times between which the laws run.
     time_s = np.unique(np.concatenate([wanted, keyframes.time_s, keyframes.law_start_s, keyframes.law_end_s]))
     row = np.searchsorted(time_s, keyframes.time_s)
-    pose = np.full((time_s.size, 8), np.nan)
-    pose[row] = keyframes.dual_quat
+    of_keyframes, method = _coordinates(keyframes)
+    coordinates = np.full((time_s.size, of_keyframes.shape[1]), np.nan)
+    coordinates[row] = of_keyframes
     count = len(keyframes.law)
     first = np.flatnonzero(np.diff(keyframes.phase, prepend=0))
     bounds = np.concatenate([first, [row.size - 1]])
@@ -115,10 +123,10 @@ def interpolate(keyframes: KeyframeSet, frames: int) -> RebuiltMotion:
     else:
         knots = (keyframes.knot / count,)
     modeled = model_motion(
-        pose,
+        coordinates,
         time_s,
         Keyframes(row=row, frame=keyframes.frame, phases=phases, knots=knots),
-        METHODS[keyframes.method],
+        method,
         laws,
     )
     chosen = np.searchsorted(time_s, wanted)
@@ -138,6 +146,16 @@ def interpolate(keyframes: KeyframeSet, frames: int) -> RebuiltMotion:
         euler_parameters=D[:, :4],
         translation=pose_from_dual_quat(D)[1],
     )
+
+
+def _coordinates(keyframes: KeyframeSet) -> tuple[Float, Method]:
+    """Give what is interpolated between the keyframes, and how."""
+    if keyframes.method != "joint":
+        return keyframes.dual_quat, METHODS[keyframes.method]
+    if keyframes.joint is None or keyframes.joint_angle is None:
+        msg = "--method joint: these keyframes do not tell of a joint; give another, such as --method sclerp"
+        raise SettingError(msg)
+    return keyframes.joint_angle, joint_method(keyframes.joint)
 
 
 def _angle_of_keyframes(quat: Float, time_s: Float, row: NDArray[np.intp], wanted: Float) -> tuple[Float, Float]:

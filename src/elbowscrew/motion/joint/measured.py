@@ -95,6 +95,7 @@ def _without_numbers(name: StatedJoint, reason: str) -> JointType:
         two_axes=None,
         ball=None,
         second_rotation=None,
+        coordinates=None,
         angle=np.zeros((0, 0)),
         angle_sd=np.zeros((0, 0)),
         residual_rotation=np.zeros(0),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -9,8 +10,10 @@ import numpy as np
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.sensitivity import NORMAL_95, confidence_radius
+from elbowscrew.model.joint_coordinates import JointCoordinates
 from elbowscrew.model.joint_type import BallJoint, JointLine, JointType, Measure, SecondRotation, TwoAxes
 from elbowscrew.motion.joint.choice import Choice, choose_type, middle_range
+from elbowscrew.motion.joint.coordinates import coordinates_of
 from elbowscrew.motion.joint.every_frame import Everywhere, FrameNumbers, numbers_everywhere, reference_numbers
 from elbowscrew.motion.joint.fitting import Fitted, shared_covariance
 from elbowscrew.motion.joint.likelihood import Fit, Mechanism, Poses, fit_mechanism, fit_robustly
@@ -84,15 +87,21 @@ def identify_joint(
         written = fit_mechanism(at, most, iterations=0, weight=fit.weight)
         every = numbers_everywhere(at, everywhere, reference)
         every = every._replace(angle=_near_zero(every.angle))
-        return _result(choice, every, scale, two_axes=_two_axes(written, reference, noise_known=noise_known))
+        allowed = coordinates_of(replace(at, frames=np.zeros((1, 2))), reference)
+        two = _two_axes(written, reference, noise_known=noise_known)
+        return _result(choice, every, scale, coordinates=allowed, two_axes=two)
+    start = reference_numbers(mechanism, everywhere, reference)
+    allowed = coordinates_of(replace(mechanism, frames=start.own), reference)
     every = numbers_everywhere(mechanism, everywhere, reference)
     if isinstance(mechanism, Ball):
-        return _result(choice, every, scale, ball=_ball(fit, mechanism, noise_known=noise_known))
+        center = _ball(fit, mechanism, noise_known=noise_known)
+        return _result(choice, every, scale, coordinates=allowed, ball=center)
     if isinstance(mechanism, OneAxis):
         angle = _near_zero(every.angle)
         sense = 1.0 if np.nanmax(angle) >= -np.nanmin(angle) else -1.0
         second = _second_rotation(choice, reference, noise_known=noise_known)
-        return _result(choice, every._replace(angle=sense * angle), scale, second=second)
+        allowed = None if allowed is None else replace(allowed, axis=sense * allowed.axis)
+        return _result(choice, every._replace(angle=sense * angle), scale, coordinates=allowed, second=second)
     return _result(choice, every, scale)
 
 
@@ -101,6 +110,7 @@ def _result(
     every: FrameNumbers | None,
     scale: float = 1.0,
     *,
+    coordinates: JointCoordinates | None = None,
     two_axes: TwoAxes | None = None,
     ball: BallJoint | None = None,
     second: SecondRotation | None = None,
@@ -116,6 +126,7 @@ def _result(
         two_axes=two_axes,
         ball=ball,
         second_rotation=second,
+        coordinates=coordinates,
         angle=every.angle,
         angle_sd=np.sqrt(scale) * every.angle_sd,
         residual_rotation=every.residual_rotation,

@@ -1,0 +1,95 @@
+"""What a model interpolates: the measured poses, or the angles of the joint that was found."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from elbowscrew.errors import SettingError
+from elbowscrew.geometry.arrays import Float, Index
+from elbowscrew.model.joint_coordinates import JointCoordinates
+from elbowscrew.model.joint_type import JointType
+from elbowscrew.motion.axes.measured import measured_mean_axis
+from elbowscrew.motion.interpolation.modeling import METHODS, Method, joint_method
+from elbowscrew.motion.joint.coordinates import joint_angles_of
+from elbowscrew.motion.joint.joint_axis import assumed_noise
+from elbowscrew.motion.joint.measured import measured_joint_axis, measured_joint_type
+from elbowscrew.motion.screws.measurement import Measurement
+from elbowscrew.motion.screws.uncertainty import joint_covariance
+from elbowscrew.settings import Settings
+
+
+class Interpolation(NamedTuple):
+    """A way from keyframe to keyframe.
+
+    Attributes
+    ----------
+    coordinates : ndarray, shape (N, 8) or (N, k)
+        Of the measured motion: poses, or angles of the joint.
+    method : callable
+        From coordinates to poses.
+    joint : JointCoordinates or None
+        The joint whose angles they are.
+    """
+
+    coordinates: Float
+    method: Method
+    joint: JointCoordinates | None
+
+
+def interpolation_called(name: str, pose: Float, joint: ModelJoint | None) -> Interpolation:
+    """Give a method by its name, and the coordinates of displacements (N, 8) that it takes.
+
+    Parameters
+    ----------
+    name : str
+    pose : ndarray, shape (N, 8)
+    joint : ModelJoint or None
+        Only ``joint`` needs it.
+    """
+    if name != "joint" or joint is None:
+        return Interpolation(pose, METHODS[name], None)
+    return Interpolation(joint.angles_of(pose), joint_method(joint.coordinates), joint.coordinates)
+
+
+class ModelJoint(NamedTuple):
+    """A joint, and the motion that it was fitted to."""
+
+    coordinates: JointCoordinates
+    measured: Measurement
+
+    @classmethod
+    def of(cls, measured: Measurement, settings: Settings, found: JointType | None = None) -> ModelJoint:
+        """Take the joint that was found, or find it.
+
+        Raises
+        ------
+        SettingError
+            If it has no angles of its own.
+        """
+        if found is None:
+            axis = measured_joint_axis(measured, measured_mean_axis(measured), settings)
+            found = measured_joint_type(measured, axis, settings)
+        coordinates = None if found is None or not found.has_angles else found.coordinates
+        if found is None or coordinates is None:
+            kind = "undetermined" if found is None else found.type
+            msg = (
+                f"--method joint: the joint is {kind} here, which has no angles of its own to interpolate; "
+                "give --method sclerp, or state the type with --joint-type"
+            )
+            raise SettingError(msg)
+        if len(coordinates.axis) == 1 and np.nansum(found.angle[:, 0] * measured.course) < 0.0:
+            coordinates = replace(coordinates, axis=-coordinates.axis)  # the sense of theta
+        return cls(coordinates, measured)
+
+    def angles_of(self, pose: Float) -> Float:
+        """Angles (N, k) of displacements (N, 8) in the order of the measured frames, weighed by their noise."""
+        measured = self.measured
+
+        def covariance(rows: Index) -> Float:
+            poses = measured.joint.dual_quat_proximal_distal[rows]
+            return joint_covariance(poses, *assumed_noise(measured.noise))
+
+        return joint_angles_of(self.coordinates, pose, covariance, measured.joint.reference_row)
