@@ -13,7 +13,8 @@ import pytest
 
 from elbowscrew import __version__
 from elbowscrew.cli.app import app
-from elbowscrew.tables import FAILURE_COLUMNS, INTERPOLATION_COLUMNS, SCREW_COLUMNS, study_header
+from elbowscrew.study_columns import FAILURE_COLUMNS, study_header
+from elbowscrew.tables import INTERPOLATION_COLUMNS, SCREW_COLUMNS
 
 LINK = re.compile(r"!?\[[^\]]*\]\(([^)#]*)(?:#([^)]+))?\)")
 HEADING = re.compile(r"^#+ (.+)$", re.M)

@@ -9,11 +9,11 @@ import pytest
 
 from elbowscrew import Settings
 from elbowscrew.cli.options import comparison_plan
+from elbowscrew.configuring import settings_from
 from elbowscrew.declaring import option_name
 from elbowscrew.errors import SettingError, UsageError
 from elbowscrew.joints import GENERIC, joints_of
 from elbowscrew.motion.screws.frames import frame_called
-from elbowscrew.settings import settings_from
 
 
 def test_options_are_stronger_than_the_file_and_the_file_than_defaults(tmp_path: Path) -> None:

@@ -1,22 +1,18 @@
 """One `Settings`: each setting is declared here, once, with its name, type, default, bounds and text.
 
 The options of the command line and their help, the keys of TOML files and manifests, the list in the class's docstring
-and `docs/settings.md` are made from it (`SETTINGS`). Values come from defaults, a TOML file and options, each stronger
-than the one before.
+and `docs/settings.md` are made from it (`SETTINGS`). `configuring.py` takes values from a TOML file and options.
 """
 
 from __future__ import annotations
 
-import csv
-import difflib
 import itertools
 import math
-import tomllib
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, Literal
+from typing import TYPE_CHECKING, Final, Literal
 
-from pydantic import BaseModel, ValidationError, field_validator, model_validator
+from pydantic import BaseModel, field_validator, model_validator
 
 from elbowscrew.choices import (
     FRAMES,
@@ -33,6 +29,7 @@ from elbowscrew.choices import (
     RotationType,
     StatedJoint,
 )
+from elbowscrew.cycle_times import read_cycle_times
 from elbowscrew.declaring import (
     BODIES,
     FORMER_NAMES,
@@ -43,10 +40,8 @@ from elbowscrew.declaring import (
     Length,
     attributes,
     declared,
-    option_name,
     setting,
 )
-from elbowscrew.errors import UsageError
 from elbowscrew.joints import JointName, ends_called, joints_of
 
 STILL: Final = "none"
@@ -283,7 +278,7 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
     @classmethod
     def _cycle_times(cls, value: object) -> object:
         """Take the name of a file with the times, too."""
-        return _read_cycles(Path(value)) if isinstance(value, str | Path) else value
+        return read_cycle_times(Path(value)) if isinstance(value, str | Path) else value
 
     @field_validator("skin_motion")
     @classmethod
@@ -310,29 +305,19 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
 
     @model_validator(mode="after")
     def _check_tolerance(self) -> Settings:
-        if self.tolerance_mm is None:
-            return self
-        if self.keyframes is not None:
-            msg = "--tolerance chooses the keyframes itself; give either --tolerance or --keyframes"
-            raise ValueError(msg)
-        if self.model_method not in ("sclerp", "sdlb"):
-            msg = (
-                f"--tolerance: with --method {self.method} a piece depends on more than its two keyframes, and no best "
-                "set can be told; expected sclerp or sdlb"
-            )
-            raise ValueError(msg)
-        if self.law == "empirical":
-            msg = (
-                "--tolerance: the recording's own law need not go forward all the time; expected another --law than "
-                "empirical"
-            )
-            raise ValueError(msg)
-        if self.knots != "law" or self.blend != "piecewise":
-            msg = (
-                "--tolerance: the model must pass each keyframe at its own time, piece by piece; leave --knots and "
-                "--blend out"
-            )
-            raise ValueError(msg)
+        twice = "--tolerance chooses the keyframes itself; give either --tolerance or --keyframes"
+        faults = {
+            twice: self.keyframes is not None,
+            f"--tolerance: with --method {self.method} a piece depends on more than its two keyframes, and no best "
+            "set can be told; expected sclerp or sdlb": self.model_method not in ("sclerp", "sdlb"),
+            "--tolerance: the recording's own law need not go forward all the time; expected another --law than "
+            "empirical": self.law == "empirical",
+            "--tolerance: the model must pass each keyframe at its own time, piece by piece; leave --knots and "
+            "--blend out": self.knots != "law" or self.blend != "piecewise",
+        }
+        found = next((fault for fault, present in faults.items() if present), None)
+        if self.tolerance_mm is not None and found is not None:
+            raise ValueError(found)
         return self
 
     @model_validator(mode="after")
@@ -358,112 +343,3 @@ Settings.__doc__ = f"{(Settings.__doc__ or '').rstrip()}{attributes(SETTINGS)}"
 
 LISTS: Final = tuple(one.option for one in SETTINGS if one.several)
 """Options of settings of which there may be several."""
-
-_FIELDS: Final = {one.option: one.field for one in SETTINGS}
-
-
-def settings_from(config: Path | None = None, options: Mapping[str, Any] | None = None) -> Settings:
-    """Merge defaults, a TOML file and options; the later ones win.
-
-    Parameters
-    ----------
-    config : Path, optional
-        A TOML file with option names as keys (``min-angle = 5``).
-    options : mapping, optional
-        Field or option names; None means not given.
-
-    Raises
-    ------
-    UsageError
-        If the file cannot be read, or a key or value is not a possible one; it names the key.
-    """
-    given = {option_name(key): value for key, value in (options or {}).items() if value is not None}
-    table = _read_toml(config) if config is not None else {}
-    if config is not None:
-        checked_settings(table, str(config))
-    return checked_settings({**table, **given}, "settings")
-
-
-def _read_cycles(path: Path) -> list[tuple[float, float]]:
-    """Read start and end times of cycles from a CSV file with the columns start_time_s and end_time_s."""
-    columns = ("start_time_s", "end_time_s")
-    try:
-        with path.open(encoding="utf-8-sig", newline="") as stream:
-            table = csv.DictReader(stream)
-            missing = [name for name in columns if name not in (table.fieldnames or ())]
-            if missing:
-                msg = f"{path}: expected the columns start_time_s and end_time_s, found no {' and no '.join(missing)}"
-                raise ValueError(msg)
-            times = []
-            for row in table:
-                start, end = (float(row[name] or "nan") for name in columns)
-                if not (math.isfinite(start) and math.isfinite(end) and start < end):
-                    msg = f"{path}:{table.line_num}: expected a start before its end, found {row['start_time_s']} and "
-                    raise ValueError(msg + f"{row['end_time_s']}")
-                times.append((start, end))
-    except OSError as error:
-        msg = f"{path}: cannot be read as a file of cycles: {error.strerror}"
-        raise ValueError(msg) from error
-    except csv.Error as error:
-        msg = f"{path}: not a CSV file: {error}"
-        raise ValueError(msg) from error
-    return times
-
-
-def _read_toml(config: Path) -> dict[str, Any]:
-    try:
-        with config.open("rb") as stream:
-            given = tomllib.load(stream)
-            table = {option_name(key): value for key, value in given.items()}
-            if len(table) < len(given):
-                msg = f"{config}: one setting stands twice under two spellings; keep one of {', '.join(given)}"
-                raise UsageError(msg)
-            return {key: [value] if key in LISTS and isinstance(value, str) else value for key, value in table.items()}
-    except OSError as error:
-        msg = f"{config}: cannot be read as a settings file: {error.strerror}"
-        raise UsageError(msg) from error
-    except (ValueError, RecursionError) as error:
-        msg = f"{config}: not TOML: {error}. Write one `key = value` a line, text in quotes"
-        raise UsageError(msg) from error
-
-
-def settings_from_options(values: Mapping[str, Any]) -> Settings:
-    """Make settings of values by the names of their options, as ``summary.json`` has them.
-
-    Raises
-    ------
-    pydantic.ValidationError
-        If a name or a value is not a possible one.
-    """
-    return Settings.model_validate({_FIELDS.get(name, name): value for name, value in values.items()})
-
-
-def options_from_settings(settings: Settings) -> dict[str, Any]:
-    """Give every setting by the name of its option, ready for JSON."""
-    return {option_name(field): value for field, value in settings.model_dump(mode="json").items()}
-
-
-def checked_settings(values: Mapping[str, Any], place: str) -> Settings:
-    """Make settings of values by the names of their options.
-
-    Raises
-    ------
-    UsageError
-        If a name or a value is not a possible one; it begins with the place and names the key.
-    """
-    try:
-        return settings_from_options(values)
-    except ValidationError as error:
-        raise UsageError("; ".join(_sentence(place, fault, list(_FIELDS)) for fault in error.errors())) from error
-
-
-def _sentence(place: str, fault: Any, known: list[str]) -> str:
-    key = option_name(str(fault["loc"][0])) if fault["loc"] else ""
-    if fault["type"] == "extra_forbidden":
-        close = difflib.get_close_matches(key, known, n=1)
-        hint = f"did you mean {close[0]!r}?" if close else f"possible keys: {', '.join(known)}"
-        return f"{place}: unknown key {key!r}; {hint}"
-    message = str(fault["msg"]).removeprefix("Value error, ").replace("Input should", "should")
-    if not key:
-        return f"{place}: {message}"
-    return f"{place}: {key}: {message}, found {fault['input']!r}"

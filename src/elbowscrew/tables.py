@@ -8,34 +8,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from enum import Enum
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowscrew.choices import AngleUnit as AngleUnit
-from elbowscrew.choices import LengthUnit as LengthUnit
+from elbowscrew.choices import AngleUnit, LengthUnit
+from elbowscrew.quantities import Quantity, in_units, unit_suffixes
 
 if TYPE_CHECKING:
     import pandas as pd
-
-METERS: Final[dict[str, float]] = {"m": 1.0, "cm": 0.01, "mm": 0.001}
-"""Meters in one unit of length."""
-
-
-class Quantity(Enum):
-    """What a column holds, and so how it is scaled, named and written."""
-
-    INTEGER = "integer"
-    MASKED_INTEGER = "integer, masked where not known"
-    FLAG = "flag"
-    NUMBER = "number"
-    ANGLE = "angle"
-    LENGTH = "length"
-    ANGULAR_VELOCITY = "angular velocity"
-    VELOCITY = "velocity"
-    LABEL = "label"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -294,128 +276,6 @@ TABLES: Final = {
 """The tables of a result, each a file of its name, and their columns: those of the joint's angles with two axes."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class StudyColumn:
-    """One column of ``summary.csv``: its name without unit, where ``summary.json`` has its value, and its kind."""
-
-    name: str
-    keys: tuple[str | int, ...]
-    quantity: Quantity
-    suffix: str = ""
-
-
-def _study(quantity: Quantity, *keys: str | int, name: str = "", suffix: str = "") -> StudyColumn:
-    if not name:
-        name = str(keys[-1]).removesuffix("_deg").removesuffix("_mm")
-    return StudyColumn(name=name, keys=keys, quantity=quantity, suffix=suffix)
-
-
-def _study_vector(stem: str, quantity: Quantity, *keys: str) -> tuple[StudyColumn, ...]:
-    return tuple(_study(quantity, *keys, k, name=f"{stem}_{letter}") for k, letter in enumerate("xyz"))
-
-
-_MEAN: Final = ("motion", "mean_axis")
-_JOINT: Final = ("motion", "joint_axis")
-_MODEL: Final = "interpolation"
-
-STUDY_COLUMNS: Final = (
-    _study(Quantity.INTEGER, "trial", "frames"),
-    _study(Quantity.NUMBER, "trial", "rate_hz"),
-    _study(Quantity.NUMBER, "trial", "duration_s"),
-    _study(Quantity.LABEL, "trial", "proximal", "name", name="proximal_body"),
-    _study(Quantity.LABEL, "trial", "distal", "name", name="distal_body"),
-    _study(Quantity.NUMBER, "trial", "proximal", "tracked_share", name="proximal_tracked_share"),
-    _study(Quantity.NUMBER, "trial", "distal", "tracked_share", name="distal_tracked_share"),
-    _study(Quantity.INTEGER, "trial", "measured_frames"),
-    _study(Quantity.INTEGER, "trial", "filled_frames"),
-    _study(Quantity.NUMBER, "trial", "missing_share"),
-    _study(Quantity.INTEGER, "trial", "reference_frame"),
-    _study(Quantity.ANGLE, "motion", "theta_max_deg"),
-    _study(Quantity.ANGLE, "motion", "theta_min_deg"),
-    _study(Quantity.INTEGER, "motion", "theta_max_frame"),
-    _study(Quantity.INTEGER, "motion", "signed"),
-    _study(Quantity.NUMBER, "motion", "dominant_axis", "ratio", name="dominant_axis_ratio"),
-    _study(Quantity.ANGLE, "motion", "largest_jump_deg"),
-    _study(Quantity.LABEL, "motion", "inversion_frames"),
-    _study(Quantity.LENGTH, "motion", "slide_median_mm"),
-    _study(Quantity.LENGTH, "motion", "slide_min_mm"),
-    _study(Quantity.LENGTH, "motion", "slide_max_mm"),
-    _study(Quantity.INTEGER, "motion", "repetitions"),
-    _study(Quantity.LABEL, "motion", "expressed_in"),
-    _study(Quantity.INTEGER, "motion", "axis_frames"),
-    *_study_vector("axis", Quantity.NUMBER, *_MEAN, "direction"),
-    *_study_vector("point", Quantity.LENGTH, *_MEAN, "point_mm"),
-    _study(Quantity.ANGLE, "motion", "axis_dispersion_deg"),
-    _study(Quantity.ANGLE, "motion", "axis_dispersion_all_frames_deg"),
-    _study(Quantity.ANGLE, "motion", "axis_dispersion_weighted_deg"),
-    _study(Quantity.ANGLE, "motion", "axis_dispersion_rms_deg"),
-    _study(Quantity.ANGLE, "motion", "axis_dispersion_max_deg"),
-    _study(Quantity.LENGTH, "motion", "axis_distance_rms_mm"),
-    _study(Quantity.INTEGER, "motion", "single_axis"),
-    _study(Quantity.LABEL, *_JOINT, "model", name="joint_model"),
-    *_study_vector("joint_axis", Quantity.NUMBER, *_JOINT, "direction"),
-    *_study_vector("joint_point", Quantity.LENGTH, *_JOINT, "point_mm"),
-    _study(Quantity.ANGLE, *_JOINT, "axis_cone95_deg", name="joint_axis_cone95"),
-    _study(Quantity.LENGTH, *_JOINT, "point_radius95_mm", name="joint_point_radius95"),
-    _study(Quantity.LENGTH, *_JOINT, "pitch_mm_per_rad", name="joint_pitch", suffix="_per_rad"),
-    _study(Quantity.NUMBER, _MODEL, "covered_share"),
-    _study(Quantity.ANGLE, _MODEL, "rmse_theta_deg"),
-    _study(Quantity.ANGLE, _MODEL, "max_theta_error_deg"),
-    _study(Quantity.INTEGER, _MODEL, "max_theta_error_frame"),
-    _study(Quantity.ANGLE, _MODEL, "rms_angle_error_deg"),
-    _study(Quantity.ANGLE, _MODEL, "max_angle_error_deg"),
-    _study(Quantity.LENGTH, _MODEL, "rms_translation_error_mm"),
-    _study(Quantity.LENGTH, _MODEL, "max_translation_error_mm"),
-    _study(Quantity.LENGTH, _MODEL, "rms_displacement_mm"),
-    _study(Quantity.LENGTH, _MODEL, "max_rms_displacement_mm"),
-    _study(Quantity.LENGTH, _MODEL, "points", "radius_of_gyration_mm"),
-    _study(Quantity.LABEL, _MODEL, "points", "from", name="radius_from"),
-    _study(Quantity.LABEL, "warnings", "warning", name="warnings"),
-    _study(Quantity.LABEL, "warnings", "note", name="notes"),
-    _study(Quantity.LABEL, "source", "sha256", name="source_sha256"),
-    _study(Quantity.LABEL, "elbowscrew"),
-)
-"""What ``summary.csv`` has of each trial, after its name, its path and what a manifest says of it."""
-
-FAILURE_COLUMNS: Final = ("path", "error_class", "message", "exit_code")
-"""The columns of ``failures.csv``."""
-
-
-def study_header(angle_unit: AngleUnit, length_unit: LengthUnit) -> list[str]:
-    """Names of `STUDY_COLUMNS` in the units asked for."""
-    units: dict[Quantity, str] = {Quantity.ANGLE: f"_{angle_unit}", Quantity.LENGTH: f"_{length_unit}"}
-    return [f"{column.name}{units.get(column.quantity, '')}{column.suffix}" for column in STUDY_COLUMNS]
-
-
-def study_values(summary: Any, angle_unit: AngleUnit, length_unit: LengthUnit) -> list[Any]:
-    """Values of `STUDY_COLUMNS` out of a ``summary.json``, which has degrees and millimeters; None if not known."""
-    scales = {
-        Quantity.ANGLE: float(np.radians(1.0)) if angle_unit == "rad" else 1.0,
-        Quantity.LENGTH: METERS["mm"] / METERS[length_unit],
-    }
-    values = []
-    for column in STUDY_COLUMNS:
-        value = summary
-        for key in column.keys:
-            if isinstance(value, list) and isinstance(key, str):
-                value = [one["code"] for one in value if one["severity"] == key]
-            else:
-                value = None if value is None else value[key]
-        scale = scales.get(column.quantity, 1.0)
-        values.append(value if value is None or scale == 1.0 else value * scale)
-    return values
-
-
-def angle_in(radians: NDArray[np.float64], unit: AngleUnit) -> NDArray[np.float64]:
-    """Angles in the unit asked for."""
-    return np.degrees(radians) if unit == "deg" else radians
-
-
-def length_in(meters: NDArray[np.float64], unit: LengthUnit) -> NDArray[np.float64]:
-    """Lengths in the unit asked for."""
-    return meters * 1000.0 if unit == "mm" else meters
-
-
 def columns(
     result: object,
     table: tuple[Column, ...],
@@ -431,53 +291,6 @@ def columns(
         )
         for column in table
     }
-
-
-def unit_suffixes(angle_unit: AngleUnit, length_unit: LengthUnit) -> dict[Quantity, str]:
-    """What the names of columns with units end in."""
-    return {
-        Quantity.ANGLE: f"_{angle_unit}",
-        Quantity.LENGTH: f"_{length_unit}",
-        Quantity.ANGULAR_VELOCITY: f"_{angle_unit}_s",
-        Quantity.VELOCITY: f"_{length_unit}_s",
-    }
-
-
-def in_units(values: NDArray[Any], quantity: Quantity, angle_unit: AngleUnit, length_unit: LengthUnit) -> NDArray[Any]:
-    """Values of a kind, from SI units and radians, in the units asked for."""
-    match quantity:
-        case Quantity.ANGLE | Quantity.ANGULAR_VELOCITY:
-            return angle_in(values, angle_unit)
-        case Quantity.LENGTH | Quantity.VELOCITY:
-            return length_in(values, length_unit)
-        case Quantity.INTEGER | Quantity.MASKED_INTEGER | Quantity.FLAG:
-            return values.astype(np.int64)
-        case Quantity.NUMBER | Quantity.LABEL:
-            return values
-
-
-def in_si(
-    values: NDArray[Any],
-    quantity: Quantity,
-    angle_unit: AngleUnit,
-    length_unit: LengthUnit,
-    out: NDArray[Any] | None = None,
-) -> NDArray[Any]:
-    """Values of a kind back in SI units and radians, into another array if one is given for them."""
-    found: NDArray[Any] = values
-    if quantity in (Quantity.ANGLE, Quantity.ANGULAR_VELOCITY) and angle_unit == "deg":
-        found = np.radians(values, out=out)
-    elif quantity in (Quantity.LENGTH, Quantity.VELOCITY) and length_unit == "mm":
-        found = np.multiply(values, METERS["mm"], out=out)
-    return found
-
-
-def as_read_back(
-    values: NDArray[Any], quantity: Quantity, angle_unit: AngleUnit, length_unit: LengthUnit
-) -> NDArray[Any]:
-    """Values of a kind, SI units and radians, with the last digit that they lose in units and back."""
-    there = in_units(values, quantity, angle_unit, length_unit)
-    return in_si(there, quantity, angle_unit, length_unit, out=None if there is values else there)
 
 
 def attributes(read: Sequence[NDArray[Any]], table: tuple[Column, ...]) -> dict[str, NDArray[Any]]:

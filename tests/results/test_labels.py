@@ -8,9 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from elbowscrew.quantities import Quantity
 from elbowscrew.results.table_reading import read_columns
 from elbowscrew.results.writing import write_csv
-from elbowscrew.tables import Column, Quantity
+from elbowscrew.tables import Column
 
 TABLE = (
     Column(name="label", attribute="label", quantity=Quantity.LABEL),

@@ -27,12 +27,14 @@ from elbowscrew import (
 )
 from elbowscrew.model.comparison_summary_types import ComparedModel, ModelOverTrials
 from elbowscrew.motion.interpolation.keyframe_sources import ComparisonPlan
+from elbowscrew.quantities import unit_suffixes
 from elbowscrew.reading.landmarks import read_landmarks
 from elbowscrew.results.comparison_summary import comparison_summary, trials_summary
 from elbowscrew.results.joint_summary import joint_summary
 from elbowscrew.results.recording_summary import summary_from_recording
 from elbowscrew.results.summary import summary_from_analysis
-from elbowscrew.tables import COMPARISON_COLUMNS, STUDY_COLUMNS, TRIALS_COMPARISON_COLUMNS, Column, unit_suffixes
+from elbowscrew.study_columns import STUDY_COLUMNS
+from elbowscrew.tables import COMPARISON_COLUMNS, TRIALS_COMPARISON_COLUMNS, Column
 
 SAMPLES = ("elbow_paper", "elbow_moving_arm_mm", "elbow_row_tagged", "knee", "elbow_left", "elbow_natural")
 WAYS: dict[str, dict[str, Any]] = {

@@ -19,7 +19,7 @@ from studies import FAST, WAYS, batch, break_trial, command, contents, write_tri
 
 from elbowscrew.cli import main
 from elbowscrew.study.folder import batch_folder
-from elbowscrew.tables import study_header
+from elbowscrew.study_columns import study_header
 
 SOUND, BROKEN = 48, list(WAYS)
 

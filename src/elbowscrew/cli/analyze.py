@@ -50,11 +50,11 @@ def analyze(
     Screw axis, angle and slide of every frame, a model through a few poses, tables, a summary and figures.
     """
     from elbowscrew.cli import render
+    from elbowscrew.configuring import settings_from
     from elbowscrew.reading.landmarks import read_landmarks
     from elbowscrew.results.exporting import check_exports
     from elbowscrew.results.staging import check_result_folder
     from elbowscrew.saving import analyze_file, write_result
-    from elbowscrew.settings import settings_from
 
     settings = settings_from(config, given)
     target = output if output is not None else Path(f"{trial.stem}_elbowscrew")

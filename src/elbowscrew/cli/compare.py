@@ -100,12 +100,12 @@ def compare(
     that keep it under a tolerance.
     """
     from elbowscrew.cli import render
+    from elbowscrew.configuring import settings_from
     from elbowscrew.errors import ElbowscrewError
     from elbowscrew.reading.registry import read_recording, recordings_in
     from elbowscrew.results.recording_summary import warnings_summary
     from elbowscrew.results.staging import COMPARISON, check_result_folder
     from elbowscrew.saving import write_comparison
-    from elbowscrew.settings import settings_from
 
     settings = settings_from(config, given)
     plan = options.comparison_plan(

@@ -28,10 +28,10 @@ def info(
     Layout, clock, bodies and their tracking, markers.
     """
     from elbowscrew.cli import render
+    from elbowscrew.configuring import settings_from
     from elbowscrew.errors import NoBodiesError
     from elbowscrew.reading.registry import read_recording
     from elbowscrew.results.recording_summary import summary_from_recording
-    from elbowscrew.settings import settings_from
 
     settings = settings_from(None, given)
     wanted = options.parts("markers", markers) or ()

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowscrew import tables
+from elbowscrew import choices, tables
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.model.array_record import ArrayRecord
 
@@ -140,6 +140,6 @@ class AnatomicalMotion(ArrayRecord):
     points: Mapping[str, Float]
     landmarks: Landmarks
 
-    def to_frame(self, angle_unit: tables.AngleUnit = "deg", length_unit: tables.LengthUnit = "mm") -> pd.DataFrame:
+    def to_frame(self, angle_unit: choices.AngleUnit = "deg", length_unit: choices.LengthUnit = "mm") -> pd.DataFrame:
         """Return the columns of ``anatomy.csv``."""
         return tables.data_frame(self, tables.ANATOMY_COLUMNS, angle_unit, length_unit)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowscrew import tables
+from elbowscrew import choices, tables
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.model.array_record import ArrayRecord
 
@@ -41,7 +41,7 @@ class InstantaneousMotion(ArrayRecord):
     axis_direction: Float
     axis_point: Float
 
-    def to_frame(self, angle_unit: tables.AngleUnit = "deg", length_unit: tables.LengthUnit = "mm") -> pd.DataFrame:
+    def to_frame(self, angle_unit: choices.AngleUnit = "deg", length_unit: choices.LengthUnit = "mm") -> pd.DataFrame:
         """Return the columns of ``instantaneous.csv``."""
         return tables.data_frame(self, tables.INSTANTANEOUS_COLUMNS, angle_unit, length_unit)
 
@@ -77,6 +77,6 @@ class HelicalSteps(ArrayRecord):
     axis_cone: Float
     point_radius: Float
 
-    def to_frame(self, angle_unit: tables.AngleUnit = "deg", length_unit: tables.LengthUnit = "mm") -> pd.DataFrame:
+    def to_frame(self, angle_unit: choices.AngleUnit = "deg", length_unit: choices.LengthUnit = "mm") -> pd.DataFrame:
         """Return the columns of ``steps.csv``."""
         return tables.data_frame(self, tables.STEP_COLUMNS, angle_unit, length_unit)

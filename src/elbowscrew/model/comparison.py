@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowscrew import tables
+from elbowscrew import choices, tables
 from elbowscrew.geometry.arrays import Float, Index
 from elbowscrew.model.array_record import ArrayRecord
 from elbowscrew.model.modeled import ModelPhases, PhaseLaw, Selection
@@ -80,7 +80,7 @@ class ComparedModels(ArrayRecord):
     ns_per_frame: Float
     note: Label
 
-    def to_frame(self, angle_unit: tables.AngleUnit = "deg", length_unit: tables.LengthUnit = "mm") -> pd.DataFrame:
+    def to_frame(self, angle_unit: choices.AngleUnit = "deg", length_unit: choices.LengthUnit = "mm") -> pd.DataFrame:
         """Return the columns of ``compare.csv``."""
         return tables.data_frame(self, tables.COMPARISON_COLUMNS, angle_unit, length_unit)
 
@@ -153,7 +153,7 @@ class ComparedOverTrials(ArrayRecord):
     ns_per_frame_mean: Float
     ns_per_frame_sd: Float
 
-    def to_frame(self, angle_unit: tables.AngleUnit = "deg", length_unit: tables.LengthUnit = "mm") -> pd.DataFrame:
+    def to_frame(self, angle_unit: choices.AngleUnit = "deg", length_unit: choices.LengthUnit = "mm") -> pd.DataFrame:
         """Return the columns of ``compare.csv`` of a folder."""
         return tables.data_frame(self, tables.TRIALS_COMPARISON_COLUMNS, angle_unit, length_unit)
 

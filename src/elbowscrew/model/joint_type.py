@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowscrew import tables
+from elbowscrew import choices, tables
 from elbowscrew.choices import StatedJoint
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.model.array_record import ArrayRecord
@@ -230,6 +230,6 @@ class JointAngles(ArrayRecord):
         """Columns of ``joint_angles.csv`` for this joint."""
         return tables.JOINT_ANGLE_COLUMNS[self.angle.shape[1]]
 
-    def to_frame(self, angle_unit: tables.AngleUnit = "deg", length_unit: tables.LengthUnit = "mm") -> pd.DataFrame:
+    def to_frame(self, angle_unit: choices.AngleUnit = "deg", length_unit: choices.LengthUnit = "mm") -> pd.DataFrame:
         """Return the columns of ``joint_angles.csv``."""
         return tables.data_frame(self, self.table, angle_unit, length_unit)

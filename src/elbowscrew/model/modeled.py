@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowscrew import tables
+from elbowscrew import choices, tables
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat
 from elbowscrew.model.array_record import ArrayRecord
@@ -196,7 +196,7 @@ class KeyframeSet(ArrayRecord):
         row = np.concatenate([axis[0], point[0], axis[1], point[1], [self.joint.pitch], quat, place])
         return np.tile(row, (self.frame.size, 1))
 
-    def to_frame(self, angle_unit: tables.AngleUnit = "deg", length_unit: tables.LengthUnit = "mm") -> pd.DataFrame:
+    def to_frame(self, angle_unit: choices.AngleUnit = "deg", length_unit: choices.LengthUnit = "mm") -> pd.DataFrame:
         """Return the columns of ``keyframes.csv``."""
         return tables.data_frame(self, self.table, angle_unit, length_unit)
 
@@ -224,7 +224,7 @@ class RebuiltMotion(ArrayRecord):
     euler_parameters: Float
     translation: Float
 
-    def to_frame(self, angle_unit: tables.AngleUnit = "deg", length_unit: tables.LengthUnit = "mm") -> pd.DataFrame:
+    def to_frame(self, angle_unit: choices.AngleUnit = "deg", length_unit: choices.LengthUnit = "mm") -> pd.DataFrame:
         """Return the columns that ``elbowscrew interpolate`` writes."""
         return tables.data_frame(self, tables.MOTION_COLUMNS, angle_unit, length_unit)
 
@@ -305,7 +305,7 @@ class InterpolatedMotion(ArrayRecord):
     axis_error: Float
     axis_distance: Float
 
-    def to_frame(self, angle_unit: tables.AngleUnit = "deg", length_unit: tables.LengthUnit = "mm") -> pd.DataFrame:
+    def to_frame(self, angle_unit: choices.AngleUnit = "deg", length_unit: choices.LengthUnit = "mm") -> pd.DataFrame:
         """Return the columns of ``interpolation.csv``."""
         return tables.data_frame(self, tables.INTERPOLATION_COLUMNS, angle_unit, length_unit)
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowscrew import tables
+from elbowscrew import choices, tables
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.model.array_record import ArrayRecord
 
@@ -80,7 +80,7 @@ class Repetitions(ArrayRecord):
     axis_point: Float
     axis_deviation: Float
 
-    def to_frame(self, angle_unit: tables.AngleUnit = "deg", length_unit: tables.LengthUnit = "mm") -> pd.DataFrame:
+    def to_frame(self, angle_unit: choices.AngleUnit = "deg", length_unit: choices.LengthUnit = "mm") -> pd.DataFrame:
         """Return the columns of ``repetitions.csv``."""
         return tables.data_frame(self, tables.REPETITION_COLUMNS, angle_unit, length_unit)
 
@@ -115,7 +115,7 @@ class Repeatability(ArrayRecord):
     point_sd: float
     top_sd: float
 
-    def to_frame(self, angle_unit: tables.AngleUnit = "deg", length_unit: tables.LengthUnit = "mm") -> pd.DataFrame:
+    def to_frame(self, angle_unit: choices.AngleUnit = "deg", length_unit: choices.LengthUnit = "mm") -> pd.DataFrame:
         """Return the columns of ``repetition_curve.csv``."""
         return tables.data_frame(self, tables.CURVE_COLUMNS, angle_unit, length_unit)
 
@@ -138,6 +138,6 @@ class CycleCurves(ArrayRecord):
     percent: Float
     angle: Float
 
-    def to_frame(self, angle_unit: tables.AngleUnit = "deg", length_unit: tables.LengthUnit = "mm") -> pd.DataFrame:
+    def to_frame(self, angle_unit: choices.AngleUnit = "deg", length_unit: choices.LengthUnit = "mm") -> pd.DataFrame:
         """Return the columns of ``cycles.csv``."""
         return tables.data_frame(self, tables.CYCLE_COLUMNS, angle_unit, length_unit)

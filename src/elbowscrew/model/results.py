@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowscrew import tables
+from elbowscrew import choices, tables
 from elbowscrew.geometry.arrays import Bool, Float
 from elbowscrew.joints import Joint
 from elbowscrew.model.anatomy import AnatomicalMotion
@@ -109,7 +109,7 @@ class ScrewMotion(ArrayRecord):
         known: Bool = np.logical_and.reduce(np.isfinite(self.axis_direction), axis=1)
         return known
 
-    def to_frame(self, angle_unit: tables.AngleUnit = "deg", length_unit: tables.LengthUnit = "mm") -> pd.DataFrame:
+    def to_frame(self, angle_unit: choices.AngleUnit = "deg", length_unit: choices.LengthUnit = "mm") -> pd.DataFrame:
         """Return the columns of ``screw.csv``."""
         return tables.data_frame(self, tables.SCREW_COLUMNS, angle_unit, length_unit)
 

@@ -13,10 +13,11 @@ from mpl_toolkits.mplot3d.art3d import Line3DCollection
 from mpl_toolkits.mplot3d.axes3d import Axes3D
 from numpy.typing import NDArray
 
+from elbowscrew.choices import LengthUnit
 from elbowscrew.geometry._blocks import evenly_thinned
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.plots import style
-from elbowscrew.tables import LengthUnit, angle_in, length_in
+from elbowscrew.quantities import angle_in, length_in
 from elbowscrew.view.decimation import drawn_rows
 from elbowscrew.view.scene import Bodies, axis_segments, bodies_in_space, directions_across, half_length
 from elbowscrew.view.shown import Shown

@@ -11,11 +11,11 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter, StrMethodFormatter
 from numpy.typing import NDArray
 
-from elbowscrew.choices import METHOD_LABELS
+from elbowscrew.choices import METHOD_LABELS, LengthUnit
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import ComparedModels, ComparedOverTrials, Comparison, Selection, TrialsComparison
 from elbowscrew.plots import style
-from elbowscrew.tables import LengthUnit, length_in
+from elbowscrew.quantities import length_in
 
 _WIDTH_MM: Final = 170.0
 _BETWEEN_TWO: Final = {

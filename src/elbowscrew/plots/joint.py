@@ -14,7 +14,7 @@ from mpl_toolkits.mplot3d.axes3d import Axes3D
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.plots.axis import color_scale, equal_aspect, plot_path
 from elbowscrew.plots.style import CONFIDENCE, SPREAD
-from elbowscrew.tables import angle_in, length_in
+from elbowscrew.quantities import angle_in, length_in
 from elbowscrew.view.scene import Bundle, Region, bodies_in_space, directions_across, joint_bundle
 from elbowscrew.view.shown import Shown
 

@@ -9,10 +9,11 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from elbowscrew.choices import AngleUnit
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.plots import style
 from elbowscrew.plots.figures import WIDTH_MM
-from elbowscrew.tables import AngleUnit, angle_in
+from elbowscrew.quantities import angle_in
 from elbowscrew.view.shown import Shown
 
 PERCENT: Final[Float] = np.linspace(0.0, 100.0, 101)

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.plots import series, style
 from elbowscrew.plots.figures import NARROW_MM, WIDTH_MM, MakeFigure
-from elbowscrew.tables import angle_in
+from elbowscrew.quantities import angle_in
 from elbowscrew.view.shown import Shown
 
 # Okabe and Ito's colors with line styles of their own, so that they are apart in grey as well.

@@ -13,7 +13,7 @@ from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.sensitivity import NORMAL_95
 from elbowscrew.motion.movements.phases import runs_of
 from elbowscrew.plots import style
-from elbowscrew.tables import angle_in, length_in
+from elbowscrew.quantities import angle_in, length_in
 from elbowscrew.view.decimation import drawn_band, drawn_rows
 from elbowscrew.view.shown import Shown
 

@@ -15,11 +15,11 @@ import numpy as np
 from elbowscrew.errors import NoBodiesError, RecordingError
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import QualityWarning, Recording, RigidBody, Source, invalid_warning, out_of_reach
+from elbowscrew.quantities import METERS
 from elbowscrew.reading.builders import MarkerBuilder
 from elbowscrew.reading.clock import is_rate
 from elbowscrew.reading.options import ASK_FOR_MARKERS, ReadOptions, stated_unit
 from elbowscrew.reading.source import sha256_of
-from elbowscrew.tables import METERS
 
 ENDINGS: Final = (".c3d",)
 _LONGEST_OPENING_S: Final = 600

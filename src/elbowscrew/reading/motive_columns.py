@@ -9,6 +9,7 @@ import numpy as np
 from elbowscrew.errors import RecordingError, SettingError
 from elbowscrew.geometry import quaternion
 from elbowscrew.model import QualityWarning, Recording, Source
+from elbowscrew.quantities import METERS
 from elbowscrew.reading.builders import ArrayBuilder, MarkerBuilder
 from elbowscrew.reading.cells import read_blocks
 from elbowscrew.reading.clock import check_frames, cut_warnings, frame_rate
@@ -17,7 +18,6 @@ from elbowscrew.reading.motive_bodies import MotiveBody, sample_bodies
 from elbowscrew.reading.motive_header import BodyColumns, Header, body_columns, marker_columns, parse_header
 from elbowscrew.reading.options import ReadOptions, stated_unit
 from elbowscrew.reading.source import TextSource
-from elbowscrew.tables import METERS
 
 _KNOWN_VERSIONS: Final = ("1.1", "1.2", "1.21", "1.22", "1.23", "1.24", "1.25")
 

@@ -8,7 +8,7 @@ from typing import Final
 
 from elbowscrew.errors import RecordingError, SettingError
 from elbowscrew.model import marker_matches
-from elbowscrew.tables import METERS
+from elbowscrew.quantities import METERS
 
 _UNIT_NAMES: Final = {"meters": "m", "centimeters": "cm", "millimeters": "mm"}
 

@@ -14,12 +14,12 @@ import numpy as np
 
 from elbowscrew.errors import NoBodiesError, RecordingError
 from elbowscrew.model import Recording, Source
+from elbowscrew.quantities import METERS
 from elbowscrew.reading.builders import ArrayBuilder, BodyBuilder, MarkerBuilder
 from elbowscrew.reading.cells import read_blocks
 from elbowscrew.reading.clock import check_frames, counted_rate, cut_warnings
 from elbowscrew.reading.options import ASK_FOR_MARKERS, ReadOptions
 from elbowscrew.reading.source import TextSource
-from elbowscrew.tables import METERS
 
 _COLUMN: Final = re.compile(r"(?P<name>.+)_(?:(?P<euler>e[0-3])|(?P<axis>[xyz])_(?P<unit>m|cm|mm))")
 _POSE: Final = ("e0", "e1", "e2", "e3", "x", "y", "z")

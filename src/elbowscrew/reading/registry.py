@@ -11,11 +11,11 @@ from typing import Final
 
 from elbowscrew.errors import RecordingError, SettingError, UsageError
 from elbowscrew.model import Recording
+from elbowscrew.quantities import METERS
 from elbowscrew.reading import c3d, motive_columns, plain_table, row_tagged, trc
 from elbowscrew.reading.cells import parse_number
 from elbowscrew.reading.options import ReadOptions
 from elbowscrew.reading.source import TextSource, first_bytes, open_source
-from elbowscrew.tables import METERS
 
 _UNITS: Final = frozenset({"units"})
 _MARKERS: Final = frozenset({"markers"})

@@ -9,12 +9,12 @@ import numpy as np
 
 from elbowscrew.errors import NoBodiesError, RecordingError
 from elbowscrew.model import Recording, Source
+from elbowscrew.quantities import METERS
 from elbowscrew.reading.builders import ArrayBuilder, MarkerBuilder
 from elbowscrew.reading.cells import read_blocks
 from elbowscrew.reading.clock import check_frames, cut_warnings, frame_rate
 from elbowscrew.reading.options import ASK_FOR_MARKERS, ReadOptions, stated_unit
 from elbowscrew.reading.source import TextSource
-from elbowscrew.tables import METERS
 
 _HEADER_LINES: Final = 5
 

@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 from elbowscrew.errors import UsageError
 from elbowscrew.model import Analysis
 from elbowscrew.model.summary_types import AnalysisSummary
+from elbowscrew.quantities import angle_in
 from elbowscrew.results.writing import named_tables
-from elbowscrew.tables import angle_in
 
 _Table = Mapping[str, NDArray[Any]]
 

@@ -19,7 +19,8 @@ from elbowscrew.model import KeyframeSet, PhaseLaw
 from elbowscrew.model.joint_coordinates import MOVING_JOINTS, JointCoordinates
 from elbowscrew.motion.interpolation.keyframes import phase_time_share
 from elbowscrew.motion.interpolation.laws import LAWS, named_law
-from elbowscrew.tables import KEYFRAME_JOINT_COLUMNS, METERS, Quantity
+from elbowscrew.quantities import METERS, Quantity
+from elbowscrew.tables import KEYFRAME_JOINT_COLUMNS
 
 _POSE: Final = ("e0", "e1", "e2", "e3", "d_x", "d_y", "d_z")
 _UNIT_TOLERANCE: Final = 5e-3

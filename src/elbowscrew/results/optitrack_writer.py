@@ -10,7 +10,7 @@ import numpy as np
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat, transform_points
 from elbowscrew.model import Recording, RigidBody
-from elbowscrew.tables import METERS
+from elbowscrew.quantities import METERS
 
 _UNIT_TITLES = {"m": "Meters", "cm": "Centimeters", "mm": "Millimeters"}
 

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowscrew._version import __version__
+from elbowscrew.configuring import options_from_settings
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.joints import side_between
 from elbowscrew.model import Analysis, JointAxis, Landmarks, Selection
@@ -32,7 +33,7 @@ from elbowscrew.results.joint_summary import INTERVAL_METHODS
 from elbowscrew.results.joint_type_summary import joint_type_summary
 from elbowscrew.results.recording_summary import quality_summary, recording_summary, source_summary, warnings_summary
 from elbowscrew.results.statistics import known, rms, statistic
-from elbowscrew.settings import Settings, options_from_settings
+from elbowscrew.settings import Settings
 
 _LIBRARIES: Final = ("numpy", "scipy", "matplotlib", "pandas", "pydantic")
 

@@ -12,11 +12,12 @@ from typing import Any, Final, TypeVar
 from pydantic import TypeAdapter, ValidationError
 
 from elbowscrew._version import __version__
+from elbowscrew.configuring import checked_settings
 from elbowscrew.errors import ResultError, UsageError
 from elbowscrew.model.joint_summary_types import JointSummary
 from elbowscrew.model.summary_types import Summary
 from elbowscrew.results.joint_summary import preferred_fit
-from elbowscrew.settings import Settings, checked_settings
+from elbowscrew.settings import Settings
 
 SUMMARY: Final = "summary.json"
 JOINT: Final = "joint.json"

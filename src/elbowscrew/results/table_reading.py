@@ -11,8 +11,10 @@ from typing import Any, Final, TextIO, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowscrew.choices import AngleUnit, LengthUnit
 from elbowscrew.errors import ResultError
-from elbowscrew.tables import AngleUnit, Column, LengthUnit, Quantity, as_read_back, attributes, in_si, unit_suffixes
+from elbowscrew.quantities import Quantity, as_read_back, in_si, unit_suffixes
+from elbowscrew.tables import Column, attributes
 
 _BLOCK_LINES: Final = 4096
 _INTEGERS: Final = (Quantity.INTEGER, Quantity.MASKED_INTEGER, Quantity.FLAG)

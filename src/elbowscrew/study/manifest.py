@@ -10,12 +10,13 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Final
 
+from elbowscrew.configuring import settings_from
 from elbowscrew.declaring import option_name
 from elbowscrew.errors import UsageError
 from elbowscrew.reading.source import first_bytes
-from elbowscrew.settings import LISTS, Settings, settings_from
+from elbowscrew.settings import LISTS, Settings
 from elbowscrew.study.trial import Trial
-from elbowscrew.tables import STUDY_COLUMNS, study_header
+from elbowscrew.study_columns import STUDY_COLUMNS, study_header
 
 _HEAD_BYTES: Final = 65536
 _MOST_FAULTS: Final = 5

@@ -8,9 +8,10 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from elbowscrew.choices import AngleUnit, LengthUnit
 from elbowscrew.model.summary_types import Summary
 from elbowscrew.results.table_text import safe_cell
-from elbowscrew.tables import FAILURE_COLUMNS, AngleUnit, LengthUnit, study_header, study_values
+from elbowscrew.study_columns import FAILURE_COLUMNS, study_header, study_values
 
 DEFECT, LOST = "Defect", "WorkerLost"
 """Classes of failures that no error of ours stands for: the program's own fault, and a worker that died twice."""

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from elbowscrew.configuring import settings_from
 from elbowscrew.errors import OutputError, ResultError, UsageError
 from elbowscrew.model import Landmarks
 from elbowscrew.model.summary_types import Summary
@@ -16,7 +17,6 @@ from elbowscrew.report.study_page import write_study_page
 from elbowscrew.results.exporting import check_exports
 from elbowscrew.results.staging import is_summary, replace_file
 from elbowscrew.results.summary_reading import SUMMARY, read_summary
-from elbowscrew.settings import settings_from
 from elbowscrew.study.executors import OpenExecutor
 from elbowscrew.study.folder import batch_folder
 from elbowscrew.study.naming import result_names

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 import elbowscrew.motion.interpolation.keyframe_selection as selection_module
 from elbowscrew import Settings, analyze, simulate_trial
+from elbowscrew.configuring import settings_from
 from elbowscrew.errors import SettingError, UsageError
 from elbowscrew.geometry import dual_quat_from_screw, sclerp, sdlb
 from elbowscrew.geometry import dual_quaternion as dq
@@ -20,7 +21,6 @@ from elbowscrew.geometry.arrays import Float
 from elbowscrew.motion.difference import points_from_markers
 from elbowscrew.motion.interpolation.keyframe_selection import select_keyframes
 from elbowscrew.motion.interpolation.segment_errors import BASES, PoseTrack, displacement_along, squares_along
-from elbowscrew.settings import settings_from
 
 MARKERS = np.array([[38, 12, 31], [-41, 27, 8], [9, -44, -28], [-6, 5, -47], [60, 3, 10]]) * 1e-3
 POINTS = points_from_markers(MARKERS)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from elbowscrew import Settings, analyze, simulate_trial
+from elbowscrew.configuring import settings_from
 from elbowscrew.errors import SettingError, UsageError
 from elbowscrew.geometry import dual_quat_from_screw, line_through
 from elbowscrew.geometry import dual_quaternion as dq
@@ -16,7 +17,6 @@ from elbowscrew.model import ModelPhases
 from elbowscrew.motion.difference import points_from_radius
 from elbowscrew.motion.interpolation.law_fit import FittedLaw, laws_of
 from elbowscrew.motion.interpolation.laws import LAWS, asymmetric
-from elbowscrew.settings import settings_from
 
 COUNT = 121
 TAU = np.linspace(0.0, 1.0, COUNT)

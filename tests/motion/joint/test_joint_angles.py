@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 
 from elbowscrew import Analysis, Recording, RigidBody, Settings, analyze, read_recording, save_analysis, simulate_trial
+from elbowscrew.configuring import settings_from
 from elbowscrew.errors import UsageError
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.results.joint_summary import joint_summary
 from elbowscrew.results.staging import RESULT_FILES
-from elbowscrew.settings import settings_from
 
 FLEXION = np.array([0.98, 0.1, 0.17]) / np.linalg.norm([0.98, 0.1, 0.17])
 

@@ -10,12 +10,12 @@ from coverage_of_screws import coverage
 from trials import ARM, FOREARM, SIGMA
 
 from elbowscrew import Analysis, RigidBody, Settings, analyze, simulate_trial
+from elbowscrew.configuring import settings_from
 from elbowscrew.errors import AnalysisError, SettingError, UsageError
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry import pose_from_points
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.motion.screws.pose_noise import covariance_from_markers, pose_noise
-from elbowscrew.settings import settings_from
 from elbowscrew.simulate import SimulatedTrial
 
 

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from elbowscrew import Recording, RigidBody, Settings, analyze, simulate_trial
+from elbowscrew.configuring import settings_from
 from elbowscrew.errors import SettingError, UsageError
 from elbowscrew.geometry import dual_quat_from_screw
 from elbowscrew.geometry import dual_quaternion as dq
-from elbowscrew.settings import settings_from
 
 TRIAL = simulate_trial(seed=9, proximal="moving", gaps=3, gap_frames=4, sign_flips=True)
 TRUTH = np.radians(TRIAL.truth["theta_deg"])

@@ -1,0 +1,98 @@
+"""Settings from a TOML file and options, each stronger than the one before, and back to the names of options."""
+
+from __future__ import annotations
+
+import difflib
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, Final
+
+from pydantic import ValidationError
+
+from elbowscrew.declaring import option_name
+from elbowscrew.errors import UsageError
+from elbowscrew.settings import LISTS, SETTINGS, Settings
+
+_FIELDS: Final = {one.option: one.field for one in SETTINGS}
+
+
+def settings_from(config: Path | None = None, options: Mapping[str, Any] | None = None) -> Settings:
+    """Merge defaults, a TOML file and options; the later ones win.
+
+    Parameters
+    ----------
+    config : Path, optional
+        A TOML file with option names as keys (``min-angle = 5``).
+    options : mapping, optional
+        Field or option names; None means not given.
+
+    Raises
+    ------
+    UsageError
+        If the file cannot be read, or a key or value is not a possible one; it names the key.
+    """
+    given = {option_name(key): value for key, value in (options or {}).items() if value is not None}
+    table = _read_toml(config) if config is not None else {}
+    if config is not None:
+        checked_settings(table, str(config))
+    return checked_settings({**table, **given}, "settings")
+
+
+def _read_toml(config: Path) -> dict[str, Any]:
+    try:
+        with config.open("rb") as stream:
+            given = tomllib.load(stream)
+            table = {option_name(key): value for key, value in given.items()}
+            if len(table) < len(given):
+                msg = f"{config}: one setting stands twice under two spellings; keep one of {', '.join(given)}"
+                raise UsageError(msg)
+            return {key: [value] if key in LISTS and isinstance(value, str) else value for key, value in table.items()}
+    except OSError as error:
+        msg = f"{config}: cannot be read as a settings file: {error.strerror}"
+        raise UsageError(msg) from error
+    except (ValueError, RecursionError) as error:
+        msg = f"{config}: not TOML: {error}. Write one `key = value` a line, text in quotes"
+        raise UsageError(msg) from error
+
+
+def settings_from_options(values: Mapping[str, Any]) -> Settings:
+    """Make settings of values by the names of their options, as ``summary.json`` has them.
+
+    Raises
+    ------
+    pydantic.ValidationError
+        If a name or a value is not a possible one.
+    """
+    return Settings.model_validate({_FIELDS.get(name, name): value for name, value in values.items()})
+
+
+def options_from_settings(settings: Settings) -> dict[str, Any]:
+    """Give every setting by the name of its option, ready for JSON."""
+    return {option_name(field): value for field, value in settings.model_dump(mode="json").items()}
+
+
+def checked_settings(values: Mapping[str, Any], location: str) -> Settings:
+    """Make settings of values by the names of their options.
+
+    Raises
+    ------
+    UsageError
+        If a name or a value is not a possible one; it begins with the location and names the key.
+    """
+    try:
+        return settings_from_options(values)
+    except ValidationError as error:
+        raise UsageError("; ".join(_sentence(location, fault, list(_FIELDS)) for fault in error.errors())) from error
+
+
+def _sentence(location: str, fault: Any, known: list[str]) -> str:
+    key = option_name(str(fault["loc"][0])) if fault["loc"] else ""
+    if fault["type"] == "extra_forbidden":
+        close = difflib.get_close_matches(key, known, n=1)
+        hint = f"did you mean {close[0]!r}?" if close else f"possible keys: {', '.join(known)}"
+        return f"{location}: unknown key {key!r}; {hint}"
+    message = str(fault["msg"]).removeprefix("Value error, ").replace("Input should", "should")
+    if not key:
+        return f"{location}: {message}"
+    return f"{location}: {key}: {message}, found {fault['input']!r}"
