@@ -64,9 +64,32 @@ def test_pronation_while_flexing_is_no_single_axis(real_data: Path) -> None:
 
 
 def test_a_hinge_keeps_its_axis_and_no_richer_type_is_tried() -> None:
+    """What the hinge leaves is white in time: no joint could leave less."""
     analysis = analyze(simulate_trial(frames=120, inversion=60, seed=2).recording)
     found = joint_summary(analysis)["joint_type"]
     assert found["type"] in ("hinge", "screw_hinge")
-    assert found["candidates"] == []
+    assert found["type"] == analysis.joint_axis.preferred
+    assert found["status"] == "determined"
+    assert {one["type"] for one in found["candidates"]} <= {"rigid", "hinge", "screw_hinge"}
     assert found["two_axes"] is None
     assert found["ball"] is None
+
+
+def test_a_knee_that_screws_home_is_a_hinge_that_wanders(real_data: Path) -> None:
+    """15 deg of axial turn go with the first third of the flexion: two axes are no certainty there."""
+    analysis = analyze(read_recording(real_data / "cases" / "knee_screwhome.csv"))
+    found = joint_summary(analysis)
+    assert found["joint_type"]["type"] in ("hinge", "screw_hinge")
+    assert found["joint_type"]["status"] == "approximate"
+    assert found["wander"] is not None
+    assert found["wander"]["significant"] is True
+    assert found["mean_axis"] is not None
+
+
+@pytest.mark.parametrize("still", ["none", "desk"])
+def test_few_frames_of_no_clear_joint_are_no_certain_pair_of_axes(real_data: Path, still: str) -> None:
+    analysis = analyze(
+        read_recording(real_data / "cases" / "swap_arm_forearm.csv"), Settings(proximal=still, distal="board")
+    )
+    found = joint_summary(analysis)["joint_type"]
+    assert (found["type"], found["status"]) != ("two_axes", "determined")

@@ -15,26 +15,44 @@ import numpy as np
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.model.joint_type import JointTypeName, TypeCandidate
 from elbowscrew.motion.joint.fitting import Fitted, fit_type, shared_covariance
-from elbowscrew.motion.joint.likelihood import Fit, Mechanism, Poses, fit_mechanism, settled
+from elbowscrew.motion.joint.likelihood import Fit, Mechanism, Poses, settled
+from elbowscrew.motion.joint.pieces import influence_pieces
 from elbowscrew.motion.joint.simple_types import OneAxis
 from elbowscrew.motion.joint.two_axes import angle_sd, is_phantom
 
 _FRAMES: Final = 200
+_CONSECUTIVE: Final = 2000
 _FOLDS: Final = 5
 _BLOCKS: Final = 4
-_FOLD_ITERATIONS: Final = 2
+_RANK: Final = 1e-10
+_TINY: Final = float(np.finfo(np.float64).tiny)
+_WAVES: Final = 8
 _EXPLAINED: Final = 1.15
 _TIMES_BETTER: Final = 1.5
 _LARGE: Final = np.radians(10.0)
 _NEED_LARGE: Final = 2.0
 _NEED_SMALL: Final = 10.0
-_RMS_TO_RANGE: Final = 3.3
+_LITTLE_ROTATION: Final = np.radians(2.5)
+_LITTLE_SHIFT: Final = 0.0015
 _LARGEST_LEFT: Final = 0.012
 _LARGEST_CENTER_SD: Final = 0.05
 _LARGEST_ANGLE_SD: Final = np.radians(8.0)
 _LARGEST_AXIS_SD: Final = np.radians(15.0)
 _LEAST_RANGE: Final = np.radians(1.5)
 _SURE: Final = 3.0
+_THIRD_DIFFERENCES: Final = 20.0  # variance of those of white noise
+# Share of what a richer type explains that one axis, free to move with the angle, explains as well.
+_ALL_RETRACED: Final = 0.9
+_MUCH_RETRACED: Final = 0.5
+_LARGEST_WANDER: Final = np.radians(15.0)
+_WANDERS: Final = "an axis that wanders with the angle explains as much as two axes do"
+_LITTLE: Final = "a second rotation is seen, but is too small to tell its axis"
+
+LEAST_RANGE_IN_SD: Final = 12.0
+"""Times the standard deviation of a frame's angle that a range takes to tell an axis."""
+
+RMS_TO_RANGE: Final = 3.3
+"""Range of a rotation that goes to and fro, over its RMS."""
 
 NAMES: Final[dict[str, str]] = {
     "rigid": "a rigid joint",
@@ -69,12 +87,17 @@ class _Tried:
     @property
     def range_left(self) -> float:
         """Range (rad) of the rotation that the type leaves, from its RMS."""
-        return _RMS_TO_RANGE * self.fit.residual_rotation
+        return RMS_TO_RANGE * self.fit.residual_rotation
 
     @property
     def need(self) -> float:
         """How many times less a richer type must leave."""
         return _NEED_LARGE if self.range_left >= _LARGE else _NEED_SMALL
+
+    @property
+    def leaves_little(self) -> bool:
+        """Whether what it leaves is small, however far beyond the noise: an imperfect hinge has as much."""
+        return self.range_left < _LITTLE_ROTATION and self.fit.residual_translation < _LITTLE_SHIFT
 
     @property
     def too_far(self) -> bool:
@@ -84,10 +107,12 @@ class _Tried:
 class _Contest:
     """The types on the same frames, each fitted when it is first asked for."""
 
-    def __init__(self, poses: Poses, *, noise_known: bool, robust: bool) -> None:
+    def __init__(self, poses: Poses, *, noise_known: bool, robust: bool, one: Fitted | None = None) -> None:
         self.poses, _ = poses.thinned(_FRAMES)
+        self.consecutive = poses.at(slice(_CONSECUTIVE))
         self.noise_known = noise_known
         self.robust = robust
+        self.stated_one = one
         self.tried: dict[Fitted, _Tried] = {}
         self.known_heldout: dict[Fitted, float] = {}
 
@@ -105,41 +130,68 @@ class _Contest:
         return self.known_heldout[name]
 
     def _heldout(self, fit: Fit[Mechanism]) -> float:
-        """Whitened variance for each degree of freedom of frames that the shared numbers were not fitted to.
+        """Whitened variance for each degree of freedom of frames that the shared numbers were not fitted to."""
+        pieces = influence_pieces(fit, self.poses)
+        return _heldout_variance(pieces.design, pieces.whitened, float(fit.weight.sum()))
 
-        Five folds of four interleaved blocks, so that neither neighbors nor one end of the motion decide.
-        """
-        count = len(self.poses.joint)
-        fold = (np.arange(count) * _FOLDS * _BLOCKS // count) % _FOLDS
-        total, weights = 0.0, 0.0
-        for k in range(_FOLDS):
-            kept, left = np.flatnonzero(fold != k), np.flatnonzero(fold == k)
-            refit = fit_mechanism(
-                fit.mechanism.on(kept),
-                self.poses.at(kept),
-                iterations=_FOLD_ITERATIONS,
-                tolerance=1e-4,
-                weight=fit.weight[kept],
-            )
-            held = settled(refit.mechanism, self.poses.at(left))
-            total += float(fit.weight[left] @ held.square)
-            weights += float(fit.weight[left].sum())
-        return total / max(weights * (6 - fit.own_count), np.finfo(np.float64).tiny)
+    def heldout_wandering(self, name: Fitted) -> float:
+        """Held-out variance of one axis that may move as it likes with the angle, retraced on each way."""
+        fit = self[name].fit
+        pieces = influence_pieces(fit, self.poses)
+        angle = fit.mechanism.frames[:, 0]
+        place = (angle - angle.min()) / max(float(np.ptp(angle)), _TINY)
+        waves = np.cos(np.pi * np.arange(_WAVES) * place[:, None])
+        columns = (pieces.whitener[:, :, :, None] * waves[:, None, None, :]).reshape(*pieces.whitened.shape, -1)
+        design = np.concatenate([pieces.design, columns], axis=2)
+        return _heldout_variance(design, pieces.whitened, float(fit.weight.sum()))
 
     @property
     def one(self) -> Fitted:
-        """Hinge or screw-hinge: by the pitch's own interval."""
+        """Hinge or screw-hinge: as the joint's axis was found to be, else by the pitch's own interval."""
+        if self.stated_one is not None:
+            return self.stated_one
         screw = self["screw_hinge"]
         mechanism = screw.fit.mechanism
         pitch = mechanism.pitch if isinstance(mechanism, OneAxis) else 0.0
         return "screw_hinge" if abs(pitch) > _SURE * screw.shared_sd[9] else "hinge"
+
+    def floor(self, name: Fitted) -> float:
+        """Variance for each degree of freedom that no joint explains: what of a type's residual is white in time.
+
+        From third differences of successive frames, so that the motion, which is smooth, has no share; by the median,
+        which is less than the mean, so that outliers and gaps do not raise it.
+        """
+        tried = self[name].fit
+        on_all = settled(tried.mechanism, self.consecutive)
+        change = np.diff(on_all.whitened, 3, axis=0)
+        if not len(change):
+            return 0.0
+        return float(np.median(np.sum(change**2, axis=1))) / (_THIRD_DIFFERENCES * (6 - tried.own_count))
+
+    def try_all(self) -> None:
+        """Fit every type."""
+        for name in _ORDER:
+            self[name]
+
+    def hardly_turns(self) -> bool:
+        """Whether an angle of two axes covers too little, for how well a frame tells it, to tell its axis."""
+        fit = self["two_axes"].fit
+        reach = np.array([middle_range(fit.mechanism.frames[:, k]) for k in range(2)])
+        return bool((reach < LEAST_RANGE_IN_SD * angle_sd(fit)).any())
 
     def sure_axes(self) -> bool:
         """Whether both directions of two axes are known to 15 deg."""
         return bool(self["two_axes"].shared_sd[[0, 1, 8, 9]].max() <= _LARGEST_AXIS_SD)
 
 
-def choose_type(poses: Poses, *, noise_known: bool, robust: bool = False, forced: Fitted | None = None) -> Choice:
+def choose_type(
+    poses: Poses,
+    *,
+    noise_known: bool,
+    robust: bool = False,
+    forced: Fitted | None = None,
+    one: Fitted | None = None,
+) -> Choice:
     """Tell which type of joint moved so.
 
     Parameters
@@ -152,8 +204,10 @@ def choose_type(poses: Poses, *, noise_known: bool, robust: bool = False, forced
         Weigh outliers down.
     forced : {"rigid", "hinge", "screw_hinge", "two_axes", "ball"}, optional
         Take this one; nothing is chosen.
+    one : {"hinge", "screw_hinge"}, optional
+        Which of both a single axis is, where that is known already.
     """
-    contest = _Contest(poses, noise_known=noise_known, robust=robust)
+    contest = _Contest(poses, noise_known=noise_known, robust=robust, one=one)
     if forced is not None:
         contest[forced]
         return _chosen(contest, forced, "forced", f"{NAMES[forced]}, as stated")
@@ -168,57 +222,82 @@ def _explained(contest: _Contest) -> Choice | None:
         # What leaves more of the frames it was fitted to leaves no less of others.
         if not tried.valid or tried.fit.variance > _EXPLAINED or contest.heldout(name) > _EXPLAINED:
             continue
+        if name == "screw_hinge" and contest.one == "hinge":
+            continue
         if name in simpler:
             less = contest.one if name == "two_axes" else simpler[name]
             if contest.heldout(less) < _TIMES_BETTER * contest.heldout(name):
                 continue
+            if name == "two_axes" and _doubtful(contest):
+                return None
         found = contest.one if name == "hinge" else name
-        approximate = name == "two_axes" and not contest.sure_axes()
-        reason = f"{NAMES[found]}: the stated noise explains what it leaves"
-        return _chosen(contest, found, "approximate" if approximate else "determined", reason)
+        return _chosen(contest, found, "determined", f"{NAMES[found]}: the stated noise explains what it leaves")
     return None
+
+
+def _doubtful(contest: _Contest) -> bool:
+    """Whether one axis that wanders, or with a second rotation too small to tell, could have moved so."""
+    single, two = contest.heldout(contest.one), contest.heldout("two_axes")
+    retraced = _over(single - contest.heldout_wandering(contest.one), single - two)
+    little = contest[contest.one].leaves_little or contest.hardly_turns()
+    return little or not contest.sure_axes() or retraced > _MUCH_RETRACED
 
 
 def _best(contest: _Contest) -> Choice:
     """Take the simplest type that no richer one beats by enough."""
+    if _over(contest.heldout("rigid"), contest.floor("rigid")) < contest["rigid"].need:
+        return _unless_too_far(contest, "rigid", 0.0)
     one = contest.one
+    if _over(contest.heldout(one), contest.floor(one)) < _NEED_LARGE:
+        return _unless_too_far(contest, one, 0.0)
     rigid, single, two, ball = contest["rigid"], contest[one], contest["two_axes"], contest["ball"]
     names: tuple[Fitted, ...] = ("rigid", one, "two_axes", "ball")
     left_rigid, left_single, left_two, left_ball = (contest.heldout(name) for name in names)
-    center = left_ball if ball.valid else np.inf
     gain = _over(left_rigid, min(left_single, left_two, left_ball))
     if gain < rigid.need:
-        return _unless_too_far(contest, "rigid", gain, sure=True)
-    gain = _over(left_single, min(left_two, center))
-    if gain < single.need:
-        return _unless_too_far(contest, one, gain, sure=True)
+        return _unless_too_far(contest, "rigid", gain)
+    least = min(left_two, left_ball if ball.valid else np.inf)
+    gain = _over(left_single, least)
+    if gain < single.need or single.leaves_little:
+        return _unless_too_far(contest, one, gain)
+    retraced = _over(left_single - contest.heldout_wandering(one), left_single - least)
+    if retraced > _ALL_RETRACED and single.range_left < _LARGEST_WANDER:
+        return _unless_too_far(contest, one, gain, doubt=_WANDERS)
     gain = _over(left_two, left_ball)
     if ball.valid and gain >= two.need:
-        return _unless_too_far(contest, "ball", 0.0, sure=True)
-    if two.valid:
-        return _unless_too_far(contest, "two_axes", gain, sure=contest.sure_axes())
-    return _none_fits(contest, "more than one axis moves, but too little or too noisily to tell the second")
+        return _unless_too_far(contest, "ball", 0.0)
+    if not two.valid:
+        return _none_fits(contest, "more than one axis moves, but too little or too noisily to tell the second")
+    if contest.hardly_turns():
+        return _unless_too_far(contest, one, 0.0, doubt=_LITTLE)
+    doubt = None
+    if not contest.sure_axes():
+        doubt = f"a direction is not known to {np.degrees(_LARGEST_AXIS_SD):.0f} deg"
+    elif retraced > _MUCH_RETRACED:
+        doubt = "their angles go together, as those of one axis that wanders would"
+    elif _over(left_single, left_two) < _NEED_SMALL:
+        doubt = "one axis does not leave much more"
+    return _unless_too_far(contest, "two_axes", gain, doubt=doubt)
 
 
-def _unless_too_far(contest: _Contest, name: Fitted, gain: float, *, sure: bool) -> Choice:
+def _unless_too_far(contest: _Contest, name: Fitted, gain: float, *, doubt: str | None = None) -> Choice:
+    """Take a type, approximate where something speaks against it, unless it leaves more than a joint may."""
     tried = contest[name]
     if tried.too_far:
+        contest.try_all()
         return _none_fits(
             contest, f"{NAMES[name]} would be preferred, but leaves {1000.0 * tried.fit.residual_translation:.0f} mm"
         )
-    left = f"leaves {np.degrees(tried.fit.residual_rotation):.2g} deg and " + (
+    left = f"{NAMES[name]} leaves {np.degrees(tried.fit.residual_rotation):.2g} deg and " + (
         f"{1000.0 * tried.fit.residual_translation:.2g} mm RMS"
     )
-    if gain >= _NEED_LARGE:
-        reason = (
-            f"{NAMES[name]} {left}; a richer type leaves {gain:.1f} times less variance, which is within what skin "
-            "and imperfect joints do"
+    if doubt is None and gain >= _NEED_LARGE:
+        doubt = (
+            f"a richer type leaves {gain:.1f} times less variance, which is within what skin and imperfect joints do"
         )
-        return _chosen(contest, name, "approximate", reason)
-    if not sure:
-        reason = f"{NAMES[name]} {left}; a direction is not known to {np.degrees(_LARGEST_AXIS_SD):.0f} deg"
-        return _chosen(contest, name, "approximate", reason)
-    return _chosen(contest, name, "determined", f"{NAMES[name]} {left}; no richer type explains much more")
+    if doubt is not None:
+        return _chosen(contest, name, "approximate", f"{left}; {doubt}")
+    return _chosen(contest, name, "determined", f"{left}; no richer type explains much more")
 
 
 def _none_fits(contest: _Contest, reason: str) -> Choice:
@@ -236,6 +315,9 @@ def _chosen(
     status: Literal["determined", "approximate", "forced"] | None,
     reason: str,
 ) -> Choice:
+    for known in _ORDER:
+        if known == name:
+            contest[known]  # a type that another one stood for is fitted too
     candidates = tuple(
         TypeCandidate(
             type=tried_name,
@@ -267,4 +349,25 @@ def _is_valid(name: Fitted, fit: Fit[Mechanism], deviation: Float) -> bool:
 
 
 def _over(simpler: float, richer: float) -> float:
-    return simpler / max(richer, float(np.finfo(np.float64).tiny))
+    return simpler / max(richer, _TINY)
+
+
+def _heldout_variance(design: Float, whitened: Float, frames: float) -> float:
+    """Mean square for each degree of freedom of residuals (F, k) that a linear model (F, k, P) was not fitted to.
+
+    Five folds of four interleaved blocks, so that neither neighbors nor one end of the motion decide. The numbers
+    without a fold are one linear step from those with it.
+    """
+    count, freedom = whitened.shape
+    fold = (np.arange(count) * _FOLDS * _BLOCKS // count) % _FOLDS
+    parts = [design[fold == k].reshape(-1, design.shape[2]) for k in range(_FOLDS)]
+    squares = [part.T @ part for part in parts]
+    pulls = [part.T @ whitened[fold == k].reshape(-1) for k, part in enumerate(parts)]
+    information, pull = np.sum(squares, axis=0), np.sum(pulls, axis=0)
+    scale = np.sqrt(np.maximum(np.diag(information), _TINY))
+    total = 0.0
+    for k in range(_FOLDS):
+        rest = (information - squares[k]) / np.outer(scale, scale)
+        step = np.linalg.lstsq(rest, (pull - pulls[k]) / scale, rcond=_RANK)[0] / scale
+        total += float(np.sum((whitened[fold == k].reshape(-1) - parts[k] @ step) ** 2))
+    return total / max(float(frames * freedom), _TINY)

@@ -86,7 +86,7 @@ def estimate_joint_axis(
     single = bool(stated is not None or unexplained <= LARGEST_UNEXPLAINED)
     told = noise.known is not None
     clusters = tuple(ClusterMotion(segment=one.segment, shape=one.shape, rms=one.rms[rows]) for one in markers)
-    influences = {screw: influence_of_fit(fit, poses, covariance) for screw, fit in fits.items()} if single else {}
+    influences = {screw: influence_of_fit(fit, poses, covariance) for screw, fit in fits.items()}
     reference = {screw: _reference_angle(fit, rows, joint) for screw, fit in fits.items()}
     fitted: dict[bool, FittedJoint] = {}
     for screw, influence in influences.items():

@@ -10,14 +10,14 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from typing import Final, Generic, NamedTuple, Self, TypeVar
 
 import numpy as np
 
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry._blocks import evenly_thinned
-from elbowscrew.geometry.arrays import Float, Index
+from elbowscrew.geometry.arrays import Bool, Float, Index
 from elbowscrew.geometry.twist import adjoint
 
 M = TypeVar("M", bound="Mechanism")
@@ -114,6 +114,27 @@ class Mechanism(ABC):
     def placed(self, joint: Float) -> Self:
         """With the same shared numbers on other poses (F, 8): the frames' own numbers in closed form."""
 
+    def stacked(self, several: list[Self]) -> Self:
+        """Several of one type as one, with an axis more in front of all arrays and one for the frames."""
+        arrays = {name: np.stack([getattr(one, name) for one in several]) for name in self._arrays()}
+        return replace(self, **{name: a if name == "frames" else a[:, None] for name, a in arrays.items()})
+
+    def parted(self, count: int) -> list[Self]:
+        """Undo `stacked`."""
+        return [
+            replace(self, **{n: a[k] if n == "frames" else a[k, 0] for n, a in self._arrays().items()})
+            for k in range(count)
+        ]
+
+    def where_better(self, other: Self, better: Bool) -> Self:
+        """Of two stacks, take the other's where it is better."""
+        theirs = other._arrays()
+        return replace(self, **{name: _where(better, theirs[name], mine) for name, mine in self._arrays().items()})
+
+    def _arrays(self) -> dict[str, Float]:
+        values = {field.name: getattr(self, field.name) for field in fields(self)}
+        return {name: value for name, value in values.items() if isinstance(value, np.ndarray)}
+
     def on(self, rows: Index) -> Self:
         """Give the same joint on some of its frames."""
         return replace(self, frames=self.frames[rows])
@@ -194,29 +215,69 @@ class _Reduced(NamedTuple):
 
 def _reduced(mechanism: Mechanism, poses: Poses, weight: Float) -> _Reduced:
     linear = mechanism.linear(poses.joint)
-    k = linear.own.shape[2]
+    k = linear.own.shape[-1]
     whitener = poses.whitener @ adjoint(mechanism.residual_frame)
-    whole = whitener @ np.concatenate([linear.own, linear.residual[..., None], linear.shared], axis=2)
+    whole = whitener @ np.concatenate([linear.own, linear.residual[..., None], linear.shared], axis=-1)
     own, rest = whole[..., :k], whole[..., k:]
     across = np.swapaxes(own, -1, -2)
     square = across @ own
     # Where two numbers of a frame do one and the same, as the angles of parallel axes in one line: no step, not NaN.
-    square = square + (1e-10 / max(k, 1)) * np.trace(square, axis1=1, axis2=2)[:, None, None] * np.eye(k)
+    square = square + (1e-10 / max(k, 1)) * np.trace(square, axis1=-2, axis2=-1)[..., None, None] * np.eye(k)
     covariance = np.linalg.inv(square)
     mixed = covariance @ (across @ rest)
     rest = rest - own @ mixed
     residual, shared = rest[..., 0], rest[..., 1:]
-    weighed = (shared * weight[:, None, None]).reshape(-1, shared.shape[2])
+    flat = (*shared.shape[:-3], -1, shared.shape[-1])
+    weighed = np.swapaxes((shared * weight[:, None, None]).reshape(flat), -1, -2)
     return _Reduced(
-        information=weighed.T @ shared.reshape(-1, shared.shape[2]),
-        gradient=weighed.T @ residual.reshape(-1),
-        square=np.einsum("fi,fi->f", residual, residual),
+        information=weighed @ shared.reshape(flat),
+        gradient=(weighed @ residual.reshape(*flat[:-1], 1))[..., 0],
+        square=np.einsum("...fi,...fi->...f", residual, residual),
         whitened=residual,
-        residual=linear.residual - np.einsum("fik,fk->fi", linear.own, mixed[..., 0]),
+        residual=linear.residual - (linear.own @ mixed[..., :1])[..., 0],
         own_step=mixed[..., 0],
         own_by_shared=mixed[..., 1:],
         own_covariance=covariance,
     )
+
+
+def race(mechanisms: list[M], poses: Poses, *, rounds: int) -> list[Fit[M]]:
+    """Let several starts of one type run side by side for some rounds of Levenberg and Marquardt.
+
+    Parameters
+    ----------
+    mechanisms : list of Mechanism
+        Starts, their frames those of the poses; `Mechanism.stacked` makes one of them.
+    poses : Poses
+    rounds : int
+        Steps that each tries; one that does not lower the cost is taken back and tried shorter in the next.
+    """
+    weight = np.ones(len(poses.joint))
+    field = mechanisms[0].stacked(mechanisms)
+    at = _reduced(field, poses, weight)
+    cost = at.square.sum(axis=-1)
+    damping = np.full(len(mechanisms), 1e-6)
+    for _ in range(rounds):
+        scale = np.sqrt(np.maximum(np.diagonal(at.information, axis1=-2, axis2=-1), _TINY))
+        damped = at.information / (scale[:, :, None] * scale[:, None, :])
+        damped = damped + damping[:, None, None] * np.eye(scale.shape[1])
+        step = np.linalg.solve(damped, (at.gradient / scale)[..., None])[..., 0] / scale
+        own = at.own_step - (at.own_by_shared @ step[:, None, :, None])[..., 0]
+        after = field.moved(step, np.clip(own, -_LARGEST_FRAME_STEP, _LARGEST_FRAME_STEP))
+        new = _reduced(after, poses, weight)
+        new_cost = new.square.sum(axis=-1)
+        better = new_cost <= cost * (1.0 + 1e-12)
+        field = field.where_better(after, better)
+        at = _Reduced(*(_where(better, mine, theirs) for mine, theirs in zip(new, at, strict=True)))
+        cost = np.where(better, new_cost, cost)
+        damping = np.where(better, np.maximum(0.1 * damping, 1e-10), 100.0 * np.maximum(damping, 1e-6))
+    return [
+        _fitted(one, _Reduced(*(part[k] for part in at)), weight) for k, one in enumerate(field.parted(len(mechanisms)))
+    ]
+
+
+def _where(better: Bool, mine: Float, theirs: Float) -> Float:
+    return np.where(better.reshape(-1, *([1] * (mine.ndim - 1))), mine, theirs)
 
 
 def fit_mechanism(

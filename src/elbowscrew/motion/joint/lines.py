@@ -43,9 +43,9 @@ def angle_about_z(dual_quat: Float) -> Float:
 
 
 def line_twist(step: Float) -> Float:
-    """Half a twist (6,) that tilts and shifts the z axis by a step (4,), for `exp`."""
-    twist = np.zeros(6)
-    twist[list(LINE_STEPS)] = 0.5 * step
+    """Half a twist (..., 6) that tilts and shifts the z axis by a step (..., 4), for `exp`."""
+    twist = np.zeros((*step.shape[:-1], 6))
+    twist[..., list(LINE_STEPS)] = 0.5 * step
     return twist
 
 

@@ -32,9 +32,8 @@ from elbowscrew.settings import Settings
 _LARGE_NOISE_RATIO: Final = 2.0
 _FEWEST_MARKERS: Final = 3
 _LEAST_SHIFT: Final = 1e-6
-# One axis leaves much where it is more than this of the rotation, and 10 deg from end to end (3.3 standard deviations).
-_MUCH_SHARE: Final = 0.2
-_MUCH_ROTATION: Final = float(np.radians(3.0))
+_ONE_AXIS: Final = ("hinge", "screw_hinge")
+_OTHERS: Final = ("two_axes", "ball", "free")
 _FOUND: Final = {
     "two_axes": "the joint has two axes (joint.json)",
     "ball": "the joint has a center (joint.json)",
@@ -60,30 +59,24 @@ def measured_joint_axis(measured: Measurement, mean: MeanAxis, settings: Setting
 
 
 def measured_joint_type(measured: Measurement, joint_axis: JointAxis, settings: Settings) -> JointType | None:
-    """Tell which joint it is; richer types are tried where one axis leaves much. None where positions tell nothing."""
-    best, stated = joint_axis.best, settings.stated_joint
+    """Tell which joint it is, chosen or as stated; None where positions tell nothing."""
+    stated = settings.stated_joint
     if stated == "free":
         return _without_numbers(stated, "free, as stated")
-    plain = stated is None and best is not None
-    if best is not None and joint_axis.unexplained > _MUCH_SHARE and best.residual_rotation > _MUCH_ROTATION:
-        plain = False
     _, poses, covariance = fitted_frames(measured.joint, measured.noise, measured.noise_gain)
     if not np.ptp(pose_from_dual_quat(poses)[1], axis=0).max() > _LEAST_SHIFT:
         return None
-    found = identify_joint(
+    return identify_joint(
         poses,
         covariance,
         measured.joint.reference,
         noise_known=measured.noise.known is not None,
         robust=settings.robust,
-        forced=joint_axis.preferred if plain else stated,
+        forced=stated,
+        one=joint_axis.preferred,
         left=side_of(measured.distal.name) == "left",
         everywhere=_everywhere(measured, settings),
     )
-    if plain:
-        reason = f"one axis leaves {100.0 * joint_axis.unexplained:.2g} % of the rotation; richer types were not tried"
-        found = replace(found, status="approximate", reason=reason, candidates=())
-    return found
 
 
 def _without_numbers(name: StatedJoint, reason: str) -> JointType:
@@ -138,11 +131,12 @@ def measured_joint_angles(
 
 
 def axis_of_type(joint_axis: JointAxis, joint_type: JointType | None) -> JointAxis:
-    """Leave out the fit of one axis where the joint was found, or is stated, to have more than one or none."""
-    if joint_type is None or joint_type.type in ("hinge", "screw_hinge", "undetermined"):
-        return joint_axis
-    if joint_type.type == "rigid" and joint_type.status != "forced":
-        return joint_axis
+    """Leave out the fit of one axis where the joint was not found, or is not stated, to have one."""
+    kind = None if joint_type is None else joint_type.type
+    stated = joint_type is not None and joint_type.status == "forced"
+    single = kind in _ONE_AXIS or (joint_axis.single and kind not in _OTHERS and not (stated and kind == "rigid"))
+    if single:
+        return replace(joint_axis, single=True)
     return replace(joint_axis, single=False, hinge=None, screw_hinge=None, wander=None, mean_axis=None, path=None)
 
 

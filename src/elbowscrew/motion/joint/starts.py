@@ -14,10 +14,10 @@ import numpy as np
 
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry._small_angle import length
-from elbowscrew.geometry.arrays import Float
+from elbowscrew.geometry.arrays import Float, Index
 from elbowscrew.geometry.quaternion import rotation_matrix_from_quat
 from elbowscrew.geometry.twist import adjoint
-from elbowscrew.motion.joint.likelihood import Fit, Poses, fit_mechanism
+from elbowscrew.motion.joint.likelihood import Fit, Poses, fit_mechanism, race
 from elbowscrew.motion.joint.lines import Z_LINE, about_z, angle_about_z, least_solution, line_pose, mean_rotation_pair
 from elbowscrew.motion.joint.simple_types import OneAxis
 from elbowscrew.motion.joint.two_axes import TwoAxesMechanism, is_phantom
@@ -31,6 +31,7 @@ _RADIAN: Final = 0.08  # m that weigh as a radian in a hinge's residual
 _SCANNED: Final = (0.005, 0.015, 0.04, 0.1)  # m between axes whose distance no start tells
 _MOST_SCANNED: Final = 3
 _RACE_FRAMES: Final = 80
+_ROUNDS: Final = 6
 _FRAMES: Final = 150
 _NEARLY_PARALLEL: Final = 0.35
 
@@ -65,22 +66,22 @@ def find_two_axes(poses: Poses) -> Fit[TwoAxesMechanism]:
         *_parallel_starts(few.joint),
         *_residual_starts(hinge, None),
     ]
-    runners = sorted((_run(start.on(racing), fewer, 4, 1e-3) for start in starts), key=lambda runner: runner.cost)
-    best: list[_Runner] = []
+    runners = sorted(_race(starts, racing, fewer), key=lambda runner: runner.cost)
+    going: list[_Runner] = []
     for runner in runners[:4]:
         if runner.cost > 300.0 * runners[0].cost:
             break
-        if best and not best[0].phantom and runner.cost > 20.0 * runners[0].cost:
+        if going and not going[0].phantom and runner.cost > 20.0 * runners[0].cost:
             break
-        if best and not runner.phantom and abs(runner.cost / runners[0].cost - 1.0) < 0.02:
+        if going and not runner.phantom and abs(runner.cost / runners[0].cost - 1.0) < 0.02:
             continue  # the same joint from another start
-        best.append(_run(runner.fit.mechanism.placed(few.joint), few, 6, 1e-3))
+        going.append(runner)
+    best = _on(going, few)
     least = min(best, key=lambda runner: runner.cost)
     if least.phantom or _sine(least.fit) < _NEARLY_PARALLEL:
-        scanned = [_run(start.on(racing), fewer, 5, 1e-2) for start in _residual_starts(hinge, _SCANNED)]
+        scanned = _race(_residual_starts(hinge, _SCANNED), racing, fewer)
         near = [runner for runner in scanned if not runner.phantom and runner.cost < 3.0 * least.cost]
-        for runner in sorted(near, key=lambda runner: runner.cost)[:_MOST_SCANNED]:
-            best.append(_run(runner.fit.mechanism.placed(few.joint), few, 8, 1e-3))
+        best += _on(sorted(near, key=lambda runner: runner.cost)[:_MOST_SCANNED], few)
     return _winner(best, few)
 
 
@@ -100,6 +101,19 @@ def _winner(best: list[_Runner], few: Poses) -> Fit[TwoAxesMechanism]:
 def _run(start: TwoAxesMechanism, poses: Poses, iterations: int, tolerance: float) -> _Runner:
     fit = fit_mechanism(start, poses, iterations=iterations, tolerance=tolerance)
     return _Runner(fit, is_phantom(fit))
+
+
+def _race(starts: list[TwoAxesMechanism], racing: Index, poses: Poses) -> list[_Runner]:
+    fits = race([start.on(racing) for start in starts], poses, rounds=_ROUNDS)
+    return [_Runner(fit, is_phantom(fit)) for fit in fits]
+
+
+def _on(runners: list[_Runner], poses: Poses) -> list[_Runner]:
+    """Let them run on, on more poses."""
+    if not runners:
+        return []
+    fits = race([runner.fit.mechanism.placed(poses.joint) for runner in runners], poses, rounds=_ROUNDS)
+    return [_Runner(fit, is_phantom(fit)) for fit in fits]
 
 
 def _sine(fit: Fit[TwoAxesMechanism]) -> float:

@@ -43,32 +43,34 @@ class TwoAxesMechanism(Mechanism):
     @property
     def directions(self) -> Float:
         """Twists (6, 4) that M moves by: across those of both angles."""
-        angles = np.stack([Z_LINE, dq.transform_lines(dq.conjugate(self.between), Z_LINE)], axis=1)
+        second = dq.transform_lines(dq.conjugate(self.between), Z_LINE)
+        angles = np.stack([np.broadcast_to(Z_LINE, second.shape), second], axis=-1)
         left = np.linalg.svd(angles / _SCALE[:, None])[0]
-        found: Float = left[:, 2:] * _SCALE[:, None]
+        found: Float = left[..., 2:] * _SCALE[:, None]
         return found
 
     def linear(self, joint: Float) -> Linear:
         """12 shared numbers (tilts and shifts of both lines, 4 of M between them), 2 of a frame's own."""
-        second = about_z(self.frames[:, 1])
+        second = about_z(self.frames[..., 1])
         after = dq.multiply(self.between, second)
-        whole = dq.multiply(about_z(self.frames[:, 0]), after)
+        whole = dq.multiply(about_z(self.frames[..., 0]), after)
         residual = residual_twist(dq.multiply(self.proximal, whole), dq.multiply(joint, self.distal))
         first_line = dq.transform_lines(dq.conjugate(after), Z_LINE)
-        own = np.stack([first_line, np.broadcast_to(Z_LINE, first_line.shape)], axis=2)
-        proximal = adjoint(dq.conjugate(whole))[:, :, list(LINE_STEPS)]
+        own = np.stack([first_line, np.broadcast_to(Z_LINE, first_line.shape)], axis=-1)
+        proximal = adjoint(dq.conjugate(whole))[..., list(LINE_STEPS)]
         between = adjoint(dq.conjugate(second)) @ self.directions
         distal = np.broadcast_to(-np.eye(6)[:, list(LINE_STEPS)], proximal.shape)
-        return Linear(residual, own, np.concatenate([proximal, between, distal], axis=2))
+        return Linear(residual, own, np.concatenate([proximal, between, distal], axis=-1))
 
     def moved(self, shared: Float, own: Float) -> Self:
         """Move both lines, M and the angles."""
-        between = dq.exp(0.5 * (self.directions @ shared[4:8]))
+        steps = shared.reshape(*self.proximal.shape[:-1], 12)  # of several joints side by side, one each
+        between = dq.exp(0.5 * (self.directions @ steps[..., 4:8, None])[..., 0])
         return replace(
             self,
-            proximal=dq.normalize(dq.multiply(self.proximal, dq.exp(line_twist(shared[:4])))),
+            proximal=dq.normalize(dq.multiply(self.proximal, dq.exp(line_twist(steps[..., :4])))),
             between=dq.normalize(dq.multiply(self.between, between)),
-            distal=dq.normalize(dq.multiply(self.distal, dq.exp(line_twist(shared[8:])))),
+            distal=dq.normalize(dq.multiply(self.distal, dq.exp(line_twist(steps[..., 8:])))),
             frames=self.frames + own,
         )
 

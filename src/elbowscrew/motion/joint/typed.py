@@ -12,7 +12,7 @@ from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.sensitivity import NORMAL_95, confidence_radius
 from elbowscrew.model.joint_coordinates import JointCoordinates
 from elbowscrew.model.joint_type import BallJoint, JointLine, JointType, Measure, SecondRotation, TwoAxes
-from elbowscrew.motion.joint.choice import Choice, choose_type, middle_range
+from elbowscrew.motion.joint.choice import LEAST_RANGE_IN_SD, RMS_TO_RANGE, Choice, choose_type, middle_range
 from elbowscrew.motion.joint.coordinates import coordinates_of
 from elbowscrew.motion.joint.every_frame import Everywhere, FrameNumbers, numbers_everywhere, reference_numbers
 from elbowscrew.motion.joint.fitting import Fitted, shared_covariance
@@ -24,7 +24,7 @@ from elbowscrew.motion.joint.two_axes import TwoAxesMechanism, angle_sd, axes_ge
 _MOST_FRAMES: Final = 5000
 _PARALLEL: Final = np.radians(5.0)
 _SURE: Final = 3.0
-_LEAST_RANGE_IN_SD: Final = 12.0
+_SHARES_THE_HINGE: Final = 1.5
 _LARGEST_AXIS_SD: Final = np.radians(15.0)
 # Radius of the ball that holds 95 % of an isotropic error in space: root of the quantile of chi-square with 3.
 _BALL_95: Final = 2.795483
@@ -38,6 +38,7 @@ def identify_joint(
     noise_known: bool,
     robust: bool = False,
     forced: Fitted | None = None,
+    one: Fitted | None = None,
     left: bool = False,
     everywhere: Everywhere | None = None,
 ) -> JointType:
@@ -57,6 +58,8 @@ def identify_joint(
         Weigh outliers down.
     forced : str, optional
         Take this type.
+    one : {"hinge", "screw_hinge"}, optional
+        Which of both a single axis is, where that is known already.
     left : bool
         Of a left side the second axis points away from the joint, so that pronation is positive.
     everywhere : Everywhere, optional
@@ -69,7 +72,7 @@ def identify_joint(
         time and memory grow with the frames as the result does.
     """
     poses = Poses.of(joint, covariance)
-    choice = choose_type(poses, noise_known=noise_known, robust=robust, forced=forced)
+    choice = choose_type(poses, noise_known=noise_known, robust=robust, forced=forced, one=one)
     if choice.type in ("free", "undetermined"):
         return _result(choice, None)
     found = choice.fits[choice.type]
@@ -214,7 +217,7 @@ def _lines(
                 axis_sd=tilt_sd,
                 range=reach,
                 angle_sd=float(deviation[k]),
-                determined=bool(reach >= _LEAST_RANGE_IN_SD * deviation[k] and tilt_sd <= _LARGEST_AXIS_SD),
+                determined=bool(reach >= LEAST_RANGE_IN_SD * deviation[k] and tilt_sd <= _LARGEST_AXIS_SD),
             )
         )
     return lines[0], lines[1]
@@ -229,11 +232,13 @@ def _second_rotation(choice: Choice, reference: Float, *, noise_known: bool) -> 
         return None
     lines = _lines(two.mechanism, two, reference, shared_covariance(two, noise_known=noise_known))
     smaller = min(lines, key=lambda line: line.range)
+    left = RMS_TO_RANGE * next(c for c in choice.candidates if c.type == choice.type).residual_rotation
     valid = any(candidate.valid for candidate in choice.candidates if candidate.type == "two_axes")
-    if valid and all(line.determined for line in lines):
+    # Two axes that share the hinge's own rotation among them are not the hinge's and another.
+    beside = smaller.range < _SHARES_THE_HINGE * left
+    if valid and beside and all(line.determined for line in lines):
         return SecondRotation(range=smaller.range, axis=smaller)
-    left = next(c for c in choice.candidates if c.type == choice.type).residual_rotation
-    return SecondRotation(range=3.3 * left, axis=None)
+    return SecondRotation(range=left, axis=None)
 
 
 def _ball(fit: Fit[Mechanism], at: Ball, *, noise_known: bool) -> BallJoint:
