@@ -1,19 +1,20 @@
 """How well cycles, movements and their times are found, on seeded rotations with known truth.
 
-Run ``python benchmarks/cycles.py [seeds]``: a battery of nasty signals (number of cycles), identical cycles (largest
-standard deviation of the time-normalized curve beside the one at the true cuts, constancy of the counts), and the
-coverage of the stated uncertainty of the cuts on minimum-jerk movements.
+Run ``python benchmarks/cycles.py [--seeds 10] [--first 0]``: a battery of nasty signals (number of cycles), identical
+cycles (largest standard deviation of the time-normalized curve beside the one at the true cuts, constancy of the
+counts), and the coverage of the stated uncertainty of the cuts, for movements of several laws. ``--first`` takes other
+seeds.
 """
 
 from __future__ import annotations
 
-import sys
+import argparse
 from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
-from elbowscrew.geometry.arrays import Float
+from elbowscrew.geometry.arrays import Bool, Float
 from elbowscrew.motion.movements.boundaries import Cuts
 from elbowscrew.motion.movements.cuts import cut
 
@@ -35,8 +36,48 @@ class Trial(NamedTuple):
         return cut(np.radians(self.angle), self.time_s, self.rate_hz)
 
 
+Law = Callable[[Float], Float]
+
+
+def minimum_jerk(x: Float) -> Float:
+    return 10.0 * x**3 - 15.0 * x**4 + 6.0 * x**5
+
+
+def cycloidal(x: Float) -> Float:
+    return x - np.sin(2.0 * np.pi * x) / (2.0 * np.pi)
+
+
+def harmonic(x: Float) -> Float:
+    return 0.5 - 0.5 * np.cos(np.pi * x)
+
+
+def constant(x: Float) -> Float:
+    return x
+
+
+def ramps(share: float) -> Law:
+    """Speed that rises and falls evenly over such shares of the time, and is constant between."""
+
+    def law(x: Float) -> Float:
+        near = np.minimum(x, 1.0 - x)
+        low = np.where(near < share, 0.5 * near**2 / share, near - 0.5 * share) / (1.0 - share)
+        return np.where(x <= 0.5, low, 1.0 - low)
+
+    return law
+
+
+LAWS: dict[str, Law] = {
+    "minimum jerk": minimum_jerk,
+    "cycloidal": cycloidal,
+    "harmonic": harmonic,
+    "speed ramps of 20 %": ramps(0.2),
+    "speed ramps of 10 %": ramps(0.1),
+    "constant speed": constant,
+}
+
+
 class Motion:
-    """A rotation put together of minimum-jerk strokes and holds."""
+    """A rotation put together of strokes by one law and holds."""
 
     def __init__(self, start: float = 0.0) -> None:
         self._strokes: list[tuple[float, float, float, float]] = []
@@ -62,16 +103,16 @@ class Motion:
         self.cycles.append((start, turn, self.now))
         return self
 
-    def sampled(self, rate_hz: float) -> Float:
+    def sampled(self, rate_hz: float, law: Law = minimum_jerk) -> Float:
         time = np.arange(int(self.now * rate_hz) + 1) / rate_hz
         angle = np.full(time.size, self._start)
         for begin, duration, low, high in self._strokes:
             x = np.clip((time - begin) / duration, 0.0, 1.0)
-            angle += (high - low) * (10.0 * x**3 - 15.0 * x**4 + 6.0 * x**5)
+            angle += (high - low) * law(x)
         return angle
 
-    def trial(self, rate_hz: float, noise: float, random: Random) -> Trial:
-        angle = self.sampled(rate_hz)
+    def trial(self, rate_hz: float, noise: float, random: Random, law: Law = minimum_jerk) -> Trial:
+        angle = self.sampled(rate_hz, law)
         return Trial(angle + random.normal(0.0, noise, angle.size), rate_hz, np.array(self.cycles).reshape(-1, 3))
 
 
@@ -222,11 +263,11 @@ KINDS: dict[str, Callable[[Random], tuple[Motion, int]]] = {
 }
 
 
-def battery(seeds: int) -> dict[str, list[tuple[int, int, bool]]]:
+def battery(seeds: int, first: int = 0) -> dict[str, list[tuple[int, int, bool]]]:
     """Cycles found, true ones, and whether a doubt is told, of every kind and seed."""
     results: dict[str, list[tuple[int, int, bool]]] = {kind: [] for kind in KINDS}
     for number, (kind, make) in enumerate(KINDS.items()):
-        for seed in range(seeds):
+        for seed in range(first, first + seeds):
             random = np.random.default_rng([14, number, seed])
             motion, count = make(random)
             rate_hz = float(random.choice([60.0, 100.0, 200.0]))
@@ -287,10 +328,18 @@ def likeness(set_up: str, noise: float, seed: int) -> Likeness:
     return Likeness(ratio, found.start_s.size, cuts.movements.onset_s.size, duration)
 
 
-def coverage(seeds: int) -> dict[str, Float]:
-    """Errors over the stated standard deviation of starts, inversions and ends, minimum-jerk cycles of all speeds."""
-    errors: dict[str, list[Float]] = {"start": [], "inversion": [], "end": []}
-    for seed in range(seeds):
+class Covered(NamedTuple):
+    """Errors (s) of starts, inversions and ends, shape (K, 3), with their stated sd and whether a doubt is told."""
+
+    error: Float
+    sd: Float
+    told: Bool
+
+
+def coverage(seeds: int, first: int = 0, law: Law = minimum_jerk, noises: tuple[float, ...] = NOISES) -> Covered:
+    """Cycles of all speeds by one law, some with rests between them, and what is stated of their cuts."""
+    parts: list[Covered] = []
+    for seed in range(first, first + seeds):
         random = np.random.default_rng([15, seed])
         top, duration = random.uniform(30.0, 130.0), random.uniform(0.5, 2.0)
         motion = Motion().hold(random.uniform(0.3, 1.0))
@@ -298,18 +347,21 @@ def coverage(seeds: int) -> dict[str, Float]:
         for _ in range(int(random.integers(1, 8))):
             spread = 1.0 + random.normal(0.0, 0.06, 2)
             motion.cycle(top * spread[0], duration * spread[1], random.choice([0.0, 0.3])).hold(rest)
-        trial = motion.hold(0.5).trial(100.0, random.choice([0.05, 0.2, 0.6]), random)
+        trial = motion.hold(0.5).trial(100.0, random.choice(noises), random, law)
         found = trial.found().cycles
-        if found.start_s.size != len(trial.truth):
-            continue
-        sd = (found.start_sd_s, found.inversion_sd_s, found.end_sd_s)
-        for k, name in enumerate(errors):
-            errors[name].append((found.times_s[:, k] - trial.truth[:, k]) / sd[k])
-    return {name: np.concatenate(values) for name, values in errors.items()}
+        if found.start_s.size == len(trial.truth):
+            sd = np.column_stack([found.start_sd_s, found.inversion_sd_s, found.end_sd_s])
+            parts.append(Covered(found.times_s - trial.truth, sd, found.uncertain))
+    return Covered(*(np.concatenate(values) for values in zip(*parts, strict=True)))
 
 
-def main(seeds: int = 10) -> None:
-    results = battery(seeds)
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--seeds", type=int, default=10, help="trials of each kind")
+    parser.add_argument("--first", type=int, default=0, help="first seed")
+    options = parser.parse_args()
+    seeds, first = options.seeds, options.first
+    results = battery(seeds, first)
     wrong = {kind: sum(found != true for found, true, _ in pairs) for kind, pairs in results.items()}
     silent = sum(found != true and not told for pairs in results.values() for found, true, told in pairs)
     told = sum(doubt for pairs in results.values() for *_, doubt in pairs)
@@ -319,7 +371,7 @@ def main(seeds: int = 10) -> None:
     ratios = []
     for set_up in SET_UPS:
         for noise in NOISES:
-            cases = [likeness(set_up, noise, seed) for seed in range(10)]
+            cases = [likeness(set_up, noise, seed) for seed in range(first, first + seeds)]
             ratio = np.array([case.ratio for case in cases])
             ratios.append(ratio)
             counts = {(case.cycles, case.movements) for case in cases}
@@ -327,10 +379,17 @@ def main(seeds: int = 10) -> None:
             print(f"{set_up:>12} {noise:5.2f} deg: sd {ratio.max():.2f}, {counts}, duration {duration:.3f}")
     every = np.concatenate(ratios)
     print(f"identical cycles: {np.mean(every <= 1.3):.1%} within 1.3, largest {every.max():.2f}")
-    for name, error in coverage(20 * seeds).items():
-        inside = np.mean(np.abs(error) <= 1.96)
-        print(f"coverage of {name}: {inside:.1%} of {error.size} within 1.96 sd, sd {np.std(error):.2f}")
+    print("| law | boundary | within 1.96 sd | error, median / 95 % s | stated sd, median s | doubts told |")
+    print("| --- | --- | ---: | ---: | ---: | ---: |")
+    for name, law in LAWS.items():
+        found = coverage(20 * seeds, first, law)
+        for k, kind in enumerate(("start", "inversion", "end")):
+            error, sd = np.abs(found.error[:, k]), found.sd[:, k]
+            print(
+                f"| {name} | {kind} | {np.mean(error <= 1.96 * sd):.1%} of {error.size} | {np.median(error):.3f} / "
+                f"{np.quantile(error, 0.95):.3f} | {np.median(sd):.3f} | {np.mean(found.told[:, k]):.0%} |"
+            )
 
 
 if __name__ == "__main__":
-    main(int(sys.argv[1]) if len(sys.argv) > 1 else 10)
+    main()

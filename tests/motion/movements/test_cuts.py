@@ -6,14 +6,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from elbowscrew.motion.movements import feet
+from elbowscrew.geometry.arrays import Float
+from elbowscrew.motion.movements import feet, foot_laws
 from elbowscrew.motion.movements.boundaries import Cuts
 from elbowscrew.motion.movements.cuts import cut
 from elbowscrew.motion.movements.swings import _by_local_rule, _prominences, lowpass_series, noise_of
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "benchmarks"))
 
-from cycles import NOISES, SET_UPS, Motion, Trial, battery, coverage, likeness
+from cycles import LAWS, NOISES, SET_UPS, Motion, Trial, battery, coverage, likeness
 
 RATE = 100.0
 
@@ -236,6 +237,60 @@ def test_equal_cycles_are_cut_equally(set_up: str) -> None:
     assert np.mean([case.duration for case in cases]) == pytest.approx(1.0, abs=0.01)
 
 
-def test_the_stated_uncertainty_covers() -> None:
-    for name, error in coverage(120).items():
-        assert 0.90 <= np.mean(np.abs(error) <= 1.96) <= 0.985, name
+def test_the_stated_uncertainty_covers_minimum_jerk() -> None:
+    found = coverage(120)
+    inside = np.abs(found.error) <= 1.96 * found.sd
+    assert ((inside.mean(axis=0) >= 0.90) & (inside.mean(axis=0) <= 0.985)).all(), inside.mean(axis=0)
+    assert found.told.mean() < 0.1
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_a_foot_by_another_law_is_right_or_in_doubt(law: str) -> None:
+    found = coverage(60, first=300, law=LAWS[law])
+    inside = np.abs(found.error) <= 1.96 * found.sd
+    assert inside.mean(axis=0).min() >= 0.75
+    assert (inside | found.told).mean(axis=0).min() >= 0.9
+    assert np.quantile(np.abs(found.error), 0.95) < 0.1
+
+
+def test_robots_begin_at_once() -> None:
+    motion = Motion().hold(1.0)
+    for _ in range(3):
+        motion.to(70.0, 1.0).hold(1.0).to(0.0, 1.5).hold(1.0)
+    moves = motion.trial(RATE, 0.1, still(), LAWS["constant speed"]).found().movements
+    assert moves.onset_s == pytest.approx([1.0, 3.0, 5.5, 7.5, 10.0, 12.0], abs=0.05)
+    assert moves.offset_s == pytest.approx([2.0, 4.5, 6.5, 9.0, 11.0, 13.5], abs=0.06)
+
+
+@pytest.mark.parametrize("decay_s", [0.2, 0.4, 0.6])
+def test_a_motion_that_ends_by_no_law_is_in_doubt(decay_s: float) -> None:
+    """It begins at its highest speed, and creeps to its end."""
+    time = np.arange(600) / RATE
+    angle = np.where(time > 1.0, 60.0 * (1.0 - np.exp(-(time - 1.0) / decay_s)), 0.0)
+    moves = cut(np.radians(angle + still().normal(0.0, 0.02, time.size)), time, RATE).movements
+    assert "law" in moves.onset_reasons[0]
+    assert "law" in moves.offset_reasons[0]
+    assert abs(moves.onset_s[0] - 1.0) < 1.96 * moves.onset_sd_s[0]
+    assert moves.offset_sd_s[0] > 0.25 * decay_s
+
+
+@pytest.mark.parametrize("share", [0.02, 0.037, 0.1])
+def test_laws_by_their_closed_forms(share: float) -> None:
+    special = pytest.importorskip("scipy.special")
+    ratios, scales = foot_laws._laws(share)
+    levels = np.array([share, 0.25])
+
+    def ratio_and_scale(at: Float) -> tuple[float, float]:
+        return float((0.5 - at[0]) / (0.5 - at[1])), float(0.5 / (0.5 - at[0]))
+
+    known = {
+        0: special.betaincinv(3.0, 3.0, levels),
+        2: np.arccos(1.0 - 2.0 * levels) / np.pi,
+        3: levels,  # constant speed
+        8: np.where(levels < 0.5 * 0.1 / 0.9, np.sqrt(2.0 * 0.1 * 0.9 * levels), 0.9 * levels + 0.05),  # ramps of 10 %
+    }
+    assert foot_laws._RAMPS[8 - 3] == pytest.approx(0.1)
+    for k, times in known.items():
+        assert (ratios[k], scales[k]) == pytest.approx(ratio_and_scale(times), abs=2e-4)
+    cycloid = 0.5 - 0.5 / scales[1]
+    assert cycloid - np.sin(2.0 * np.pi * cycloid) / (2.0 * np.pi) == pytest.approx(share, abs=1e-4)

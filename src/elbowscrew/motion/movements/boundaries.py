@@ -16,6 +16,7 @@ REASONS: Final[dict[str, str]] = {
     "small-swing": "a swing there is hardly larger than the smallest that counts",
     "small-beside-neighbors": "a reversal there is about as small, beside its neighbors, as a hesitation",
     "noise": "the noise hides the foot of the movement",
+    "law": "the motion does not begin and end there as gently as it is taken to, or the noise hides whether it does",
     "rest-in-doubt": "a stop there lasts about as long as the shortest rest",
     "fast": "the motion has faster parts than its rhythm, which the cuts do not follow",
     "gap": "it lies where there is no pose",
@@ -35,7 +36,7 @@ class Cycles:
     start_s, inversion_s, end_s : ndarray, shape (C,)
         Foot of the movement out, middle of the time at the top, foot of the movement back.
     start_sd_s, inversion_sd_s, end_sd_s : ndarray, shape (C,)
-        Their standard deviations: noise, and 2 % of the distance to the half-way crossing, as the law is assumed.
+        Their standard deviations, by the noise and by what is not known of the law of motion at the foot.
     incomplete : ndarray of bool, shape (C,)
         Whether the recording begins or ends on the way: the joint comes less than 90 % of the way there.
     start_reasons, inversion_reasons, end_reasons : tuple of tuple of str

@@ -46,8 +46,8 @@ def cut(
 
     Notes
     -----
-    Feet are those of minimum-jerk movements with the same times of 10 and 50 % of the rise. Of cycloidal movements,
-    whose ends are less gentle, durations come out 2 % short.
+    Feet are told from the times of 10 and 50 % of the rise, by the law of minimum jerk, unless the shape of the flanks
+    speaks for another law (`foot_laws`): cycloidal, harmonic, or speed that is constant but for ramps.
 
     Examples
     --------
@@ -90,17 +90,23 @@ def _movements(strokes: Strokes, rate_hz: float, gaps: Float, *, fast: bool) -> 
     begin, end = strokes.begin / rate_hz, strokes.end / rate_hz
     onset, offset = begin[first], end[last]
     doubt = np.concatenate([[False], strokes.in_doubt, [False]])[: strokes.begin.size + 1]
+    law = strokes.begin_in_doubt[first], strokes.end_in_doubt[last]
     # A movement may be two: a rest in doubt inside it makes no boundary uncertain, but one that is told does.
     reasons = [
         tuple(
             tuple(
                 code
-                for code, holds in (("rest-in-doubt", doubt[side]), ("fast", fast), ("gap", in_gap(at, gaps)))
+                for code, holds in (
+                    ("law", other),
+                    ("rest-in-doubt", doubt[side]),
+                    ("fast", fast),
+                    ("gap", in_gap(at, gaps)),
+                )
                 if holds
             )
-            for side, at in zip(sides.tolist(), times.tolist(), strict=True)
+            for side, at, other in zip(sides.tolist(), times.tolist(), laws.tolist(), strict=True)
         )
-        for sides, times in ((first, onset), (last + 1, offset))
+        for sides, times, laws in ((first, onset, law[0]), (last + 1, offset, law[1]))
     ]
     return Movements(
         onset_s=onset,

@@ -20,6 +20,7 @@ from elbowscrew.motion.movements.feet import (
     slope_at,
     unsmoothed,
 )
+from elbowscrew.motion.movements.foot_laws import Distances, Shapes, by_shape, shapes_of
 from elbowscrew.motion.movements.rests import IN_DOUBT_SD, SHORTEST_REST_S, Strokes
 from elbowscrew.motion.movements.swings import Swings
 
@@ -28,15 +29,33 @@ _COMPLETE_SHARE: Final = 0.9
 
 
 class Flanks(NamedTuple):
-    """What the cycles are told from: for each top its two flanks and the samples of its valleys."""
+    """What the cycles are told from: for each top its two flanks and the samples of its valleys.
+
+    Attributes
+    ----------
+    tops : ndarray of int64, shape (C,)
+        Indices of the tops among the reversals.
+    reversals, values : ndarray, shape (T,)
+        Samples of the reversals, and the rotation there, radians.
+    rising, falling : Feet
+        Of the flank before and after each top.
+    out, back : Distances
+        From their half-way crossings to their feet in the valleys.
+    out_var, back_var : ndarray, shape (C,)
+        Variances of those feet, by noise and by what is unknown of the law.
+    top_feet : ndarray, shape (C, 2)
+        Feet of the flanks at the top, where the joint stops on the way; else NaN.
+    """
 
     tops: Index
     reversals: Index
     values: Float
     rising: Feet
     falling: Feet
-    out: Float
-    back: Float
+    out: Distances
+    back: Distances
+    out_var: Float
+    back_var: Float
     top_feet: Float
 
     @property
@@ -61,8 +80,13 @@ def flanks_of(swings: Swings, strokes: Strokes) -> Flanks:
         feet_of(smooth, reversals[low], reversals[tops], values[low], values[tops], swings.smooth_noise, swings.cutoff)
         for low in (tops - 1, tops + 1)
     ]
-    rising, out, before = _with_first_strokes(feet[0], reversals[tops - 1], reversals[tops], strokes)
-    falling, back, after = _with_first_strokes(feet[1], reversals[tops + 1], reversals[tops], strokes)
+    (rising, falling), ends = feet, []
+    for flank, low in ((rising, tops - 1), (falling, tops + 1)):
+        shapes = shapes_of(
+            strokes.sharp, reversals[low], reversals[tops], values[low], values[tops], (flank.half, flank.low)
+        )
+        ends.append(_with_first_strokes(flank, shapes, reversals[low], reversals[tops], strokes))
+    (out, out_var, before), (back, back_var, after) = ends
     return Flanks(
         tops=tops,
         reversals=reversals,
@@ -71,30 +95,38 @@ def flanks_of(swings: Swings, strokes: Strokes) -> Flanks:
         falling=falling,
         out=out,
         back=back,
+        out_var=out_var,
+        back_var=back_var,
         top_feet=np.column_stack([before, after]),
     )
 
 
-def _with_first_strokes(feet: Feet, lows: Index, tops: Index, strokes: Strokes) -> tuple[Feet, Float, Float]:
+def _with_first_strokes(
+    feet: Feet, shapes: Shapes, lows: Index, tops: Index, strokes: Strokes
+) -> tuple[Distances, Float, Float]:
     """Distances to the feet, pooled; where the joint stops on the way, to the foot of the flank's lowest stroke.
 
-    The last of the three is where the flank's highest stroke has its foot at the top, NaN where there are no stops.
+    Beside them are the variances of the feet, and where the flank's highest stroke has its foot at the top, NaN where
+    there are no stops.
     """
     first = np.searchsorted(strokes.bounds, np.minimum(lows, tops))
     last = np.searchsorted(strokes.bounds, np.maximum(lows, tops))
     stops = last - first > 1
     kappa = feet.low.copy()
     kappa[~stops] = pooled_feet(feet.low[~stops], feet.low_var[~stops])
-    variance = feet.low_foot_var.copy()
+    distances = by_shape(kappa, shapes, ~stops)
+    variance = feet.low_foot_var + distances.law_var
     rises = lows < tops
     lowest = np.where(rises, first, last - 1)[stops]
     foot = np.where(rises[stops], strokes.begin[lowest], strokes.end[lowest])
-    kappa[stops] = np.abs(feet.half[stops] - foot)
+    distances.kappa[stops] = np.abs(feet.half[stops] - foot)
     variance[stops] = np.where(rises[stops], strokes.begin_sd[lowest], strokes.end_sd[lowest]) ** 2
+    doubt = np.where(rises[stops], strokes.begin_in_doubt[lowest], strokes.end_in_doubt[lowest])
+    distances.in_doubt[stops] = doubt
     highest = np.where(rises, last - 1, first)[stops]
     top_foot = np.full(kappa.size, np.nan)
     top_foot[stops] = np.where(rises[stops], strokes.end[highest], strokes.begin[highest])
-    return feet._replace(low_foot_var=variance), kappa, top_foot
+    return distances, variance, top_foot
 
 
 def cycles_of(swings: Swings, flanks: Flanks, gaps: Float, *, fast: bool) -> Cycles:
@@ -144,14 +176,15 @@ def _cycle_reasons(
         between = np.searchsorted(close, (low, top, high))
         removed = bool(between[1] > between[0]), bool(between[2] > between[1])
         own = [
-            (low, flanks.rising.share[k], resting.get(k - 1, False), removed[0]),
-            (top, LOW_SHARE, False, any(removed)),
-            (high, flanks.falling.share[k], resting.get(k, False), removed[1]),
+            (low, flanks.rising.share[k], resting.get(k - 1, False), removed[0], flanks.out.in_doubt[k]),
+            (top, LOW_SHARE, False, any(removed), False),
+            (high, flanks.falling.share[k], resting.get(k, False), removed[1], flanks.back.in_doubt[k]),
         ]
-        for which, (reversal, share, rest, hesitates) in enumerate(own):
+        for which, (reversal, share, rest, hesitates, law) in enumerate(own):
             reasons = {swings.doubtful.get(reversal, ""), swings.doubtful.get(top, "")} - {""}
             reasons |= {"small-beside-neighbors"} if hesitates else set()
             reasons |= {"noise"} if share > LOW_SHARE else set()
+            reasons |= {"law"} if law else set()
             reasons |= {"rest-in-doubt"} if rest else set()
             reasons |= {"fast"} if fast else set()
             reasons |= {"gap"} if in_gap(float(seconds[k, which]), gaps) else set()
@@ -163,8 +196,8 @@ def _doubtful_valleys(swings: Swings, flanks: Flanks) -> dict[int, bool]:
     """Whether it is in doubt that the joint rests between the tops k and k + 1."""
     doubts = {}
     for k in np.flatnonzero(np.diff(flanks.tops) == 2).tolist():
-        rest = flanks.rising.half[k + 1] - flanks.falling.half[k] - flanks.back[k] - flanks.out[k + 1]
-        variance = _foot_var(flanks.falling, flanks.back, k) + _foot_var(flanks.rising, flanks.out, k + 1)
+        rest = flanks.rising.half[k + 1] - flanks.falling.half[k] - flanks.back.kappa[k] - flanks.out.kappa[k + 1]
+        variance = float(flanks.back_var[k]) + float(flanks.out_var[k + 1])
         doubts[k] = abs(rest - SHORTEST_REST_S * swings.rate_hz) < IN_DOUBT_SD * float(np.sqrt(variance))
     return doubts
 
@@ -197,8 +230,8 @@ class _Valley(NamedTuple):
 def _valley(flanks: Flanks, k: int) -> _Valley:
     """Cut the valley between the tops k and k + 1: at both feet, or where the flanks share the time between them."""
     down, up = float(flanks.falling.half[k]), float(flanks.rising.half[k + 1])
-    back, out = float(flanks.back[k]), float(flanks.out[k + 1])
-    back_var, out_var = _foot_var(flanks.falling, flanks.back, k), _foot_var(flanks.rising, flanks.out, k + 1)
+    back, out = float(flanks.back.kappa[k]), float(flanks.out.kappa[k + 1])
+    back_var, out_var = float(flanks.back_var[k]), float(flanks.out_var[k + 1])
     gap, need = up - down, back + out
     if need <= gap:
         return _Valley(down + back, up - out, back_var, out_var)
@@ -210,27 +243,23 @@ def _valley(flanks: Flanks, k: int) -> _Valley:
     return _Valley(cut, cut, halves + spread, halves + spread)
 
 
-def _foot_var(feet: Feet, kappa: Float, k: int) -> float:
-    return float(feet.low_foot_var[k] + (LAW_SD * kappa[k]) ** 2)
-
-
 def _cycle_samples(swings: Swings, flanks: Flanks) -> tuple[Float, Float]:
     """Start, inversion and end of every cycle in samples, shape (C, 3), and their standard deviations."""
     count = flanks.tops.size
     joined = np.diff(flanks.tops) == 2
     valleys = {k: _valley(flanks, k) for k in np.flatnonzero(joined).tolist()}
     gaps = flanks.rising.half[1:] - flanks.falling.half[:-1]
-    needs = flanks.back[:-1] + flanks.out[1:]
+    needs = flanks.back.kappa[:-1] + flanks.out.kappa[1:]
     shares = np.minimum(1.0, gaps / np.maximum(needs, 1e-12))[joined]
     usual = float(np.median(shares)) if shares.size else 1.0
     samples, variances = np.empty((count, 3)), np.empty((count, 3))
     for k in range(count):
         rise, fall = float(flanks.rising.half[k]), float(flanks.falling.half[k])
         before, after = valleys.get(k - 1), valleys.get(k)
-        start = rise - usual * float(flanks.out[k]) if before is None else before.start
-        end = fall + usual * float(flanks.back[k]) if after is None else after.end
-        start_var = _foot_var(flanks.rising, flanks.out, k) if before is None else before.start_var
-        end_var = _foot_var(flanks.falling, flanks.back, k) if after is None else after.end_var
+        start = rise - usual * float(flanks.out.kappa[k]) if before is None else before.start
+        end = fall + usual * float(flanks.back.kappa[k]) if after is None else after.end
+        start_var = float(flanks.out_var[k]) if before is None else before.start_var
+        end_var = float(flanks.back_var[k]) if after is None else after.end_var
         top, top_var = _inversion(swings, flanks, k)
         samples[k] = max(start, 0.0), top, min(end, swings.smooth.size - 1.0)
         variances[k] = start_var, top_var, end_var

@@ -22,10 +22,8 @@ _LAW: Final = 10.0 * _LAW_TIME**3 - 15.0 * _LAW_TIME**4 + 6.0 * _LAW_TIME**5
 _TOLD: Final = np.array([0.4703, 0.5250, 0.5913, 0.6672, 0.7500, 0.8380, 0.9294, 1.0232, 1.2151, 1.4105, 1.6076, 4.0])
 _TRUE: Final = np.array([0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.2, 1.4, 1.6, 4.0])
 
-LAW_SD: Final = 0.02
-"""Uncertainty of the distance from the half-way crossing to a foot, as a share of it: the law is an assumption.
-
-Of cycloidal movements it comes out 2 % short."""
+LAW_SD: Final = 0.015
+"""Uncertainty of the distance from the half-way crossing to a foot by minimum jerk, as a share of it."""
 KIN_SD: Final = 0.02
 """Flanks whose feet differ by less than this share of their length are taken for the same movement."""
 _POOLED: Final = 3.0

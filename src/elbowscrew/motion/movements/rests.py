@@ -7,7 +7,8 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from elbowscrew.geometry.arrays import Bool, Float, Index
-from elbowscrew.motion.movements.feet import LAW_SD, LOW_SHARE, Feet, feet_of, pooled, pooled_feet
+from elbowscrew.motion.movements.feet import LOW_SHARE, Feet, feet_of, pooled, pooled_feet
+from elbowscrew.motion.movements.foot_laws import Distances, Shapes, Sharp, by_shape, shapes_of, sharp_of
 from elbowscrew.motion.movements.phases import runs_of
 from elbowscrew.motion.movements.swings import Swings
 
@@ -34,6 +35,10 @@ class Strokes(NamedTuple):
         Whether the rotation increases.
     reverses : ndarray of bool, shape (K - 1,)
         Whether the motion turns back between a stroke and the next, or only stops.
+    begin_in_doubt, end_in_doubt : ndarray of bool
+        Whether the law of motion there, and with it the foot, is in doubt.
+    sharp : Sharp
+        The rotation in which the shape of the strokes is seen.
     rest_s, rest_sd_s : ndarray, shape (K - 1,)
         Time between a stroke's foot and the next one's, seconds; negative where they overlap.
     """
@@ -43,6 +48,9 @@ class Strokes(NamedTuple):
     end: Float
     begin_sd: Float
     end_sd: Float
+    begin_in_doubt: Bool
+    end_in_doubt: Bool
+    sharp: Sharp
     outward: Bool
     reverses: Bool
     rest_s: Float
@@ -80,9 +88,16 @@ def strokes_of(swings: Swings) -> Strokes:
     low_values, top_values = np.where(outward, [values[:-1], values[1:]], [values[1:], values[:-1]])
     feet = feet_of(swings.smooth, lows, tops, low_values, top_values, swings.smooth_noise, swings.cutoff)
     before, after, before_var, after_var = _in_time(feet, outward)
+    rises = np.abs(np.diff(values))
+    typical = (float(np.median(rises)), float(np.median(before + after))) if count else (0.0, 1.0)
+    sharp = sharp_of(swings, *typical)
+    first = shapes_of(sharp, bounds[:-1], bounds[1:], values[:-1], values[1:], (feet.half, before))
+    last = shapes_of(sharp, bounds[1:], bounds[:-1], values[1:], values[:-1], (feet.half, after))
+    begins, ends = _by_shape(before, first, outward), _by_shape(after, last, outward)
+    before, after = begins.kappa, ends.kappa
     begin, end = feet.half - before, feet.half + after
-    begin_sd = np.hypot(np.sqrt(before_var), LAW_SD * before)
-    end_sd = np.hypot(np.sqrt(after_var), LAW_SD * after)
+    begin_sd = np.sqrt(before_var + begins.law_var)
+    end_sd = np.sqrt(after_var + ends.law_var)
     rest_s = (begin[1:] - end[:-1]) / swings.rate_hz
     rest_sd_s = np.hypot(begin_sd[1:], end_sd[:-1]) / swings.rate_hz
     over = rest_s < 0.0
@@ -95,11 +110,20 @@ def strokes_of(swings: Swings) -> Strokes:
         end=np.clip(end, 0.0, swings.smooth.size - 1.0),
         begin_sd=begin_sd,
         end_sd=end_sd,
+        begin_in_doubt=begins.in_doubt,
+        end_in_doubt=ends.in_doubt,
+        sharp=sharp,
         outward=outward,
         reverses=outward[1:] != outward[:-1],
         rest_s=rest_s,
         rest_sd_s=rest_sd_s,
     )
+
+
+def _by_shape(kappa: Float, shapes: Shapes, outward: Bool) -> Distances:
+    """Distances to the feet of one side, by the shapes of the strokes out and of those back."""
+    out, back = by_shape(kappa, shapes, outward), by_shape(kappa, shapes, ~outward)
+    return Distances(*(np.where(outward, a, b) for a, b in zip(out, back, strict=True)))
 
 
 def _in_time(feet: Feet, outward: Bool) -> tuple[Float, Float, Float, Float]:

@@ -52,8 +52,8 @@ class Swings(NamedTuple):
         Standard deviation (rad) of the white noise of one sample, and of what the filter leaves of it.
     least : float
         Least swing between two turning points, radians.
-    smooth : ndarray, shape (N,)
-        The filtered rotation, radians.
+    level, smooth : ndarray, shape (N,)
+        The rotation with its two ends by the samples beside them, and the same filtered, radians.
     all_reversals, reversals : ndarray of int64, shape (T,)
         Samples of the turning points by the least swing, the ends of the recording among them; and of those that are
         left by the local rule.
@@ -70,6 +70,7 @@ class Swings(NamedTuple):
     noise: float
     smooth_noise: float
     least: float
+    level: Float
     smooth: Float
     all_reversals: Index
     reversals: Index
@@ -126,6 +127,7 @@ def swings_of(twist: Float, rate_hz: float, noise: float | None = None, least_sw
         noise=sigma,
         smooth_noise=smooth_noise,
         least=least,
+        level=level,
         smooth=smooth,
         all_reversals=every,
         reversals=kept,

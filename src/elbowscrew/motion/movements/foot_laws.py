@@ -1,0 +1,229 @@
+"""By which law a movement begins and ends, told by the shape of its flanks, and where its foot lies by that law.
+
+Minimum jerk is what is expected of people. Beside it stand a cycloidal and a harmonic law, and speeds that rise evenly
+over a share of the time and are constant from there on, as those of robots and isokinetic machines: from constant speed
+to a third of the time.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from elbowscrew.geometry.arrays import Bool, Float, Index
+from elbowscrew.motion.movements.feet import LAW_SD, LOW_SHARE, crossing, slope_at
+from elbowscrew.motion.movements.swings import Swings, lowpass_series
+from elbowscrew.motion.smoothing.filtering import noise_gain
+
+# The shape is told from the half-way and the quarter crossing and a low one: this share of the rise, or five times the
+# noise. What the filter makes of a corner does not matter where it passes five cycles in the time of a stroke.
+_QUARTER: Final = 0.25
+_LOWEST: Final = 0.02
+_HIGHEST: Final = 0.10
+_OVER_NOISE: Final = 5.0
+_CYCLES_A_STROKE: Final = 5.0
+_HIGHEST_HZ_SHARE: Final = 0.2
+
+# A joint rests before a stroke if so many samples lie there; without a rest the level it leaves is off by such a share.
+_FEWEST_STILL: Final = 3
+_TIP_SHARE: Final = 0.01
+
+# How likely the laws are before the shape is seen, and by how much of itself a true ratio may be off.
+_RAMPS: Final = np.linspace(0.0, 0.34, 18)
+_PRIOR: Final = np.concatenate([[0.72, 0.10, 0.10, 0.02], np.full(17, 0.03 / 17), [0.03]])
+_GENTLE: Final = 3
+# A flank may follow none of the laws: then any ratio in a wide range is as likely, and its foot lies between theirs.
+_ANY_RATIO: Final = 8.0
+_ANY_SCALE: Final = 1.2
+_ANY_SCALE_SD: Final = 0.12
+_SHAPE_SD: Final = 0.01
+_OTHER_LAW_SD: Final = 0.035
+_IN_DOUBT: Final = 0.05
+_MEDIAN_OF_SD: Final = 0.6745
+
+
+class Sharp(NamedTuple):
+    """The rotation under a filter that leaves the shape of a stroke.
+
+    Attributes
+    ----------
+    series : ndarray, shape (N,)
+        Radians.
+    noise : float
+        Standard deviation of what the filter left of the noise, radians.
+    apart : float
+        Samples from one to the next that is independent of it.
+    """
+
+    series: Float
+    noise: float
+    apart: float
+
+
+class Shapes(NamedTuple):
+    """One side of flanks, low or top, from the half-way crossing on; shape (F,) each, samples.
+
+    Attributes
+    ----------
+    ratio, ratio_var : ndarray
+        Time from the half-way crossing to the low one over that to the quarter crossing, and its variance by noise.
+    reach, reach_var : ndarray
+        The former of the two times.
+    share : ndarray
+        Height of the low crossing, as a share of the rise.
+    """
+
+    ratio: Float
+    ratio_var: Float
+    reach: Float
+    reach_var: Float
+    share: Float
+
+
+class Distances(NamedTuple):
+    """Distances from half-way crossings to feet, shape (F,): values, variances by the law, and doubts about it."""
+
+    kappa: Float
+    law_var: Float
+    in_doubt: Bool
+
+
+def sharp_of(swings: Swings, rise: float, duration: float) -> Sharp:
+    """Filter a rotation as little as its noise allows, beside strokes of a rise (rad) and a duration (samples)."""
+    least = _CYCLES_A_STROKE / max(duration, 1.0)
+    wanted = _LOWEST * rise / _OVER_NOISE
+    quiet = 0.5 * (wanted / swings.noise) ** 2 if swings.noise > 0.0 else 1.0
+    cutoff_hz = min(max(least, quiet, swings.cutoff), _HIGHEST_HZ_SHARE) * swings.rate_hz
+    series = lowpass_series(swings.level, swings.rate_hz, cutoff_hz)
+    gain = noise_gain(swings.rate_hz, cutoff_hz)
+    return Sharp(series, swings.noise * float(np.sqrt(gain)), 1.0 / gain)
+
+
+def shapes_of(
+    sharp: Sharp, froms: Index, tos: Index, from_values: Float, to_values: Float, feet: tuple[Float, Float]
+) -> Shapes:
+    """Shape of flanks on the side of `froms`, whose value they leave for that of `tos`.
+
+    Parameters
+    ----------
+    sharp : Sharp
+    froms, tos : ndarray of int64, shape (F,)
+        Samples of the two ends of every flank, in either order in time.
+    from_values, to_values : ndarray, shape (F,)
+        Radians.
+    feet : tuple of ndarray, shape (F,)
+        Half-way crossings, and the distances from them to the feet by minimum jerk, samples.
+    """
+    found = np.full((froms.size, 5), np.nan)
+    rows = zip(
+        froms.tolist(), tos.tolist(), from_values.tolist(), to_values.tolist(), *(v.tolist() for v in feet), strict=True
+    )
+    for k, (first, last, base, peak, near, kappa) in enumerate(rows):
+        sense = 1.0 if peak > base else -1.0
+        rest = _rest_before(first, last, near, kappa)
+        still = sharp.series[rest]
+        base_sd = sharp.noise * np.sqrt(sharp.apart / max(still.size, 1))
+        if still.size >= _FEWEST_STILL:
+            base = float(still.mean())
+        rise = peak - base
+        base_sd = base_sd if still.size >= _FEWEST_STILL else _TIP_SHARE * abs(rise)
+        share = min(max(_LOWEST, _OVER_NOISE * sharp.noise / max(abs(rise), 1e-12)), 1.0)
+        if share > _HIGHEST:
+            continue
+        low, high = min(first, last), max(first, last)
+        flank, offset = sense * sharp.series[low : high + 1], low
+        start, stop = first - offset, last - offset
+        # From within the upper half, back to where the flank leaves its base.
+        inner = round(near + 0.25 * (last - near)) - offset
+        times = [crossing(flank, inner, start, sense * (base + level * rise)) for level in (0.5, _QUARTER, share)]
+        if stop == start or not abs(times[0] - times[2]) > abs(times[0] - times[1]) > 0.0:
+            continue
+        slopes = [max(slope_at(flank, at), 1e-12) for at in times]
+        var = [(sharp.noise / slope) ** 2 for slope in slopes]
+        var[2] += (base_sd / slopes[2]) ** 2
+        reach, quarter = abs(times[0] - times[2]), abs(times[0] - times[1])
+        ratio = reach / quarter
+        ratio_var = (var[2] + ratio**2 * var[1] + (ratio - 1.0) ** 2 * var[0]) / quarter**2
+        found[k] = ratio, ratio_var, reach, var[0] + var[2], share
+    return Shapes(*found.T)
+
+
+def _rest_before(first: int, last: int, half: float, kappa: float) -> slice:
+    """Samples of the rest between a reversal and the foot of the flank that leaves it."""
+    if first < last:
+        return slice(first, max(int(half - kappa) + 1, first))
+    return slice(min(int(np.ceil(half + kappa)), first + 1), first + 1)
+
+
+def _positions(time: Float) -> Float:
+    """Positions of all laws at times from 0 to 1/2, shape (L, T); minimum jerk, cycloidal and harmonic come first."""
+    gentle = (
+        10.0 * time**3 - 15.0 * time**4 + 6.0 * time**5,
+        time - np.sin(2.0 * np.pi * time) / (2.0 * np.pi),
+        0.5 - 0.5 * np.cos(np.pi * time),
+    )
+    ramp = np.maximum(_RAMPS, 1e-9)[:, None]
+    ramped = np.where(time < ramp, 0.5 * time**2 / ramp, time - 0.5 * ramp) / (1.0 - ramp)
+    return np.concatenate([gentle, ramped])
+
+
+@cache
+def _laws(share: float) -> tuple[Float, Float]:
+    """For every law: its ratio, and the distance to its foot over the one to the height `share`."""
+    time = np.linspace(0.0, 0.5, 4001)
+    levels = np.array([share, _QUARTER])
+    low, quarter = np.array([0.5 - np.interp(levels, position, time) for position in _positions(time)]).T
+    return low / quarter, 0.5 / low
+
+
+def by_shape(kappa: Float, shapes: Shapes, alike: Bool) -> Distances:
+    """Distances to the feet by what the shape of like flanks says of their law.
+
+    Parameters
+    ----------
+    kappa : ndarray, shape (F,)
+        Distances to the feet by the law of minimum jerk, samples.
+    shapes : Shapes
+        Of the same side.
+    alike : ndarray of bool, shape (F,)
+        The flanks that are taken to have one law.
+
+    Notes
+    -----
+    Each law is weighed by its prior and by how well it explains the median ratio, a normal likelihood. The distance is
+    the weighted mean of those of the laws, and its variance that of the mixture.
+    """
+    value, law_var = kappa.copy(), (LAW_SD * kappa) ** 2
+    in_doubt = np.zeros(kappa.size, dtype=np.bool_)
+    if not alike.any():
+        return Distances(value, law_var, in_doubt)
+    own = alike & np.isfinite(shapes.ratio)
+    # By gentle laws the foot is told from the height that it is told from by minimum jerk, by others from the low one.
+    gentle = _laws(LOW_SHARE)[1]
+    beside, weight = np.append(gentle / gentle[0], _ANY_SCALE / _laws(_LOWEST)[1][0]), _PRIOR
+    if own.any():
+        ratios, scales = _laws(round(float(np.median(shapes.share[own])), 3))
+        beside[_GENTLE:] = np.append(scales[_GENTLE:], _ANY_SCALE) * np.median(shapes.reach[own] / kappa[own])
+        weight = _PRIOR * np.append(_likelihood(ratios, shapes, own), 1.0 / _ANY_RATIO)
+        weight /= weight.sum()
+    own_sd = np.full(weight.size, _OTHER_LAW_SD)
+    own_sd[[0, -1]] = LAW_SD, _ANY_SCALE_SD
+    scale = float(weight @ beside)
+    spread = float(weight @ ((beside - scale) ** 2 + (own_sd * beside) ** 2))
+    value[alike] *= scale
+    law_var[alike] = spread * kappa[alike] ** 2
+    in_doubt[alike] = spread > (_IN_DOUBT * scale) ** 2
+    return Distances(value, law_var, in_doubt)
+
+
+def _likelihood(ratios: Float, shapes: Shapes, own: Bool) -> Float:
+    """Likelihood of the laws' ratios (L,), given the median ratio of the flanks that are seen."""
+    ratio, by_noise = shapes.ratio[own], float(np.median(shapes.ratio_var[own]))
+    middle, count = float(np.median(ratio)), ratio.size
+    # Flanks that differ by more than the noise have no one law: then the middle says little of any of them.
+    scatter = float(np.median(np.abs(ratio - middle)) / _MEDIAN_OF_SD) ** 2 if count > 2 else 0.0
+    sd = float(np.sqrt(by_noise / count + max(scatter - by_noise, 0.0) + (_SHAPE_SD * middle) ** 2))
+    likelihood: Float = np.exp(-0.5 * ((ratios - middle) / sd) ** 2) / (sd * np.sqrt(2.0 * np.pi))
+    return likelihood
