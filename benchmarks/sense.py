@@ -1,4 +1,4 @@
-"""Sense of theta on 960 motions of 24 kinds: ``python benchmarks/sense.py [--seeds 40]`` (half a minute).
+"""Sense of theta on 960 motions of 24 kinds: ``python benchmarks/sense.py [--seeds 40] [--first 0]`` (half a minute).
 
 A motion is wrong where more than 0.2 % of its frames are off by more than 30 deg. Beside it stand rules that are
 simpler: each axis oriented by the one before, the hemisphere of the dominant axis, and that with whole turns counted
@@ -83,12 +83,14 @@ RULES = {
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--seeds", type=int, default=40, help="motions of each kind")
-    seeds = parser.parse_args().seeds
+    parser.add_argument("--first", type=int, default=0, help="first seed")
+    options = parser.parse_args()
+    seeds, first = options.seeds, options.first
     print("| kind | ratio | " + " | ".join(RULES) + " |")
     print("| --- | --- |" + " ---: |" * len(RULES))
     total = dict.fromkeys(RULES, 0)
     for kind in KINDS:
-        motions = [made(kind, seed) for seed in range(seeds)]
+        motions = [made(kind, seed) for seed in range(first, first + seeds)]
         ratios = [sense_of(one.quat, one.time_s, 0).ratio for one in motions]
         wrong = {
             name: sum(share_wrong(one, rule(one)) > WRONG_SHARE for one in motions) for name, rule in RULES.items()

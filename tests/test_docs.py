@@ -116,3 +116,27 @@ def test_the_readmes_pictures_are_there(root: Path, name: str) -> None:
 def test_the_table_of_settings_is_current(root: Path) -> None:
     made = runpy.run_path(str(root / "docs" / "make_settings.py"))["page"]()
     assert (root / "docs" / "settings.md").read_text(encoding="utf-8") == made
+
+
+def test_the_drawing_of_the_cycles_is_current(root: Path) -> None:
+    """It shows four cycles, the first incomplete, with two rests, and a hesitation that is no inversion."""
+    drawn = runpy.run_path(str(root / "docs" / "make_cycles_figure.py"))["figure"]()
+    whole, feet = drawn.axes
+    words = [text.get_text() for text in whole.texts]
+    assert words.count("rest") == 2
+    assert [word for word in words if word.startswith("cycle")] == [
+        "cycle 1, incomplete",
+        "cycle 2",
+        "cycle 3",
+        "cycle 4",
+    ]
+    tops = next(line for line in whole.lines if str(line.get_label()).startswith("inversion")).get_xdata()
+    assert tops == pytest.approx([0.43, 2.2, 3.8, 7.9], abs=0.02)
+    lines = [
+        float(line.get_xdata()[0])
+        for line in feet.lines
+        if len(set(line.get_xdata())) == 1 and line.get_marker() == "None"
+    ]
+    assert lines == pytest.approx([1.3, 1.4], abs=0.03)
+    shown = (root / "docs" / "images" / "cycles.svg").read_text(encoding="utf-8")
+    assert all(word in shown for word in words if word and "\n" not in word)

@@ -13,7 +13,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from elbowscrew.geometry.arrays import Bool, Float, Index
-from elbowscrew.motion.movements.feet import LAW_SD, LOW_SHARE, crossing, slope_at
+from elbowscrew.motion.movements.feet import LAW_SD, LOW_SHARE, crossing, pooled, slope_at
 from elbowscrew.motion.movements.swings import Swings, lowpass_series
 from elbowscrew.motion.smoothing.filtering import noise_gain
 
@@ -39,9 +39,9 @@ _ANY_RATIO: Final = 8.0
 _ANY_SCALE: Final = 1.2
 _ANY_SCALE_SD: Final = 0.12
 _SHAPE_SD: Final = 0.01
+_ALIKE_SD: Final = 0.05
 _OTHER_LAW_SD: Final = 0.035
 _IN_DOUBT: Final = 0.05
-_MEDIAN_OF_SD: Final = 0.6745
 
 
 class Sharp(NamedTuple):
@@ -55,15 +55,18 @@ class Sharp(NamedTuple):
         Standard deviation of what the filter left of the noise, radians.
     apart : float
         Samples from one to the next that is independent of it.
+    share : float
+        Height, as a share of a typical rise, that is clear of the noise.
     """
 
     series: Float
     noise: float
     apart: float
+    share: float
 
 
 class Shapes(NamedTuple):
-    """One side of flanks, low or top, from the half-way crossing on; shape (F,) each, samples.
+    """One side of flanks, low or top, from the half-way crossing on; shape (F,) each, samples; NaN where not seen.
 
     Attributes
     ----------
@@ -71,7 +74,7 @@ class Shapes(NamedTuple):
         Time from the half-way crossing to the low one over that to the quarter crossing, and its variance by noise.
     reach, reach_var : ndarray
         The former of the two times.
-    share : ndarray
+    share : float
         Height of the low crossing, as a share of the rise.
     """
 
@@ -79,7 +82,7 @@ class Shapes(NamedTuple):
     ratio_var: Float
     reach: Float
     reach_var: Float
-    share: Float
+    share: float
 
 
 class Distances(NamedTuple):
@@ -98,7 +101,8 @@ def sharp_of(swings: Swings, rise: float, duration: float) -> Sharp:
     cutoff_hz = min(max(least, quiet, swings.cutoff), _HIGHEST_HZ_SHARE) * swings.rate_hz
     series = lowpass_series(swings.level, swings.rate_hz, cutoff_hz)
     gain = noise_gain(swings.rate_hz, cutoff_hz)
-    return Sharp(series, swings.noise * float(np.sqrt(gain)), 1.0 / gain)
+    noise = swings.noise * float(np.sqrt(gain))
+    return Sharp(series, noise, 1.0 / gain, round(max(_LOWEST, _OVER_NOISE * noise / max(rise, 1e-12)), 3))
 
 
 def shapes_of(
@@ -116,7 +120,7 @@ def shapes_of(
     feet : tuple of ndarray, shape (F,)
         Half-way crossings, and the distances from them to the feet by minimum jerk, samples.
     """
-    found = np.full((froms.size, 5), np.nan)
+    found = np.full((froms.size, 4), np.nan)
     rows = zip(
         froms.tolist(), tos.tolist(), from_values.tolist(), to_values.tolist(), *(v.tolist() for v in feet), strict=True
     )
@@ -129,15 +133,14 @@ def shapes_of(
             base = float(still.mean())
         rise = peak - base
         base_sd = base_sd if still.size >= _FEWEST_STILL else _TIP_SHARE * abs(rise)
-        share = min(max(_LOWEST, _OVER_NOISE * sharp.noise / max(abs(rise), 1e-12)), 1.0)
-        if share > _HIGHEST:
+        if max(sharp.share, _OVER_NOISE * sharp.noise / max(abs(rise), 1e-12)) > _HIGHEST:
             continue
         low, high = min(first, last), max(first, last)
         flank, offset = sense * sharp.series[low : high + 1], low
         start, stop = first - offset, last - offset
         # From within the upper half, back to where the flank leaves its base.
         inner = round(near + 0.25 * (last - near)) - offset
-        times = [crossing(flank, inner, start, sense * (base + level * rise)) for level in (0.5, _QUARTER, share)]
+        times = [crossing(flank, inner, start, sense * (base + level * rise)) for level in (0.5, _QUARTER, sharp.share)]
         if stop == start or not abs(times[0] - times[2]) > abs(times[0] - times[1]) > 0.0:
             continue
         slopes = [max(slope_at(flank, at), 1e-12) for at in times]
@@ -146,8 +149,8 @@ def shapes_of(
         reach, quarter = abs(times[0] - times[2]), abs(times[0] - times[1])
         ratio = reach / quarter
         ratio_var = (var[2] + ratio**2 * var[1] + (ratio - 1.0) ** 2 * var[0]) / quarter**2
-        found[k] = ratio, ratio_var, reach, var[0] + var[2], share
-    return Shapes(*found.T)
+        found[k] = ratio, ratio_var, reach, var[0] + var[2]
+    return Shapes(found[:, 0], found[:, 1], found[:, 2], found[:, 3], sharp.share)
 
 
 def _rest_before(first: int, last: int, half: float, kappa: float) -> slice:
@@ -192,38 +195,44 @@ def by_shape(kappa: Float, shapes: Shapes, alike: Bool) -> Distances:
 
     Notes
     -----
-    Each law is weighed by its prior and by how well it explains the median ratio, a normal likelihood. The distance is
-    the weighted mean of those of the laws, and its variance that of the mixture.
+    Each law is weighed by its prior and by how well it explains the ratio, a normal likelihood; ratios of like flanks
+    are drawn together where they do not differ. The distance is the weighted mean of those of the laws, and its
+    variance that of the mixture.
     """
     value, law_var = kappa.copy(), (LAW_SD * kappa) ** 2
     in_doubt = np.zeros(kappa.size, dtype=np.bool_)
-    if not alike.any():
-        return Distances(value, law_var, in_doubt)
-    own = alike & np.isfinite(shapes.ratio)
-    # By gentle laws the foot is told from the height that it is told from by minimum jerk, by others from the low one.
+    seen = alike & np.isfinite(shapes.ratio)
     gentle = _laws(LOW_SHARE)[1]
-    beside, weight = np.append(gentle / gentle[0], _ANY_SCALE / _laws(_LOWEST)[1][0]), _PRIOR
-    if own.any():
-        ratios, scales = _laws(round(float(np.median(shapes.share[own])), 3))
-        beside[_GENTLE:] = np.append(scales[_GENTLE:], _ANY_SCALE) * np.median(shapes.reach[own] / kappa[own])
-        weight = _PRIOR * np.append(_likelihood(ratios, shapes, own), 1.0 / _ANY_RATIO)
-        weight /= weight.sum()
-    own_sd = np.full(weight.size, _OTHER_LAW_SD)
+    # By gentle laws the foot is told from the height that it is told from by minimum jerk, by others from the low one.
+    beside = np.tile(np.append(gentle / gentle[0], _ANY_SCALE / _laws(_LOWEST)[1][0]), (kappa.size, 1))
+    weight = np.tile(_PRIOR, (kappa.size, 1))
+    if seen.any():
+        ratios, scales = _laws(shapes.share)
+        ratio, ratio_var = _drawn_together(shapes.ratio, shapes.ratio_var, seen)
+        reach, _ = _drawn_together(shapes.reach / kappa, shapes.reach_var / kappa**2, seen)
+        beside[:, _GENTLE:] = reach[:, None] * np.append(scales[_GENTLE:], _ANY_SCALE)
+        sd = np.sqrt(ratio_var)[:, None]
+        likelihood = np.exp(-0.5 * ((ratios - ratio[:, None]) / sd) ** 2) / (sd * np.sqrt(2.0 * np.pi))
+        weight *= np.column_stack([likelihood, np.full(kappa.size, 1.0 / _ANY_RATIO)])
+        weight /= weight.sum(axis=1, keepdims=True)
+    own_sd = np.full(_PRIOR.size, _OTHER_LAW_SD)
     own_sd[[0, -1]] = LAW_SD, _ANY_SCALE_SD
-    scale = float(weight @ beside)
-    spread = float(weight @ ((beside - scale) ** 2 + (own_sd * beside) ** 2))
-    value[alike] *= scale
-    law_var[alike] = spread * kappa[alike] ** 2
-    in_doubt[alike] = spread > (_IN_DOUBT * scale) ** 2
+    scale = (weight * beside).sum(axis=1)
+    spread = (weight * ((beside - scale[:, None]) ** 2 + (own_sd * beside) ** 2)).sum(axis=1)
+    value[alike] *= scale[alike]
+    law_var[alike] = (spread * kappa**2)[alike]
+    in_doubt[alike] = (spread > (_IN_DOUBT * scale) ** 2)[alike]
     return Distances(value, law_var, in_doubt)
 
 
-def _likelihood(ratios: Float, shapes: Shapes, own: Bool) -> Float:
-    """Likelihood of the laws' ratios (L,), given the median ratio of the flanks that are seen."""
-    ratio, by_noise = shapes.ratio[own], float(np.median(shapes.ratio_var[own]))
-    middle, count = float(np.median(ratio)), ratio.size
-    # Flanks that differ by more than the noise have no one law: then the middle says little of any of them.
-    scatter = float(np.median(np.abs(ratio - middle)) / _MEDIAN_OF_SD) ** 2 if count > 2 else 0.0
-    sd = float(np.sqrt(by_noise / count + max(scatter - by_noise, 0.0) + (_SHAPE_SD * middle) ** 2))
-    likelihood: Float = np.exp(-0.5 * ((ratios - middle) / sd) ** 2) / (sd * np.sqrt(2.0 * np.pi))
-    return likelihood
+def _drawn_together(values: Float, by_noise: Float, seen: Bool) -> tuple[Float, Float]:
+    """Values (F,), those seen drawn to their median as far as they do not differ, the others there; their variances."""
+    known, noise = values[seen], float(np.median(by_noise[seen]))
+    middle = float(np.median(known))
+    drawn, variance = np.full(values.size, middle), np.full(values.size, noise / known.size)
+    drawn[seen] = pooled(known, noise + (_ALIKE_SD * middle) ** 2)
+    off = float(np.abs(known - middle).max())
+    kept = float(np.abs(drawn[seen] - middle).max()) / off if off > 0.0 else 0.0
+    variance[seen] += kept**2 * (by_noise[seen] - noise / known.size)
+    variance[~seen] += float(np.median(np.abs(known - middle))) ** 2
+    return drawn, variance + (_SHAPE_SD * middle) ** 2
