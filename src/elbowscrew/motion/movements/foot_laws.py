@@ -28,7 +28,7 @@ _HIGHEST_HZ_SHARE: Final = 0.2
 
 # A joint rests before a stroke if so many samples lie there; without a rest the level it leaves is off by such a share.
 _FEWEST_STILL: Final = 3
-_TIP_SHARE: Final = 0.01
+_TIP_SHARE: Final = 0.005
 
 # How likely the laws are before the shape is seen, and by how much of itself a true ratio may be off.
 _RAMPS: Final = np.linspace(0.0, 0.34, 18)
@@ -196,8 +196,8 @@ def by_shape(kappa: Float, shapes: Shapes, alike: Bool) -> Distances:
     Notes
     -----
     Each law is weighed by its prior and by how well it explains the ratio, a normal likelihood; ratios of like flanks
-    are drawn together where they do not differ. The distance is the weighted mean of those of the laws, and its
-    variance that of the mixture.
+    are drawn together where they do not differ. The distance is the weighted median of those of the laws,
+    and its variance that of the mixture about it.
     """
     value, law_var = kappa.copy(), (LAW_SD * kappa) ** 2
     in_doubt = np.zeros(kappa.size, dtype=np.bool_)
@@ -217,7 +217,10 @@ def by_shape(kappa: Float, shapes: Shapes, alike: Bool) -> Distances:
         weight /= weight.sum(axis=1, keepdims=True)
     own_sd = np.full(_PRIOR.size, _OTHER_LAW_SD)
     own_sd[[0, -1]] = LAW_SD, _ANY_SCALE_SD
-    scale = (weight * beside).sum(axis=1)
+    # The weighted median: that of one law where it has over half of the weight.
+    order = np.argsort(beside, axis=1)
+    below = np.cumsum(np.take_along_axis(weight, order, axis=1), axis=1) < 0.5
+    scale = np.take_along_axis(beside, np.take_along_axis(order, below.sum(axis=1)[:, None], axis=1), axis=1)[:, 0]
     spread = (weight * ((beside - scale[:, None]) ** 2 + (own_sd * beside) ** 2)).sum(axis=1)
     value[alike] *= scale[alike]
     law_var[alike] = (spread * kappa**2)[alike]
