@@ -490,7 +490,7 @@ LAWS = {
     "linear": lambda x: x,
     "cycloidal": lambda x: x - np.sin(2.0 * np.pi * x) / (2.0 * np.pi),
     "harmonic": lambda x: 0.5 - 0.5 * np.cos(np.pi * x),
-    "minimum-jerk": lambda x: x**3 * (10.0 - 15.0 * x + 6.0 * x**2),
+    "polynomial-345": lambda x: x**3 * (10.0 - 15.0 * x + 6.0 * x**2),
 }
 
 

@@ -136,19 +136,24 @@ def _noise(noise: NoiseOfBodies) -> Iterator[str]:
 
 def _joint_axis(trial: FinishedTrial) -> Iterator[str]:
     joint = trial.joint_summary
-    preferred, fit = joint["preferred"], preferred_fit(joint)
-    if preferred is None or fit is None:
+    preferred, fit, screw_hinge = joint["preferred"], preferred_fit(joint), joint["screw_hinge"]
+    if preferred is None or fit is None or screw_hinge is None:
+        share = joint["unexplained_share"]
+        left = "more rotation than there is about it" if share is None else f"{100.0 * share:.2g} % of its rotation"
         yield (
-            "The motion has no single axis (a hinge leaves more than a quarter of its rotation unexplained); the mean "
-            "of the helical axes, weighted by sin²(θ/2), is given (Woltring 1994)."
+            f"The motion has no single axis (a hinge leaves {left} unexplained); the mean of the helical axes, "
+            "weighted by sin²(θ/2), is given (Woltring 1994)."
         )
     else:
         robust = ", frames weighted by Tukey's biweight" if trial.settings.robust else ""
-        why = "exceeds" if preferred == "screw_hinge" else "does not exceed"
+        if screw_hinge["pitch_sd_mm_per_rad"] is None:
+            why = "no error can be given for the pitch of the screw-hinge"
+        else:
+            exceeds = "exceeds" if preferred == "screw_hinge" else "does not exceed"
+            why = f"the pitch of the screw-hinge {exceeds} what a hinge shows by chance (99.73 %)"
         yield (
             f"The joint axis was fitted to the relative poses of {fit['frames']} frames by maximum likelihood as a "
-            f"hinge and as a screw-hinge{robust}; the {preferred.replace('_', '-')} is reported, as the pitch of the "
-            f"screw-hinge {why} what a hinge shows by chance (99.73 %)."
+            f"hinge and as a screw-hinge{robust}; the {preferred.replace('_', '-')} is reported, as {why}."
         )
         if fit["axis_cone95_deg"] is not None:
             yield (
