@@ -314,13 +314,9 @@ def of_joint_angles(told: Told) -> set[str]:
     if kind == "ball":
         assert np.allclose(angles[valid], np.degrees(turned.as_rotvec()), atol=1e-3)
     elif kind == "two_axes":
-        first, second = (
-            np.array(told.joint["joint_type"]["two_axes"][f"axis{k}"]["direction_in_proximal"]) for k in (1, 2)
-        )
-        about = [
-            Rotation.from_rotvec(np.radians(angle)[:, None] * n)
-            for angle, n in zip(angles.T, (first, second), strict=False)
-        ]
+        axes = told.joint["joint_type"]["two_axes"]
+        directions = [np.array(axes[f"axis{k}"]["direction_in_proximal"]) for k in (1, 2)]
+        about = [Rotation.from_rotvec(np.outer(np.radians(angles[:, k]), directions[k])) for k in (0, 1)]
         left = (about[0] * about[1])[valid].inv() * turned
         assert np.degrees(left.magnitude()).max() < 1.0  # of a noise of 0.1 deg, in this frame and at the reference
         assert angles[:, 0].max() > 100.0
