@@ -37,6 +37,8 @@ KeyframeSource = Literal["raw", "lowpass", "decimated"]
 """What keyframes are taken from in a comparison."""
 ExpressIn = Literal["distal", "proximal", "lab"]
 """Frames a screw is written in."""
+NoiseSource = Literal["residuals", "error-column", "still"]
+"""What tells the noise of a body's poses, the best first; functions of `elbowscrew.motion.screws.pose_noise`."""
 StatedJoint = Literal["rigid", "hinge", "screw_hinge", "two_axes", "ball", "free"]
 """Types of joint that can be stated."""
 AngleUnit = Literal["deg", "rad"]
@@ -62,6 +64,7 @@ METHOD_LABELS: Final[dict[str, str]] = {
 KNOT_NAMES: Final[tuple[KnotName, ...]] = get_args(KnotName)
 BLEND_NAMES: Final[tuple[BlendName, ...]] = get_args(BlendName)
 KEYFRAME_SOURCES: Final[tuple[KeyframeSource, ...]] = get_args(KeyframeSource)
+NOISE_SOURCES: Final[tuple[NoiseSource, ...]] = get_args(NoiseSource)
 STATED_JOINTS: Final[tuple[StatedJoint, ...]] = get_args(StatedJoint)
 FRAMES: Final[tuple[ExpressIn, ...]] = get_args(ExpressIn)
 FIGURE_FORMATS: Final[tuple[FigureFormat, ...]] = get_args(FigureFormat)

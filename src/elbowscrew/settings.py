@@ -26,6 +26,7 @@ from elbowscrew.choices import (
     LawName,
     LengthUnit,
     MethodName,
+    NoiseSource,
     RotationType,
     StatedJoint,
 )
@@ -117,9 +118,7 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
         None, "Noise of each coordinate of a marker, in millimeters.", MOTION,
         metavar="MM", shown="from the recording", gt=0, le=100,
     )  # fmt: skip
-    noise: Literal["auto", "residuals", "still", "error-column", "none"] = setting(
-        "auto", "Where the noise of the poses is known from.", MOTION
-    )
+    noise: Literal["auto", NoiseSource, "none"] = setting("auto", "Where the noise of the poses is known from.", MOTION)
     signed: Literal["auto", "yes", "no"] = setting(
         "auto", "Give theta a sense: where one axis dominates the motion, always, or never.", MOTION
     )

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Final, NamedTuple
 
 import numpy as np
 
-from elbowscrew.choices import BLEND_NAMES, CLOSED_LAWS, KEYFRAME_SOURCES, KNOT_NAMES, METHOD_NAMES
+from elbowscrew.choices import BLEND_NAMES, CLOSED_LAWS, KEYFRAME_SOURCES, KNOT_NAMES, METHOD_NAMES, functions_named
 from elbowscrew.errors import SettingError, UsageError
 from elbowscrew.geometry.arrays import Bool, Float
 from elbowscrew.model import ModelPhases
@@ -97,37 +97,54 @@ def keyframe_sources_of(
     """
     usable = measured.joint.measured.copy()
     usable[phases.bound_rows] = True
+    recorded = SourcePoses("raw", measured.displacement, usable, phases)
     for data in plan.data:
-        if data == "raw":
-            yield SourcePoses("raw", measured.displacement, usable, phases)
-        elif data == "lowpass":
-            cutoff_hz, pose = _filtered(measured, settings)
-            yield SourcePoses(f"lowpass {cutoff_hz:.3g} Hz", pose, usable, phases)
-        else:
-            for factor in plan.decimation:
-                yield _decimated(factor, measured, usable, phases)
+        yield from SOURCES[data](recorded, measured, plan, settings)
 
 
-def _filtered(measured: Measurement, settings: Settings) -> tuple[float, Float]:
-    """Cut-off, and the displacements of filtered bodies, with the signs of the unfiltered ones."""
+def _raw(
+    recorded: SourcePoses, _measured: Measurement, _plan: ComparisonPlan, _settings: Settings
+) -> list[SourcePoses]:
+    """Take the poses as they were recorded."""
+    return [recorded]
+
+
+def _lowpass(
+    recorded: SourcePoses, measured: Measurement, _plan: ComparisonPlan, settings: Settings
+) -> list[SourcePoses]:
+    """Filter the bodies; the displacements keep the signs of the unfiltered ones."""
     smoothing = twist_smoothing(measured, settings)
     if isinstance(settings.lowpass_hz, float):
         smoothing = smoothing._replace(cutoff_hz=settings.lowpass_hz)
     pose = smoothed_displacement(measured, smoothing)
     flipped = np.sum(pose[:, :4] * measured.displacement[:, :4], axis=1) < 0.0
     pose = np.where(flipped[:, None], -pose, pose)
-    return float(smoothing.cutoff_hz or np.inf), np.where(np.isfinite(pose), pose, measured.displacement)
+    pose = np.where(np.isfinite(pose), pose, measured.displacement)
+    name = f"lowpass {float(smoothing.cutoff_hz or np.inf):.3g} Hz"
+    return [SourcePoses(name, pose, recorded.usable, recorded.phases)]
 
 
-def _decimated(factor: int, measured: Measurement, usable: Bool, phases: ModelPhases) -> SourcePoses:
+def _decimated(
+    recorded: SourcePoses, _measured: Measurement, plan: ComparisonPlan, _settings: Settings
+) -> list[SourcePoses]:
+    """Leave out frames at each rate of the plan."""
+    return [_every(factor, recorded) for factor in plan.decimation]
+
+
+SOURCES: Final[dict[str, Callable[..., list[SourcePoses]]]] = functions_named(KEYFRAME_SOURCES, globals())
+"""What keyframes may be taken from: a new one is one function, and its name in `choices.KeyframeSource`."""
+
+
+def _every(factor: int, recorded: SourcePoses) -> SourcePoses:
+    usable, phases = recorded.usable, recorded.phases
     start = int(phases.bound_rows[0])
     kept = usable & ((np.arange(usable.size) - start) % factor == 0)
     rows = np.flatnonzero(kept)
-    place = rows[np.abs(rows - np.r_[phases.bound_rows, phases.law_rows.ravel()][:, None]).argmin(axis=1)]
-    bounds = place[: phases.bound_rows.size]
-    laws = place[phases.bound_rows.size :].reshape(-1, 2)
+    nearest = rows[np.abs(rows - np.r_[phases.bound_rows, phases.law_rows.ravel()][:, None]).argmin(axis=1)]
+    bounds = nearest[: phases.bound_rows.size]
+    laws = nearest[phases.bound_rows.size :].reshape(-1, 2)
     name = "every 2nd" if factor == 2 else "every 3rd" if factor == 3 else f"every {factor}th"
     if (np.diff(bounds) <= 0).any() or (np.diff(laws, axis=1) <= 0).any():
         msg = f"--decimation {factor}: a phase has less than two of the frames that are left; give a smaller one"
         raise SettingError(msg)
-    return SourcePoses(name, measured.displacement, kept, ModelPhases(bound_rows=bounds, law_rows=laws))
+    return SourcePoses(name, recorded.pose, kept, ModelPhases(bound_rows=bounds, law_rows=laws))

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Final, NamedTuple
 
 import numpy as np
 
+from elbowscrew.choices import NOISE_SOURCES, functions_named
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_quaternion import align_signs, conjugate, log, multiply, normalize
 from elbowscrew.model import PoseNoise, RigidBody
@@ -47,10 +49,8 @@ def pose_noise(body: RigidBody, rate_hz: float, settings: Settings) -> PoseNoise
     """
     if settings.marker_noise_mm is not None:
         return _from_marker_noise(body, settings.marker_noise_mm / 1000.0, "option", settings)
-    sources = {"residuals": _from_residuals, "error-column": _from_error_column, "still": _from_still_stretch}
-    chosen = sources if settings.noise == "auto" else [name for name in sources if name == settings.noise]
-    for name in chosen:
-        found = sources[name](body, rate_hz, settings)
+    for name in NOISE_SOURCES:
+        found = SOURCES[name](body, rate_hz, settings) if settings.noise in ("auto", name) else None
         if found is not None:
             return found
     return None
@@ -116,12 +116,12 @@ def _from_marker_noise(body: RigidBody, marker_noise: float, source: str, settin
     return PoseNoise(covariance=covariance, source=f"{source}, markers assumed", marker_noise=marker_noise)
 
 
-def _from_residuals(body: RigidBody, rate_hz: float, settings: Settings) -> PoseNoise | None:
+def _residuals(body: RigidBody, rate_hz: float, settings: Settings) -> PoseNoise | None:
     square = None if body.marker_residual is None else body.marker_residual[body.tracked] ** 2
     return _from_square(body, square, "marker residuals", settings)
 
 
-def _from_error_column(body: RigidBody, rate_hz: float, settings: Settings) -> PoseNoise | None:
+def _error_column(body: RigidBody, rate_hz: float, settings: Settings) -> PoseNoise | None:
     reported = None if body.reported_error is None else body.reported_error[body.tracked]
     if reported is not None:  # what is negative, or a meter and more, is no error of a marker
         reported = reported[(reported >= 0.0) & (reported < _LARGEST_ERROR_M)]
@@ -143,7 +143,7 @@ def _from_square(body: RigidBody, square: Float | None, source: str, settings: S
     return _from_marker_noise(body, float(np.sqrt(count * np.median(known) / (freedom * median))), source, settings)
 
 
-def _from_still_stretch(body: RigidBody, rate_hz: float, settings: Settings) -> PoseNoise | None:
+def _still(body: RigidBody, rate_hz: float, settings: Settings) -> PoseNoise | None:
     """Covariance of the poses in the stillest half second, about a steady drift."""
     frames = max(_FEWEST_STILL_FRAMES, round(_STILL_S * rate_hz))
     count = body.loss.size // frames
@@ -175,3 +175,7 @@ def _fix_a_pose(offsets: Float) -> bool:
         return False
     spread = np.linalg.svd(offsets - offsets.mean(axis=0), compute_uv=False)
     return bool(spread[1] > 1e-3 * spread[0])
+
+
+SOURCES: Final[dict[str, Callable[..., PoseNoise | None]]] = functions_named(NOISE_SOURCES, globals())
+"""Where noise may be known from: a new one is one function, and its name in `choices.NoiseSource`."""
