@@ -5,6 +5,9 @@ from __future__ import annotations
 import csv
 import math
 from pathlib import Path
+from typing import Final
+
+_COLUMNS: Final = ("start_time_s", "end_time_s")
 
 
 def read_cycle_times(path: Path) -> list[tuple[float, float]]:
@@ -13,27 +16,44 @@ def read_cycle_times(path: Path) -> list[tuple[float, float]]:
     Raises
     ------
     ValueError
-        If the file cannot be read, a column is missing, or a cycle does not begin before it ends.
+        If the file cannot be read, a column is missing, there is no cycle, or a cycle does not begin before it ends.
     """
-    columns = ("start_time_s", "end_time_s")
     try:
         with path.open(encoding="utf-8-sig", newline="") as stream:
-            table = csv.DictReader(stream)
-            missing = [name for name in columns if name not in (table.fieldnames or ())]
-            if missing:
-                msg = f"{path}: expected the columns start_time_s and end_time_s, found no {' and no '.join(missing)}"
-                raise ValueError(msg)
-            times = []
-            for row in table:
-                start, end = (float(row[name] or "nan") for name in columns)
-                if not (math.isfinite(start) and math.isfinite(end) and start < end):
-                    msg = f"{path}:{table.line_num}: expected a start before its end, found {row['start_time_s']} and "
-                    raise ValueError(msg + f"{row['end_time_s']}")
-                times.append((start, end))
+            times = _times(csv.DictReader(stream), path)
     except OSError as error:
         msg = f"{path}: cannot be read as a file of cycles: {error.strerror}"
         raise ValueError(msg) from error
-    except csv.Error as error:
-        msg = f"{path}: not a CSV file: {error}"
+    except (csv.Error, UnicodeDecodeError) as error:
+        msg = f"{path}: not a CSV file in UTF-8: {error}"
         raise ValueError(msg) from error
+    if not times:
+        msg = f"{path}: there is no cycle in it"
+        raise ValueError(msg)
     return times
+
+
+def _times(table: csv.DictReader[str], path: Path) -> list[tuple[float, float]]:
+    missing = [name for name in _COLUMNS if name not in (table.fieldnames or ())]
+    if missing:
+        msg = f"{path}: expected the columns start_time_s and end_time_s, without {' and '.join(missing)}"
+        raise ValueError(msg)
+    times = []
+    for row in table:
+        texts = [row[name] or "" for name in _COLUMNS]
+        start, end = (_seconds(text) for text in texts)
+        if not start < end:  # neither of them nan
+            msg = (
+                f"{path}:{table.line_num}: expected a start in seconds and an end after it, not {' and '.join(texts)!r}"
+            )
+            raise ValueError(msg)
+        times.append((start, end))
+    return times
+
+
+def _seconds(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        return math.nan
+    return value if math.isfinite(value) else math.nan

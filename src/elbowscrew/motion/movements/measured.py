@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Final
 
 import numpy as np
 
@@ -13,14 +14,20 @@ from elbowscrew.geometry.dual_quaternion import conjugate, multiply
 from elbowscrew.model import QualityWarning
 from elbowscrew.motion.movements.boundaries import REASONS, Cuts, Cycles, Reasons, no_cycles
 from elbowscrew.motion.movements.cuts import cut
-from elbowscrew.motion.movements.swings import swings_of
-from elbowscrew.motion.screws.measurement import Measurement
+from elbowscrew.motion.movements.swings import FEWEST_FOR_NOISE, swings_of
+from elbowscrew.motion.screws.measurement import Measurement, rotation_noise_of
 from elbowscrew.motion.screws.sense import sense_of
 from elbowscrew.settings import Settings
+
+# Times that differ by less are the same: they may have been written with six decimals.
+_SAME_S: Final = 1e-6
 
 
 def measured_cuts(measured: Measurement, settings: Settings) -> Cuts:
     """Cut a measured motion on its unfiltered twist, or take the cycles that were given.
+
+    The noise is the one that is stated (`Settings.marker_noise_mm`), else that of the twist's third differences, and of
+    recordings too short for these the one that is known otherwise.
 
     Raises
     ------
@@ -30,7 +37,11 @@ def measured_cuts(measured: Measurement, settings: Settings) -> Cuts:
     twist = measured_twist(measured, settings)
     elapsed, rate_hz = measured.unfiltered.elapsed, measured.unfiltered.rate_hz
     least = None if settings.cycle_swing_deg is None else float(np.radians(settings.cycle_swing_deg))
-    cuts = cut(twist, elapsed, rate_hz, least_swing=least)
+    # The residuals of the markers are no measure of white noise: most of them may be constant, as that of a cluster
+    # which is not quite what it was calibrated as.
+    known = settings.marker_noise_mm is not None or np.isfinite(twist).sum() <= FEWEST_FOR_NOISE
+    noise = rotation_noise_of(measured.joint, measured.noise) if known else None
+    cuts = cut(twist, elapsed, rate_hz, noise, least_swing=least)
     if not measured.sense.signed:
         cuts = _all_doubted(cuts, "no-dominant-axis")
     if settings.no_cycles:
@@ -117,13 +128,15 @@ def _listed(boundaries: list[str]) -> str:
 def _given(times: Float, first: float, twist: Float, elapsed: Float) -> Cycles:
     """Cycles between times that were given, each with the largest rotation of the smoothed twist as its inversion."""
     span = float(elapsed[-1] - elapsed[0])
+    before = 0.0
     for start, end in times.tolist():
-        if not -1e-6 <= start < end <= span + 1e-6:
+        if not before - _SAME_S <= start < end <= span + _SAME_S:
             msg = (
-                f"--cycles: a cycle from {start + first:g} to {end + first:g} s; expected times that increase, within "
+                f"--cycles: a cycle from {start + first:g} to {end + first:g} s; expected one after the other, within "
                 f"the recording's {first:g} to {span + first:g} s"
             )
             raise SettingError(msg)
+        before = end
     known = np.flatnonzero(np.isfinite(twist))
     time = elapsed - elapsed[0]
     rate_hz = 1.0 / float(np.median(np.diff(time)))

@@ -14,7 +14,8 @@ from elbowscrew.motion.smoothing.filtering import _designed_tangent, _fast_lengt
 # Third differences of white noise have the variance 1 + 9 + 9 + 1; the median of |x| is 1/1.4826 of its sd.
 _THIRD_DIFFERENCE: Final = 20.0
 _SD_OF_MEDIAN: Final = 1.4826
-_FEWEST_DIFFERENCES: Final = 20
+FEWEST_FOR_NOISE: Final = 23
+"""Poses in a row of which the noise is not told: their third differences are too few."""
 
 # The rhythm of the motion is the frequency below which so much of its energy lies; the filter keeps four times that.
 _ENERGY_SHARE: Final = 0.8
@@ -147,7 +148,7 @@ def noise_of(series: Float) -> float:
     """
     third = np.diff(series, 3)
     third = third[np.isfinite(third)]
-    if third.size <= _FEWEST_DIFFERENCES:
+    if third.size <= FEWEST_FOR_NOISE - 3:
         return 0.0
     return float(_SD_OF_MEDIAN * np.median(np.abs(third)) / np.sqrt(_THIRD_DIFFERENCE))
 

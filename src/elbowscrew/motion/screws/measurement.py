@@ -221,10 +221,15 @@ def _resampled(
 
 def _rotation_sigma(joint: JointMotion, noise: JointNoise, gain: Float) -> float | None:
     """Noise of a component of the rotation, radians, as the filter leaves it; None where it is not known."""
+    unfiltered = rotation_noise_of(joint, noise)
+    return None if unfiltered is None else float(unfiltered * np.sqrt(np.nanmedian(gain[joint.measured])))
+
+
+def rotation_noise_of(joint: JointMotion, noise: JointNoise) -> float | None:
+    """Noise of a component of the rotation, radians, before any filter; None where it is not known."""
     if noise.known is None:
         return None
-    rotation = joint_covariance(joint.reference, *noise.known)[:3, :3]
-    return float(np.sqrt(np.trace(rotation) / 3.0 * np.nanmedian(gain[joint.measured])))
+    return float(np.sqrt(np.trace(joint_covariance(joint.reference, *noise.known)[:3, :3]) / 3.0))
 
 
 def _measured_series(

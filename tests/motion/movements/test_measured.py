@@ -1,0 +1,191 @@
+"""The cuts of measured motions: what they depend on, and what may be given in their place."""
+
+from __future__ import annotations
+
+import csv
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from elbowscrew import Recording, Settings, analyze, read_recording, simulate_trial
+from elbowscrew.cli import main
+from elbowscrew.motion.movements.boundaries import Cuts
+from elbowscrew.motion.movements.measured import measured_cuts
+from elbowscrew.motion.screws.measurement import measure
+
+TRIALS: list[dict[str, Any]] = [
+    {"repetitions": 3, "rest_before_s": 0.7, "seed": 1},
+    {"repetitions": 4, "hold_s": 0.5, "rest_after_s": 1.0, "marker_noise_mm": 0.5, "seed": 2},
+    {"joint": "knee", "repetitions": 2, "rest_before_s": 0.4, "seed": 3},
+    {"tremor_deg": 1.0, "tremor_hz": 6.0, "repetitions": 3, "seed": 4},
+    {"top_deg": 15.0, "repetitions": 5, "marker_noise_mm": 0.3, "seed": 5},
+]
+
+
+def cuts_of(recording: Recording, **settings: Any) -> Cuts:
+    wanted = Settings(**settings)
+    return measured_cuts(measure(recording, wanted), wanted)
+
+
+@pytest.mark.parametrize("trial", TRIALS)
+@pytest.mark.parametrize(
+    "filtered", [{"lowpass_hz": "auto"}, {"lowpass_hz": 3.0}, {"lowpass_hz": 4.0, "resample_hz": 50.0}]
+)
+def test_no_filter_moves_a_cut(trial: dict[str, Any], filtered: dict[str, Any]) -> None:
+    recording = simulate_trial(**trial).recording
+    plain, other = cuts_of(recording), cuts_of(recording, **filtered)
+    assert plain.cycles.start_s.size == trial["repetitions"]
+    assert np.allclose(other.cycles.times_s, plain.cycles.times_s, rtol=0.0, atol=1e-9)
+    assert np.allclose(other.movements.onset_s, plain.movements.onset_s, rtol=0.0, atol=1e-9)
+    assert np.allclose(other.movements.offset_s, plain.movements.offset_s, rtol=0.0, atol=1e-9)
+    assert other.cycles.start_reasons == plain.cycles.start_reasons
+
+
+@pytest.mark.parametrize("take", ["v121_thomazach_20230627_0117", "v121_thomazach_20230706_122504"])
+@pytest.mark.parametrize("proximal", [1, 2])
+def test_no_filter_moves_a_cut_of_a_real_take(real_data: Path, take: str, proximal: int) -> None:
+    recording = read_recording(real_data / "real" / f"{take}.csv")
+    bodies = {"proximal": f"Rigid Body {proximal}", "distal": f"Rigid Body {proximal + 1}"}
+    plain, other = cuts_of(recording, **bodies), cuts_of(recording, **bodies, lowpass_hz="auto")
+    assert np.allclose(other.cycles.times_s, plain.cycles.times_s, rtol=0.0, atol=1e-9)
+    assert np.allclose(other.movements.onset_s, plain.movements.onset_s, rtol=0.0, atol=1e-9)
+
+
+def test_noise_that_is_stated_is_the_noise() -> None:
+    recording = simulate_trial(marker_noise_mm=0.2, seed=1).recording
+    found, stated = cuts_of(recording), cuts_of(recording, marker_noise_mm=0.2)
+    assert stated.noise == pytest.approx(found.noise, rel=0.1)  # both are right
+    louder = cuts_of(recording, marker_noise_mm=2.0)
+    assert louder.noise == pytest.approx(10.0 * stated.noise)
+    assert louder.cycles.start_sd_s[0] > found.cycles.start_sd_s[0]
+
+
+def test_a_short_recording_has_the_noise_of_its_markers(tmp_path: Path) -> None:
+    """Third differences of 18 frames tell nothing."""
+    found = []
+    for frames in (18, 450):
+        path = tmp_path / f"{frames}.csv"
+        trial = ("--frames", str(frames), "--inversion", str(frames // 2), "--marker-noise", "0.2", "--seed", "3")
+        assert main(["simulate", str(path), *trial]) == 0
+        found.append(cuts_of(read_recording(path)).noise)
+    assert found[0] == pytest.approx(found[1], rel=0.3)
+
+
+def test_the_residuals_of_the_markers_are_no_white_noise(real_data: Path) -> None:
+    """A robot's clusters are off what they were calibrated as by ten times and more of what they jitter."""
+    recording = read_recording(real_data / "real" / "v121_thomazach_20230706_122504.csv")
+    bodies = {"proximal": "Rigid Body 1", "distal": "Rigid Body 2"}
+    assert cuts_of(recording, **bodies).noise < np.radians(0.01)
+
+
+@pytest.fixture(scope="module")
+def three_cycles(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Recording with cycles from 0.50 to 5.00 s, 5.00 to 9.49 s and 9.49 to 13.99 s."""
+    path = tmp_path_factory.mktemp("cycles") / "take.csv"
+    assert main(["simulate", str(path), "--repetitions", "3", "--rest-before", "0.5", "--rest-after", "0.5"]) == 0
+    return path
+
+
+def analyzed(take: Path, folder: Path, *options: object) -> tuple[int, dict[str, Any]]:
+    output = folder / "out"
+    code = main(["analyze", str(take), "-o", str(output), "--figure-format", "none", "--no-report", *map(str, options)])
+    return code, json.loads((output / "summary.json").read_text(encoding="utf-8")) if code == 0 else {}
+
+
+def table(path: Path) -> list[dict[str, str]]:
+    with path.open(newline="", encoding="utf-8") as stream:
+        return list(csv.DictReader(stream))
+
+
+def test_cycles_that_are_given_are_those_told(three_cycles: Path, tmp_path: Path) -> None:
+    times = tmp_path / "times.csv"
+    times.write_text("note,end_time_s,start_time_s\na,4.25,0.75\nb,9.0,4.25\n", encoding="utf-8")
+    code, _ = analyzed(three_cycles, tmp_path, "--cycles", times)
+    rows = table(tmp_path / "out" / "repetitions.csv")
+    assert code == 0
+    assert [(float(row["start_time_s"]), float(row["end_time_s"])) for row in rows] == [(0.75, 4.25), (4.25, 9.0)]
+    assert {row["start_time_sd_s"] for row in rows} == {""}  # nobody stated one
+    assert len(table(tmp_path / "out" / "cycles.csv")) == 2 * 101
+
+
+def test_cycles_need_not_be_looked_for(three_cycles: Path, tmp_path: Path) -> None:
+    code, summary = analyzed(three_cycles, tmp_path, "--no-cycles")
+    assert code == 0
+    assert table(tmp_path / "out" / "repetitions.csv") == []
+    assert not (tmp_path / "out" / "cycles.csv").exists()
+    _, usual = analyzed(three_cycles, tmp_path / "usual")
+    assert summary["interpolation"]["phase_laws"] == usual["interpolation"]["phase_laws"]
+    assert len(table(tmp_path / "usual" / "out" / "repetitions.csv")) == 3
+
+
+@pytest.mark.parametrize(("swing", "cycles"), [("5", 3), ("110", 3), ("150", 0)])
+def test_a_least_swing_may_be_given(three_cycles: Path, tmp_path: Path, swing: str, cycles: int) -> None:
+    """The joint swings by 120 deg."""
+    code, _ = analyzed(three_cycles, tmp_path, "--cycle-swing", swing)
+    path = tmp_path / "out" / "repetitions.csv"
+    assert code == 0
+    assert (len(table(path)) if path.exists() else 0) == cycles
+
+
+@pytest.mark.parametrize(
+    ("text", "code", "words"),
+    [
+        ("start,end\n1,2\n", 2, "start_time_s and end_time_s"),
+        ("start_time_s,end_time_s\n1,two\n", 2, ":2: expected a start in seconds and an end after it"),
+        ("start_time_s,end_time_s\n1,2\n3,2\n", 2, ":3: expected a start in seconds and an end after it"),
+        ("start_time_s,end_time_s\n1,\n", 2, ":2: expected a start in seconds"),
+        ("start_time_s,end_time_s\n1,inf\n", 2, ":2: expected a start in seconds"),
+        ("start_time_s,end_time_s\n", 2, "no cycle"),
+        ("", 2, "start_time_s and end_time_s"),
+        ("\udcff\udcfe", 2, "not a CSV file in UTF-8"),
+        ("start_time_s,end_time_s\n1,900\n", 4, "a cycle from 1 to 900 s; expected one after the other, within"),
+        ("start_time_s,end_time_s\n1,4\n3,6\n", 4, "a cycle from 3 to 6 s; expected one after the other"),
+        (None, 2, "No such file"),
+    ],
+)
+def test_a_wrong_file_of_cycles_is_refused_in_one_line(
+    three_cycles: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], text: str | None, code: int, words: str
+) -> None:
+    times = tmp_path / "times.csv"
+    if text is not None:
+        times.write_bytes(text.encode("utf-8", "surrogateescape"))
+    capsys.readouterr()
+    assert analyzed(three_cycles, tmp_path, "--cycles", times)[0] == code
+    error = capsys.readouterr().err.splitlines()
+    assert len(error) == 1
+    assert words in error[0]
+    assert not (tmp_path / "out").exists()
+
+
+def test_given_cycles_and_none_contradict(
+    three_cycles: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    times = tmp_path / "times.csv"
+    times.write_text("start_time_s,end_time_s\n1,4\n", encoding="utf-8")
+    capsys.readouterr()
+    assert analyzed(three_cycles, tmp_path, "--cycles", times, "--no-cycles")[0] == 2
+    assert "contradict" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("phases", ["movement", "whole"])
+def test_the_share_that_the_model_covers(three_cycles: Path, tmp_path: Path, phases: str) -> None:
+    """Of 14.5 s the joint moves in 13.5 s, which is all that phases of the movement hold."""
+    _, summary = analyzed(three_cycles, tmp_path, "--phases", phases)
+    rows = table(tmp_path / "out" / "interpolation.csv")
+    share = np.mean([row["theta_deg"] != "" for row in rows])
+    assert summary["interpolation"]["covered_share"] == pytest.approx(share, abs=1e-9)
+    assert share == pytest.approx(1.0 if phases == "whole" else 13.49 / 14.49, abs=0.01)
+
+
+@pytest.mark.parametrize("proximal", [1, 2])
+def test_a_filter_hardly_moves_the_models_error(real_data: Path, proximal: int) -> None:
+    recording = read_recording(real_data / "real" / "v121_thomazach_20230627_0117.csv")
+    errors = []
+    for lowpass in (None, "auto"):
+        wanted = Settings(proximal=f"Rigid Body {proximal}", distal=f"Rigid Body {proximal + 1}", lowpass_hz=lowpass)
+        modeled = analyze(recording, wanted).interpolated
+        errors.append([np.sqrt(np.nanmean(series**2)) for series in (modeled.angle_error, modeled.rms_displacement)])
+    assert errors[1] == pytest.approx(errors[0], rel=0.1)
