@@ -7,6 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
+from elbowscrew.choices import BLEND_NAMES, KEYFRAME_SOURCES, KNOT_NAMES, LAW_NAMES, METHOD_NAMES
 from elbowscrew.cli import options
 from elbowscrew.cli.analysis_options import OUTPUT, settings_options
 
@@ -24,14 +25,19 @@ def compare(
     ],
     methods: Annotated[
         list[str] | None,
-        typer.Option(metavar="M1,M2,...", rich_help_panel=_MODELS, help="Interpolations of poses.", show_default="all"),
+        typer.Option(
+            metavar="M1,M2,...",
+            rich_help_panel=_MODELS,
+            help=f"Interpolations: {', '.join(METHOD_NAMES)}.",
+            show_default="all",
+        ),
     ] = None,
     laws: Annotated[
         list[str] | None,
         typer.Option(
             metavar="L1,L2,...",
             rich_help_panel=_MODELS,
-            help="Laws of motion, best and empirical among them.",
+            help=f"Laws of motion: {', '.join(LAW_NAMES)}.",
             show_default="all",
         ),
     ] = None,
@@ -40,14 +46,17 @@ def compare(
         typer.Option(
             metavar="B1,B2",
             rich_help_panel=_MODELS,
-            help="Phase by phase, or all poses at once.",
+            help=f"Phase by phase, or all poses at once: {', '.join(BLEND_NAMES)}.",
             show_default="all",
         ),
     ] = None,
     knots: Annotated[
         list[str] | None,
         typer.Option(
-            metavar="K1,K2,...", rich_help_panel=_MODELS, help="Parameters of the keyframes.", show_default="law"
+            metavar="K1,K2,...",
+            rich_help_panel=_MODELS,
+            help=f"Parameters of the keyframes: {', '.join(KNOT_NAMES)}.",
+            show_default="law",
         ),
     ] = None,
     counts: Annotated[
@@ -59,7 +68,7 @@ def compare(
         typer.Option(
             metavar="D1,D2,...",
             rich_help_panel=_MODELS,
-            help="Keyframes from raw, lowpass, decimated.",
+            help=f"What keyframes are taken from: {', '.join(KEYFRAME_SOURCES)}.",
             show_default="all",
         ),
     ] = None,
