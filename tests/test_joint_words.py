@@ -14,8 +14,8 @@ from elbowscrew import Settings, __version__, analyze, save_analysis, simulate_t
 from elbowscrew.cli import render
 from elbowscrew.errors import ResultError
 from elbowscrew.report.methods import methods_of
-from elbowscrew.results.read_back import read_finished
 from elbowscrew.results.summary_reading import read_summary
+from elbowscrew.results.trial_views import view_of_result
 
 ANY = re.compile(
     r"(?i)\b(upper arm|forearm|arm|elbow|humer\w*|flexion|extension|pronation|thigh|shank|knee|hand"
@@ -51,7 +51,7 @@ def test_no_word_of_another_joint(case: str, motion: Any, tmp_path: Path, capsys
     page = (folder / "report.html").read_text(encoding="utf-8")
     told = {
         "page": page,
-        "methods": methods_of(read_finished(folder)),
+        "methods": methods_of(view_of_result(folder)),
         "terminal": "".join(capsys.readouterr()),
         "warnings": " ".join(warning.message for warning in analysis.warnings),
         **{figure.name: figure.read_text(encoding="utf-8") for figure in folder.rglob("*.svg")},
@@ -79,7 +79,7 @@ def test_a_result_of_before_is_refused_in_one_line_with_both_versions(tmp_path: 
     trial["arm"], trial["forearm"] = trial.pop("proximal"), trial.pop("distal")
     path.write_text(json.dumps({**summary, "elbowscrew": "0.1.0"}), encoding="utf-8")
     with pytest.raises(ResultError) as caught:
-        read_finished(folder)
+        view_of_result(folder)
     told = str(caught.value)
     assert "0.1.0" in told
     assert __version__ in told

@@ -20,7 +20,6 @@ from elbowscrew.reading.source import sha256_of
 from elbowscrew.report import write_trial_page
 from elbowscrew.results.exporting import check_exports, write_exports
 from elbowscrew.results.joint_summary import joint_summary
-from elbowscrew.results.read_back import as_finished
 from elbowscrew.results.staging import (
     COMPARISON,
     FIGURE_FORMATS,
@@ -30,10 +29,11 @@ from elbowscrew.results.staging import (
 )
 from elbowscrew.results.summary import summary_from_analysis
 from elbowscrew.results.summary_reading import JOINT, SUMMARY
+from elbowscrew.results.trial_views import view_of_analysis
 from elbowscrew.results.writing import write_csv, write_tables
 from elbowscrew.settings import Settings
 from elbowscrew.view.figure_names import SAVED_FIGURES
-from elbowscrew.view.finished import FinishedTrial
+from elbowscrew.view.trial_view import TrialView
 
 if TYPE_CHECKING:
     from elbowscrew.simulate import SimulatedTrial
@@ -129,14 +129,14 @@ def write_result(
     with result_folder(target, force=force) as staged:
         write_tables(staged, analysis)
         _write_json(staged / JOINT, joint)
-        shown = as_finished(analysis, staged, found, joint)
+        view = view_of_analysis(analysis, found, joint)
         if formats:
-            _write_figures(staged, shown, formats)
+            _write_figures(staged, view, formats)
         write_exports(staged, analysis, found, others)
         summary: Summary = {**found, "files": digests(staged)}  # when all else is there
         _write_json(staged / SUMMARY, summary)
         if report:
-            write_trial_page(staged, shown)
+            write_trial_page(staged, view)
     return summary
 
 
@@ -158,10 +158,10 @@ def _write_json(path: Path, content: Mapping[str, object]) -> None:
     path.write_text(json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False) + "\n", encoding="utf-8")
 
 
-def _write_figures(staged: Path, trial: FinishedTrial, formats: Sequence[str]) -> None:
+def _write_figures(staged: Path, view: TrialView, formats: Sequence[str]) -> None:
     from elbowscrew.report.figure_files import figure_files
 
-    _write_all(staged / "figures", figure_files(trial, SAVED_FIGURES, formats))
+    _write_all(staged / "figures", figure_files(view, SAVED_FIGURES, formats))
 
 
 def _write_all(folder: Path, files: Mapping[str, bytes]) -> None:

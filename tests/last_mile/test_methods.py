@@ -15,7 +15,7 @@ from told_results import Told
 
 from elbowscrew import Recording, RigidBody, Settings, analyze, read_recording, save_analysis, simulate_trial
 from elbowscrew.report.methods import methods_of
-from elbowscrew.results.read_back import read_finished
+from elbowscrew.results.trial_views import view_of_result
 
 
 def simulated(**changes: Any) -> Callable[[], Recording]:
@@ -129,7 +129,7 @@ def cases(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Case]:
             folder = save_analysis(
                 analyze(recording, settings), tmp_path_factory.mktemp("case") / "r", figure_formats=(), report=False
             )
-            made[name] = Case(Told(folder, folder, (), ""), settings, recording, methods_of(read_finished(folder)))
+            made[name] = Case(Told(folder, folder, (), ""), settings, recording, methods_of(view_of_result(folder)))
         return made[name]
 
     return case

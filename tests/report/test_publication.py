@@ -20,7 +20,7 @@ from elbowscrew.plots.registry import figure_function
 from elbowscrew.report.figure_files import figure_files
 from elbowscrew.report.names import figure_names, width_mm
 from elbowscrew.report.publication import save_publication_figures
-from elbowscrew.results.read_back import read_finished
+from elbowscrew.results.trial_views import view_of_result
 from elbowscrew.view.figure_names import FIGURE_CHOICES
 
 POINTS_PER_MM = 72.0 / 25.4
@@ -30,7 +30,7 @@ SINGLES = tuple(name for name in FIGURE_CHOICES if name != "overlay")
 @pytest.mark.parametrize("width", [85.0, 170.0])
 @pytest.mark.parametrize("name", SINGLES)
 def test_figures_have_the_width_asked_for_and_carry_their_fonts(result: Path, name: str, width: float) -> None:
-    files = figure_files(read_finished(result), [name], ["pdf", "svg", "png"], width)
+    files = figure_files(view_of_result(result), [name], ["pdf", "svg", "png"], width)
     pdf = files[f"{name}.pdf"]
     box = re.search(rb"/MediaBox \[ ?0 0 ([\d.]+) ([\d.]+) ?\]", pdf)
     assert box
@@ -48,13 +48,13 @@ def test_figures_have_the_width_asked_for_and_carry_their_fonts(result: Path, na
 def test_figures_of_the_result_folder_are_made_again_to_the_byte(tmp_path: Path) -> None:
     analysis = analyze(simulate_trial(frames=100, inversion=50, seed=3).recording)
     folder = save_analysis(analysis, tmp_path / "r", figure_formats=("png", "svg"), report=False)
-    again = figure_files(read_finished(folder), tuple(plots.FIGURES), ("png", "svg"))
+    again = figure_files(view_of_result(folder), tuple(plots.FIGURES), ("png", "svg"))
     assert again == {path.name: path.read_bytes() for path in (folder / "figures").iterdir()}
     assert len(again) == 10
 
 
 def test_figures_are_the_same_with_one_core_and_with_more(result: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    trial = read_finished(result)
+    trial = view_of_result(result)
     monkeypatch.setenv("OMP_NUM_THREADS", "1")
     alone = figure_files(trial, SINGLES, ("png",))
     monkeypatch.delenv("OMP_NUM_THREADS")
@@ -63,20 +63,20 @@ def test_figures_are_the_same_with_one_core_and_with_more(result: Path, monkeypa
 
 
 def test_the_papers_figures_show_measured_and_modeled_at_one_scale(result: Path) -> None:
-    trial = read_finished(result)
+    trial = view_of_result(result)
     drawn = {name: figure_function(name)(trial).axes[0] for name in ("fig7", "fig8", "fig9", "fig10")}
     lines = {name: [np.asarray(line.get_ydata()) for line in ax.get_lines()] for name, ax in drawn.items()}
-    assert lines["fig7"][0] == pytest.approx(np.degrees(trial.screw.angle), nan_ok=True)
-    assert lines["fig8"][0] == pytest.approx(np.degrees(trial.interpolated.angle), nan_ok=True)
+    assert lines["fig7"][0] == pytest.approx(np.degrees(trial.angle), nan_ok=True)
+    assert lines["fig8"][0] == pytest.approx(np.degrees(trial.modeled_angle), nan_ok=True)
     for k in range(4):
-        assert lines["fig9"][k] == pytest.approx(trial.screw.euler_parameters[:, k], nan_ok=True)
-        assert lines["fig10"][k] == pytest.approx(trial.interpolated.euler_parameters[:, k], nan_ok=True)
+        assert lines["fig9"][k] == pytest.approx(trial.euler_parameters[:, k], nan_ok=True)
+        assert lines["fig10"][k] == pytest.approx(trial.modeled_euler_parameters[:, k], nan_ok=True)
     assert drawn["fig7"].get_ylim() == drawn["fig8"].get_ylim()
     assert drawn["fig9"].get_ylim() == drawn["fig10"].get_ylim()
 
 
 def test_the_mean_curve_of_a_trial_is_that_of_its_cycles(result: Path) -> None:
-    trial = read_finished(result)
+    trial = view_of_result(result)
     curve = mean_curve(trial)
     assert curve is not None
     assert trial.repetition_curve is not None

@@ -29,8 +29,8 @@ from elbowscrew.report.methods import methods_of
 from elbowscrew.report.pages import json_for_script, number
 from elbowscrew.report.scene import MOST_FRAMES, scene_of
 from elbowscrew.report.trial_page import trial_page
-from elbowscrew.results.read_back import read_finished
 from elbowscrew.results.staging import RESULT_FILES
+from elbowscrew.results.trial_views import view_of, view_of_result
 from elbowscrew.view.decimation import drawn_rows
 from elbowscrew.view.scene import bodies_in_space
 
@@ -176,8 +176,8 @@ def test_the_view_moves_the_forearm_along_its_path(express_in: Any, tmp_path: Pa
     recording = simulate_trial(frames=120, inversion=60, gaps=1, gap_frames=15, proximal="moving", seed=3).recording
     analysis = analyze(recording, Settings(express_in=express_in))
     folder = save_analysis(analysis, tmp_path / "r", figure_formats=(), report=False)
-    scene = json.loads(json.dumps(scene_of(read_finished(folder)), allow_nan=False))
-    path = 1000.0 * bodies_in_space(analysis).path
+    scene = json.loads(json.dumps(scene_of(view_of_result(folder)), allow_nan=False))
+    path = 1000.0 * bodies_in_space(view_of(analysis)).path
     lost = [turn is None for turn in scene["turn"]]
     assert lost == (~np.isfinite(path).all(axis=1)).tolist()
     assert any(lost)
@@ -193,7 +193,7 @@ def test_the_view_moves_the_forearm_along_its_path(express_in: Any, tmp_path: Pa
 def test_long_trials_are_thinned_in_the_view_and_in_the_charts(tmp_path: Path) -> None:
     recording = simulate_trial(frames=20000, inversion=9000, rate_hz=1000.0).recording
     folder = save_analysis(analyze(recording), tmp_path / "r", figure_formats=())
-    scene = scene_of(read_finished(folder))
+    scene = scene_of(view_of_result(folder))
     assert len(scene["frame"]) == MOST_FRAMES
     assert (scene["frame"][0], scene["frame"][-1]) == (0, 19999)
     assert (folder / "report.html").stat().st_size < 1_000_000
@@ -265,7 +265,7 @@ def test_the_methods_tell_the_settings_used(name: str, tmp_path: Path) -> None:
     changes, said, unsaid = METHODS[name]
     recording = simulate_trial(frames=150, inversion=60, proximal="moving", seed=1).recording
     folder = save_analysis(analyze(recording, Settings(**changes)), tmp_path / "r", figure_formats=(), report=False)
-    text = methods_of(read_finished(folder))
+    text = methods_of(view_of_result(folder))
     for words in said:
         assert words in text, text
     for words in unsaid:
@@ -273,8 +273,8 @@ def test_the_methods_tell_the_settings_used(name: str, tmp_path: Path) -> None:
 
 
 def test_a_motion_without_a_single_axis_is_said_to_have_none(ball_result: Path) -> None:
-    trial = read_finished(ball_result)
-    text = Seen(trial_page(trial)).text
+    trial = view_of_result(ball_result)
+    text = Seen(trial_page(trial, ball_result)).text
     assert "the motion has no single axis" in text
     assert "The motion has no single axis" in methods_of(trial)
     assert "maximum likelihood" not in methods_of(trial)

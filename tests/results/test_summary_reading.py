@@ -14,8 +14,8 @@ import pytest
 from elbowscrew import analyze, save_analysis, simulate_trial
 from elbowscrew._version import __version__
 from elbowscrew.errors import ResultError
-from elbowscrew.results.read_back import read_finished
 from elbowscrew.results.summary_reading import read_joint_summary, read_summary
+from elbowscrew.results.trial_views import view_of_result
 from elbowscrew.saving import write_result
 
 READERS: dict[str, Callable[[Path], Any]] = {"summary.json": read_summary, "joint.json": read_joint_summary}
@@ -116,7 +116,7 @@ def test_a_setting_that_cannot_be_is_named(folder: Path, key: str) -> None:
     summary = content_of(folder, "summary.json")
     summary["settings"][key] = "wide"
     (folder / "summary.json").write_text(json.dumps(summary))
-    message = told(read_finished, folder)
+    message = told(view_of_result, folder)
     assert message.startswith(f"{folder / 'summary.json'}: settings")
     assert key in message
 
@@ -133,7 +133,7 @@ def test_a_frame_beyond_all_numbers_is_told(folder: Path, number: int) -> None:
     summary = content_of(folder, "summary.json")
     summary["interpolation"]["keyframes"][0] = number
     (folder / "summary.json").write_text(json.dumps(summary))
-    assert told(read_finished, folder).startswith(str(folder))
+    assert told(view_of_result, folder).startswith(str(folder))
 
 
 def test_the_summary_that_was_written_is_the_one_on_disk(tmp_path: Path) -> None:

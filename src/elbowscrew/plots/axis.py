@@ -16,11 +16,13 @@ from numpy.typing import NDArray
 from elbowscrew.choices import LengthUnit
 from elbowscrew.geometry._blocks import evenly_thinned
 from elbowscrew.geometry.arrays import Float
+from elbowscrew.model import Analysis
 from elbowscrew.plots import style
 from elbowscrew.quantities import angle_in, length_in
+from elbowscrew.results.trial_views import view_of
 from elbowscrew.view.decimation import drawn_rows
 from elbowscrew.view.scene import Bodies, axis_segments, bodies_in_space, directions_across, half_length
-from elbowscrew.view.shown import Shown
+from elbowscrew.view.trial_view import TrialView
 
 _MOST_POINTS: Final = 4000
 
@@ -34,27 +36,28 @@ class _MeanFrame(NamedTuple):
     center: Float
 
 
-def color_scale(analysis: Shown) -> ScalarMappable:
+def color_scale(view: TrialView) -> ScalarMappable:
     """Return the color scale of the angle, for axes and a color bar."""
-    angle = angle_in(analysis.screw.angle[analysis.screw.axis_known], analysis.settings.angle_unit)
+    angle = angle_in(view.angle[view.axis_known], view.settings.angle_unit)
     return ScalarMappable(Normalize(float(angle.min()), float(angle.max())), style.COLORMAP)
 
 
-def plot_axes_in_space(ax: Axes3D, analysis: Shown) -> Axes3D:
+def plot_axes_in_space(ax: Axes3D, analysis: Analysis | TrialView) -> Axes3D:
     """Draw the axes with the mean axis and the bodies, the distal one by its path, in the frame of the axes."""
-    unit = analysis.settings.length_unit
-    bodies = bodies_in_space(analysis)
+    view = view_of(analysis)
+    unit = view.settings.length_unit
+    bodies = bodies_in_space(view)
     proximal = bodies.proximal
     clusters = [markers for markers in (bodies.proximal_markers, bodies.distal_markers) if markers is not None]
-    mean = _mean_frame(analysis, bodies)
+    mean = _mean_frame(view, bodies)
     half = half_length(bodies, mean.center)
-    rows, segments = axis_segments(analysis, mean.center, half)
+    rows, segments = axis_segments(view, mean.center, half)
     segments = length_in(segments, unit)
-    colors = color_scale(analysis).to_rgba(angle_in(analysis.screw.angle[rows], analysis.settings.angle_unit))
+    colors = color_scale(view).to_rgba(angle_in(view.angle[rows], view.settings.angle_unit))
     ax.add_collection3d(Line3DCollection(list(segments), colors=colors, linewidths=0.7, alpha=0.8))
     ends = length_in(mean.center + 1.3 * half * np.outer([-1.0, 1.0], mean.direction), unit)
     ax.plot(*ends.T, color="black", linewidth=1.6, label="mean axis")
-    words = analysis.named_joint
+    words = view.named_joint
     plot_path(ax, bodies.path, unit, f"{words.distal.name} path")
     shown = [segments.reshape(-1, 3), ends, length_in(bodies.corners, unit)]
     if proximal is not None:
@@ -76,41 +79,43 @@ def plot_path(ax: Axes3D, path: Float, unit: LengthUnit, label: str) -> None:
     ax.plot(*length_in(path[rows], unit).T, color="#D55E00", linewidth=1.2, label=label)
 
 
-def plot_axis_directions(ax: Axes, analysis: Shown) -> Axes:
+def plot_axis_directions(ax: Axes, analysis: Analysis | TrialView) -> Axes:
     """Draw how far each axis, a line without direction, is tilted from the mean axis, in two directions across it."""
-    unit = analysis.settings.angle_unit
-    mean = _mean_frame(analysis, bodies_in_space(analysis))
-    rows = evenly_thinned(np.flatnonzero(analysis.screw.axis_known), _MOST_POINTS)
-    direction = analysis.screw.axis_direction[rows]
+    view = view_of(analysis)
+    unit = view.settings.angle_unit
+    mean = _mean_frame(view, bodies_in_space(view))
+    rows = evenly_thinned(np.flatnonzero(view.axis_known), _MOST_POINTS)
+    direction = view.axis_direction[rows]
     along = direction @ mean.direction
     way = np.where(along < 0.0, -1.0, 1.0)
     tilts = [angle_in(np.arctan2(way * (direction @ across), way * along), unit) for across in mean.across]
-    _scatter(ax, analysis, rows, tilts)
+    _scatter(ax, view, rows, tilts)
     ax.set_xlabel(f"Tilt toward {mean.names[0]} ({unit})")
     ax.set_ylabel(f"Tilt toward {mean.names[1]} ({unit})")
     return ax
 
 
-def plot_axis_places(ax: Axes, analysis: Shown) -> Axes:
+def plot_axis_places(ax: Axes, analysis: Analysis | TrialView) -> Axes:
     """Draw where each axis pierces the plane across the mean axis nearest the distal body, from the mean axis."""
-    unit = analysis.settings.length_unit
-    mean = _mean_frame(analysis, bodies_in_space(analysis))
-    rows = evenly_thinned(np.flatnonzero(analysis.screw.axis_known), _MOST_POINTS)
-    direction, point = analysis.screw.axis_direction[rows], analysis.screw.axis_point[rows]
+    view = view_of(analysis)
+    unit = view.settings.length_unit
+    mean = _mean_frame(view, bodies_in_space(view))
+    rows = evenly_thinned(np.flatnonzero(view.axis_known), _MOST_POINTS)
+    direction, point = view.axis_direction[rows], view.axis_point[rows]
     along = direction @ mean.direction
     crossing = np.abs(along) > 0.1  # an axis nearly in the plane pierces it far away or nowhere
     rows, direction, point, along = rows[crossing], direction[crossing], point[crossing], along[crossing]
     reach = ((mean.center - point) @ mean.direction) / along
     offset = length_in(point + reach[:, None] * direction - mean.center, unit)
-    _scatter(ax, analysis, rows, [offset @ across for across in mean.across])
+    _scatter(ax, view, rows, [offset @ across for across in mean.across])
     ax.set_xlabel(f"Place toward {mean.names[0]} ({unit})")
     ax.set_ylabel(f"Place toward {mean.names[1]} ({unit})")
     return ax
 
 
-def _scatter(ax: Axes, analysis: Shown, rows: NDArray[np.int64], values: list[Float]) -> None:
-    scale = color_scale(analysis)
-    angle = angle_in(analysis.screw.angle[rows], analysis.settings.angle_unit)
+def _scatter(ax: Axes, view: TrialView, rows: NDArray[np.int64], values: list[Float]) -> None:
+    scale = color_scale(view)
+    angle = angle_in(view.angle[rows], view.settings.angle_unit)
     ax.axhline(0.0, **style.LEVEL)
     ax.axvline(0.0, **style.LEVEL)
     ax.scatter(
@@ -123,11 +128,10 @@ def _scatter(ax: Axes, analysis: Shown, rows: NDArray[np.int64], values: list[Fl
     ax.set_box_aspect(1.0)
 
 
-def _mean_frame(analysis: Shown, bodies: Bodies) -> _MeanFrame:
-    axis = analysis.mean_axis
-    n = axis.direction
+def _mean_frame(view: TrialView, bodies: Bodies) -> _MeanFrame:
+    n, point = view.mean_direction, view.mean_point
     across, names = directions_across(n)
-    center = axis.point + ((bodies.middle - axis.point) @ n) * n
+    center = point + ((bodies.middle - point) @ n) * n
     return _MeanFrame(n, across, names, center)
 
 

@@ -12,22 +12,25 @@ from mpl_toolkits.mplot3d.art3d import Line3DCollection
 from mpl_toolkits.mplot3d.axes3d import Axes3D
 
 from elbowscrew.geometry.arrays import Float
+from elbowscrew.model import Analysis
 from elbowscrew.plots.axis import color_scale, equal_aspect, plot_path
 from elbowscrew.plots.style import CONFIDENCE, SPREAD
 from elbowscrew.quantities import angle_in, length_in
+from elbowscrew.results.trial_views import view_of
 from elbowscrew.view.scene import Bundle, Region, bodies_in_space, directions_across, joint_bundle
-from elbowscrew.view.shown import Shown
+from elbowscrew.view.trial_view import TrialView
 
 _AROUND: Final = 24
 _ALONG_IN_SPACE: Final = 13
 _ALONG: Final = 41
 
 
-def plot_joint_axis_in_space(ax: Axes3D, analysis: Shown) -> Axes3D:
+def plot_joint_axis_in_space(ax: Axes3D, analysis: Analysis | TrialView) -> Axes3D:
     """Draw the axes of the frames, the joint's axis, and the cones that hold 95 %."""
-    bundle = _bundle(analysis)
-    unit = analysis.settings.length_unit
-    colors = color_scale(analysis).to_rgba(angle_in(analysis.screw.angle[bundle.rows], analysis.settings.angle_unit))
+    view = view_of(analysis)
+    bundle = _bundle(view)
+    unit = view.settings.length_unit
+    colors = color_scale(view).to_rgba(angle_in(view.angle[bundle.rows], view.settings.angle_unit))
     ax.add_collection3d(Line3DCollection(list(bundle.segments), colors=colors, linewidths=0.6, alpha=0.8))
     ends = _ends(bundle)
     ax.plot(*ends.T, color="black", linewidth=1.6, label=bundle.name)
@@ -40,24 +43,25 @@ def plot_joint_axis_in_space(ax: Axes3D, analysis: Shown) -> Axes3D:
         ax.plot_surface(
             *np.moveaxis(surface, 2, 0), color=look.get("color", look.get("facecolor")), alpha=0.25, linewidth=0.0
         )
-    bodies = bodies_in_space(analysis)
-    plot_path(ax, bodies.path, unit, f"{analysis.named_joint.distal.name} path")
+    bodies = bodies_in_space(view)
+    plot_path(ax, bodies.path, unit, f"{view.named_joint.distal.name} path")
     equal_aspect(ax, np.concatenate([ends, length_in(bodies.corners, unit)]))
     for name, label in (("x", ax.set_xlabel), ("y", ax.set_ylabel), ("z", ax.set_zlabel)):
         label(f"{name} ({unit})", labelpad=-2)
     return ax
 
 
-def plot_axis_from_the_side(ax: Axes, analysis: Shown, side: int) -> Axes:
+def plot_axis_from_the_side(ax: Axes, analysis: Analysis | TrialView, side: int) -> Axes:
     """Draw the axes and the bands that hold 95 % along the joint's axis, what lies across it enlarged.
 
     `side` is 0 or 1: across to which of the two directions.
     """
-    bundle = _bundle(analysis)
-    unit = analysis.settings.length_unit
+    view = view_of(analysis)
+    bundle = _bundle(view)
+    unit = view.settings.length_unit
     directions, names = directions_across(bundle.direction)
     offset = bundle.segments - bundle.center
-    _add_segments(ax, analysis, bundle, np.stack([offset @ bundle.direction, offset @ directions[side]], axis=2))
+    _add_segments(ax, view, bundle, np.stack([offset @ bundle.direction, offset @ directions[side]], axis=2))
     along = np.linspace(-bundle.half, bundle.half, _ALONG)
     for region, look in _regions(bundle):
         reach = region.reach(along)
@@ -71,13 +75,14 @@ def plot_axis_from_the_side(ax: Axes, analysis: Shown, side: int) -> Axes:
     return ax
 
 
-def plot_axis_end_on(ax: Axes, analysis: Shown) -> Axes:
+def plot_axis_end_on(ax: Axes, analysis: Analysis | TrialView) -> Axes:
     """Draw the axes as seen along the joint's axis, with the circles that hold 95 % at the distal body."""
-    bundle = _bundle(analysis)
-    unit = analysis.settings.length_unit
+    view = view_of(analysis)
+    bundle = _bundle(view)
+    unit = view.settings.length_unit
     directions, names = directions_across(bundle.direction)
     offset = bundle.segments - bundle.center
-    _add_segments(ax, analysis, bundle, np.stack([offset @ direction for direction in directions], axis=2))
+    _add_segments(ax, view, bundle, np.stack([offset @ direction for direction in directions], axis=2))
     for region, look in _regions(bundle):
         ax.add_patch(Circle((0.0, 0.0), region.radius, **look))
     ax.plot(0.0, 0.0, "+", color="black", markersize=8, markeredgewidth=1.2, zorder=4)
@@ -90,9 +95,9 @@ def plot_axis_end_on(ax: Axes, analysis: Shown) -> Axes:
     return ax
 
 
-def _add_segments(ax: Axes, analysis: Shown, bundle: Bundle, segments: Float) -> None:
-    angle = angle_in(analysis.screw.angle[bundle.rows], analysis.settings.angle_unit)
-    colors = color_scale(analysis).to_rgba(angle)
+def _add_segments(ax: Axes, view: TrialView, bundle: Bundle, segments: Float) -> None:
+    angle = angle_in(view.angle[bundle.rows], view.settings.angle_unit)
+    colors = color_scale(view).to_rgba(angle)
     ax.add_collection(LineCollection(list(segments), colors=colors, linewidths=0.7, zorder=2))
 
 
@@ -100,25 +105,22 @@ def _widest(bundle: Bundle) -> float:
     return max(float(region.reach(np.array([bundle.half]))[0]) for region, _ in _regions(bundle)) or 1.0
 
 
-def confidence_text(analysis: Shown) -> str:
+def confidence_text(view: TrialView) -> str:
     """Say in a line what the joint's axis is known to."""
-    best = analysis.joint_axis.best
-    if best is None:
+    if view.confidence95 is None:
         return "the motion has no single axis: weighted mean of the frames' axes"
-    model = str(analysis.joint_axis.preferred).replace("_", "-")
-    if not np.isfinite(best.axis_cone):
+    model = str(view.joint_summary["preferred"]).replace("_", "-")
+    cone, circle = view.confidence95
+    if not np.isfinite(cone):
         return f"{model}; its confidence is not known"
-    angle = angle_in(np.array(best.axis_cone), analysis.settings.angle_unit)
-    radius = length_in(np.array(best.point_radius), analysis.settings.length_unit)
-    return (
-        f"{model}; 95 % confidence: {angle:.2g} {analysis.settings.angle_unit}, "
-        f"{radius:.2g} {analysis.settings.length_unit}"
-    )
+    angle = angle_in(np.array(cone), view.settings.angle_unit)
+    radius = length_in(np.array(circle), view.settings.length_unit)
+    return f"{model}; 95 % confidence: {angle:.2g} {view.settings.angle_unit}, {radius:.2g} {view.settings.length_unit}"
 
 
-def _bundle(analysis: Shown) -> Bundle:
+def _bundle(view: TrialView) -> Bundle:
     """Gather what is drawn, in the figures' unit of length."""
-    return joint_bundle(analysis).scaled(float(length_in(np.array(1.0), analysis.settings.length_unit)))
+    return joint_bundle(view).scaled(float(length_in(np.array(1.0), view.settings.length_unit)))
 
 
 def _regions(bundle: Bundle) -> list[tuple[Region, dict[str, Any]]]:

@@ -14,7 +14,7 @@ from elbowscrew.geometry.arrays import Float
 from elbowscrew.plots import style
 from elbowscrew.plots.figures import WIDTH_MM
 from elbowscrew.quantities import angle_in
-from elbowscrew.view.shown import Shown
+from elbowscrew.view.trial_view import TrialView
 
 PERCENT: Final[Float] = np.linspace(0.0, 100.0, 101)
 LEAST_TRIALS: Final = 2
@@ -27,27 +27,27 @@ class MeanCurve(NamedTuple):
     cycles: int
 
 
-def mean_curve(shown: Shown) -> MeanCurve | None:
+def mean_curve(view: TrialView) -> MeanCurve | None:
     """Take the mean of a trial's angle over its cycles, the time of each normalized from its start to its end.
 
     Parameters
     ----------
-    shown : Shown
+    view : TrialView
 
     Returns
     -------
     MeanCurve or None
         None if the trial has no cycle; NaN where no cycle's angle is known.
     """
-    screw, found = shown.screw, shown.repetitions
+    time_s, found = view.time_s, view.repetitions
     curves = []
     for start, end in zip(found.start_time_s, found.end_time_s, strict=True):
-        inside = (screw.time_s >= start) & (screw.time_s <= end)
+        inside = (time_s >= start) & (time_s <= end)
         if inside.sum() < 2 or not end > start:
             continue
-        share = 100.0 * (screw.time_s[inside] - start) / (end - start)
+        share = 100.0 * (time_s[inside] - start) / (end - start)
         # A NaN on either side makes what lies between unknown.
-        curves.append(np.interp(PERCENT, share, screw.angle[inside]))
+        curves.append(np.interp(PERCENT, share, view.angle[inside]))
     if not curves:
         return None
     stack = np.stack(curves)

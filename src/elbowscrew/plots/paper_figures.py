@@ -10,10 +10,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from elbowscrew.geometry.arrays import Float
+from elbowscrew.model import Analysis
 from elbowscrew.plots import series, style
 from elbowscrew.plots.figures import NARROW_MM, WIDTH_MM, MakeFigure
 from elbowscrew.quantities import angle_in
-from elbowscrew.view.shown import Shown
+from elbowscrew.results.trial_views import view_of
+from elbowscrew.view.trial_view import TrialView
 
 # Okabe and Ito's colors with line styles of their own, so that they are apart in grey as well.
 _COMPONENTS: Final[tuple[dict[str, Any], ...]] = (
@@ -24,37 +26,38 @@ _COMPONENTS: Final[tuple[dict[str, Any], ...]] = (
 )
 
 
-def _angle_figure(analysis: Shown, *, width_mm: float = WIDTH_MM, modeled: bool) -> Figure:
+def _angle_figure(analysis: Analysis | TrialView, *, width_mm: float = WIDTH_MM, modeled: bool) -> Figure:
+    view = view_of(analysis)
     figure = style.new_figure(width_mm, 0.4 * width_mm + 20.0)
     ax = figure.add_subplot()
-    unit, time_s = analysis.settings.angle_unit, analysis.screw.time_s
-    rows = analysis.keyframes.row
-    motion = analysis.interpolated if modeled else analysis.screw
-    angle = angle_in(motion.angle, unit)
+    unit, time_s = view.settings.angle_unit, view.time_s
+    rows = view.keyframes.row
+    angle = angle_in(view.modeled_angle if modeled else view.angle, unit)
     look = style.MODELED if modeled else style.MEASURED
     series.line(ax, time_s, angle, label="modeled" if modeled else "measured", **look)
-    ax.plot(time_s[rows], angle_in(analysis.screw.angle[rows], unit), label="keyframes", **style.KEYFRAME)
+    ax.plot(time_s[rows], angle_in(view.angle[rows], unit), label="keyframes", **style.KEYFRAME)
     if not modeled:
-        series.mark_tracking(ax, analysis)
+        series.mark_tracking(ax, view)
     ax.set_ylabel(f"Angle θ ({unit})")
-    _alike(ax, angle_in(analysis.screw.angle, unit), angle_in(analysis.interpolated.angle, unit))
+    _alike(ax, angle_in(view.angle, unit), angle_in(view.modeled_angle, unit))
     series.over_time(ax, time_s)
     figure.legend(*ax.get_legend_handles_labels(), loc="outside upper center", ncols=4)
     return figure
 
 
-def _euler_figure(analysis: Shown, *, width_mm: float = WIDTH_MM, modeled: bool) -> Figure:
+def _euler_figure(analysis: Analysis | TrialView, *, width_mm: float = WIDTH_MM, modeled: bool) -> Figure:
+    view = view_of(analysis)
     figure = style.new_figure(width_mm, 0.4 * width_mm + 20.0)
     ax = figure.add_subplot()
-    time_s = analysis.screw.time_s
-    motion = analysis.interpolated if modeled else analysis.screw
+    time_s = view.time_s
+    shown = view.modeled_euler_parameters if modeled else view.euler_parameters
     for component, look in enumerate(_COMPONENTS):
-        values = motion.euler_parameters[:, component]
+        values = shown[:, component]
         series.line(ax, time_s, values, label=f"$e_{component}$", linewidth=1.3, **look)
     if not modeled:
-        series.mark_tracking(ax, analysis)
+        series.mark_tracking(ax, view)
     ax.set_ylabel("Modeled $e_k$ (–)" if modeled else "Measured $e_k$ (–)")
-    _alike(ax, analysis.screw.euler_parameters, analysis.interpolated.euler_parameters)
+    _alike(ax, view.euler_parameters, view.modeled_euler_parameters)
     series.over_time(ax, time_s)
     figure.legend(*ax.get_legend_handles_labels(), loc="outside upper center", ncols=4 if width_mm < NARROW_MM else 6)
     return figure

@@ -11,78 +11,83 @@ from matplotlib.collections import PolyCollection
 from elbowscrew.choices import METHOD_LABELS
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.sensitivity import NORMAL_95
+from elbowscrew.model import Analysis
 from elbowscrew.motion.movements.phases import runs_of
 from elbowscrew.plots import style
 from elbowscrew.quantities import angle_in, length_in
+from elbowscrew.results.trial_views import view_of
 from elbowscrew.view.decimation import drawn_band, drawn_rows
-from elbowscrew.view.shown import Shown
+from elbowscrew.view.trial_view import TrialView
 
 _PIECE: Final = 500
 
 
-def plot_theta(ax: Axes, analysis: Shown) -> Axes:
+def plot_theta(ax: Axes, analysis: Analysis | TrialView) -> Axes:
     """Draw measured and modeled angle over time with the keyframes (the paper's figures 7 and 8)."""
-    unit = analysis.settings.angle_unit
-    angle = angle_in(analysis.screw.angle, unit)
-    reach = angle_in(NORMAL_95 * analysis.screw.angle_sd, unit)
-    time_s = analysis.screw.time_s
+    view = view_of(analysis)
+    unit = view.settings.angle_unit
+    angle = angle_in(view.angle, unit)
+    reach = angle_in(NORMAL_95 * view.angle_sd, unit)
+    time_s = view.time_s
     if np.isfinite(reach).any():
         label = f"95 % interval (±{np.nanmedian(reach):.2g} {unit})"
         rows, low, high = drawn_band(angle - reach, angle + reach)
         ax.fill_between(time_s[rows], low, high, label=label, **style.BAND)
     line(ax, time_s, angle, label="measured", **style.MEASURED)
-    line(ax, time_s, angle_in(analysis.interpolated.angle, unit), label=_model_label(analysis), **style.MODELED)
-    rows = analysis.keyframes.row
+    line(ax, time_s, angle_in(view.modeled_angle, unit), label=_model_label(view), **style.MODELED)
+    rows = view.keyframes.row
     ax.plot(time_s[rows], angle[rows], label="keyframes", **style.KEYFRAME)
-    mark_movements(ax, analysis)
-    mark_tracking(ax, analysis)
+    mark_movements(ax, view)
+    mark_tracking(ax, view)
     ax.set_ylabel(f"Angle θ ({unit})")
     return over_time(ax, time_s)
 
 
-def plot_euler_parameter(ax: Axes, analysis: Shown, component: int) -> Axes:
+def plot_euler_parameter(ax: Axes, analysis: Analysis | TrialView, component: int) -> Axes:
     """Draw one of e0..e3, measured and modeled, over time (the paper's figures 9 and 10)."""
-    time_s = analysis.screw.time_s
-    measured = analysis.screw.euler_parameters[:, component]
+    view = view_of(analysis)
+    time_s = view.time_s
+    measured = view.euler_parameters[:, component]
     line(ax, time_s, measured, label="measured", **style.MEASURED)
-    modeled = analysis.interpolated.euler_parameters[:, component]
-    line(ax, time_s, modeled, label=_model_label(analysis), **style.MODELED)
-    rows = analysis.keyframes.row
+    modeled = view.modeled_euler_parameters[:, component]
+    line(ax, time_s, modeled, label=_model_label(view), **style.MODELED)
+    rows = view.keyframes.row
     ax.plot(time_s[rows], measured[rows], label="keyframes", **style.KEYFRAME)
-    mark_tracking(ax, analysis)
+    mark_tracking(ax, view)
     ax.set_ylabel(f"e{'₀₁₂₃'[component]} (–)")
     return over_time(ax, time_s)
 
 
-def plot_angle_error(ax: Axes, analysis: Shown) -> Axes:
+def plot_angle_error(ax: Axes, analysis: Analysis | TrialView) -> Axes:
     """Draw the angle between modeled and measured orientation over time, with its RMS."""
-    unit = analysis.settings.angle_unit
-    return _plot_error(ax, analysis, angle_in(analysis.interpolated.angle_error, unit), "Angle error", unit)
+    view = view_of(analysis)
+    unit = view.settings.angle_unit
+    return _plot_error(ax, view, angle_in(view.angle_error, unit), "Angle error", unit)
 
 
-def plot_rms_displacement(ax: Axes, analysis: Shown) -> Axes:
+def plot_rms_displacement(ax: Axes, analysis: Analysis | TrialView) -> Axes:
     """Draw the RMS displacement of the distal body's points over time, with its RMS."""
-    unit = analysis.settings.length_unit
-    values = length_in(analysis.interpolated.rms_displacement, unit)
-    return _plot_error(ax, analysis, values, "RMS displacement", unit)
+    view = view_of(analysis)
+    unit = view.settings.length_unit
+    values = length_in(view.rms_displacement, unit)
+    return _plot_error(ax, view, values, "RMS displacement", unit)
 
 
-def mark_tracking(ax: Axes, analysis: Shown) -> Axes:
+def mark_tracking(ax: Axes, view: TrialView) -> Axes:
     """Shade the frames without a measured pose: plain where they stay empty, hatched where they were filled in."""
-    screw = analysis.screw
-    half = 0.5 / analysis.recording.rate_hz
+    half = 0.5 / view.rate_hz
     for mask, label, look in (
-        (~screw.valid & ~screw.filled, "not tracked", style.LOST),
-        (screw.filled, "filled in", style.FILLED),
+        (~view.valid & ~view.filled, "not tracked", style.LOST),
+        (view.filled, "filled in", style.FILLED),
     ):
         first, last = runs_of(mask)
-        _shade(ax, screw.time_s[first] - half, screw.time_s[last] + half, label=label, **look)
+        _shade(ax, view.time_s[first] - half, view.time_s[last] + half, label=label, **look)
     return ax
 
 
-def mark_movements(ax: Axes, analysis: Shown) -> Axes:
+def mark_movements(ax: Axes, view: TrialView) -> Axes:
     """Shade the movements between rests."""
-    time_s, phases = analysis.screw.time_s, analysis.phases
+    time_s, phases = view.time_s, view.phases
     _shade(ax, time_s[phases.onset_rows], time_s[phases.offset_rows], label="moving", **style.MOVING)
     return ax
 
@@ -95,8 +100,8 @@ def _shade(ax: Axes, start: Float, end: Float, **look: Any) -> None:
     ax.add_collection(PolyCollection(corners, transform=ax.get_xaxis_transform(), **look), autolim=False)
 
 
-def _plot_error(ax: Axes, analysis: Shown, values: Float, name: str, unit: str) -> Axes:
-    time_s = analysis.screw.time_s
+def _plot_error(ax: Axes, view: TrialView, values: Float, name: str, unit: str) -> Axes:
+    time_s = view.time_s
     line(ax, time_s, values, label="model against measurement", **style.MEASURED)
     if np.isfinite(values).any():
         level = float(np.sqrt(np.nanmean(values**2)))
@@ -111,9 +116,9 @@ def _plot_error(ax: Axes, analysis: Shown, values: Float, name: str, unit: str) 
             va="bottom",
             bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.0, "alpha": 0.85},
         )
-    rows = analysis.keyframes.row
+    rows = view.keyframes.row
     ax.plot(time_s[rows], values[rows], label="keyframes", **style.KEYFRAME)
-    mark_tracking(ax, analysis)
+    mark_tracking(ax, view)
     ax.set_ylabel(f"{name} ({unit})")
     ax.set_ylim(bottom=min(0.0, ax.get_ylim()[0]))
     return over_time(ax, time_s)
@@ -141,6 +146,6 @@ def over_time(ax: Axes, time_s: Float) -> Axes:
     return ax
 
 
-def _model_label(analysis: Shown) -> str:
-    method = METHOD_LABELS.get(analysis.settings.model_method, analysis.settings.model_method)
-    return f"{method} through {analysis.keyframes.row.size} poses"
+def _model_label(view: TrialView) -> str:
+    method = METHOD_LABELS.get(view.settings.model_method, view.settings.model_method)
+    return f"{method} through {view.keyframes.row.size} poses"

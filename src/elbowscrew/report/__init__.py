@@ -12,17 +12,17 @@ from typing import TYPE_CHECKING, NamedTuple
 from elbowscrew.errors import ResultError
 
 if TYPE_CHECKING:
-    from elbowscrew.view.finished import FinishedTrial
+    from elbowscrew.view.trial_view import TrialView
 
 
-def write_trial_page(folder: Path, trial: FinishedTrial | None = None) -> Path:
+def write_trial_page(folder: Path, trial: TrialView | None = None) -> Path:
     """Write ``report.html`` of one result folder, whole or not at all.
 
     Parameters
     ----------
     folder : Path
         As `elbowscrew.save_analysis` wrote it. A page of ours is replaced.
-    trial : FinishedTrial, optional
+    trial : TrialView, optional
         What is in the folder, if it is at hand; else it is read.
 
     Returns
@@ -92,7 +92,7 @@ def remake_pages(folders: Iterable[Path]) -> Remade:
     OutputError
         If something else has a page's name, or the disk does not take it.
     """
-    from elbowscrew.results.read_back import is_result
+    from elbowscrew.results.trial_views import is_result
 
     pages, errors = [], []
     for folder in folders:
@@ -115,7 +115,7 @@ def results_in(folders: Iterable[Path]) -> tuple[Path, ...]:
         If a folder neither is nor holds a finished result.
     """
     from elbowscrew.report.study import result_folders
-    from elbowscrew.results.read_back import is_result
+    from elbowscrew.results.trial_views import is_result
 
     found = []
     for folder in folders:

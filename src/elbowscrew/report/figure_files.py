@@ -15,10 +15,12 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from elbowscrew._process import has_spare_cores
+from elbowscrew.model import Analysis
 from elbowscrew.plots.figures import WIDTH_MM
 from elbowscrew.plots.registry import figure_function
 from elbowscrew.plots.style import publication_style, settle
-from elbowscrew.view.shown import Shown
+from elbowscrew.results.trial_views import view_of
+from elbowscrew.view.trial_view import TrialView
 
 # Without dates and program versions the same analysis gives the same bytes.
 _METADATA: Final[dict[str, dict[str, Any]]] = {
@@ -29,14 +31,13 @@ _COMPRESSION: Final = 3  # a third less time than by default, for a tenth more b
 
 
 def figure_files(
-    shown: Shown, names: Sequence[str], formats: Sequence[str], width_mm: float = WIDTH_MM
+    trial: Analysis | TrialView, names: Sequence[str], formats: Sequence[str], width_mm: float = WIDTH_MM
 ) -> dict[str, bytes]:
     """Draw figures of a trial.
 
     Parameters
     ----------
-    shown : Shown
-        An analysis, or a result read back.
+    trial : Analysis or TrialView
     names : sequence of str
         Of `elbowscrew.view.figure_names.FIGURE_ENTRIES`.
     formats : sequence of {"png", "svg", "pdf"}
@@ -48,7 +49,8 @@ def figure_files(
     dict of str to bytes
         Files by name, as in ``theta.png``.
     """
-    return files_of({name: partial(figure_function(name), shown, width_mm=width_mm) for name in names}, formats)
+    view = view_of(trial)
+    return files_of({name: partial(figure_function(name), view, width_mm=width_mm) for name in names}, formats)
 
 
 def files_of(drawings: Mapping[str, Callable[[], Figure]], formats: Sequence[str]) -> dict[str, bytes]:

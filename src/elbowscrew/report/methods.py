@@ -8,7 +8,7 @@ from typing import Final
 from elbowscrew.model.joint_summary_types import NoiseOfBodies
 from elbowscrew.model.summary_types import ModelSummary, TrialSummary
 from elbowscrew.results.joint_summary import preferred_fit
-from elbowscrew.view.finished import FinishedTrial
+from elbowscrew.view.trial_view import TrialView
 
 _METHODS: Final = {
     "dlb": "dual quaternion linear blending (DLB)",
@@ -31,12 +31,12 @@ PAPER: Final = (
 )
 
 
-def methods_of(trial: FinishedTrial) -> str:
+def methods_of(trial: TrialView) -> str:
     """Describe what was done to this trial, in sentences that can be published.
 
     Parameters
     ----------
-    trial : FinishedTrial
+    trial : TrialView
 
     Returns
     -------
@@ -46,16 +46,16 @@ def methods_of(trial: FinishedTrial) -> str:
     return " ".join(_sentences(trial))
 
 
-def citations_of(trial: FinishedTrial) -> tuple[str, ...]:
+def citations_of(trial: TrialView) -> tuple[str, ...]:
     """Say what to cite."""
     return (f"elbowscrew, version {trial.summary['elbowscrew']} (BSD-3-Clause).", PAPER)
 
 
-def _sentences(trial: FinishedTrial) -> Iterator[str]:
+def _sentences(trial: TrialView) -> Iterator[str]:
     settings, summary = trial.settings, trial.summary
     proximal, distal = trial.named_joint.proximal.name, trial.named_joint.distal.name
     yield from _recording(trial, summary["trial"])
-    if trial.proximal is None:
+    if trial.proximal_name is None:
         yield f"The {proximal} was taken to stand still, so that poses of the {distal} are relative motion."
     else:
         yield f"Motion of the {distal} relative to the {proximal} was described by unit dual quaternions."
@@ -93,7 +93,7 @@ def _sentences(trial: FinishedTrial) -> Iterator[str]:
     yield f"Computations were made with elbowscrew {summary['elbowscrew']} (Pennestrì and Valentini 2010)."
 
 
-def _recording(trial: FinishedTrial, figures: TrialSummary) -> Iterator[str]:
+def _recording(trial: TrialView, figures: TrialSummary) -> Iterator[str]:
     settings = trial.settings
     if settings.resample_hz is None:
         yield f"Poses of the segments were recorded at {figures['rate_hz']:.6g} Hz."
@@ -114,7 +114,7 @@ def _recording(trial: FinishedTrial, figures: TrialSummary) -> Iterator[str]:
         )
     if settings.resample_hz is not None:
         yield f"They were resampled to {settings.resample_hz:g} Hz by screw linear interpolation (ScLERP)."
-    who = f"The {trial.named_joint.distal.name} was" if trial.proximal is None else "Both segments were"
+    who = f"The {trial.named_joint.distal.name} was" if trial.proximal_name is None else "Both segments were"
     missing = f"{who} tracked in {100.0 * (1.0 - figures['missing_share']):.1f} % of {figures['frames']} frames"
     if figures["filled_frames"]:
         yield (
@@ -134,7 +134,7 @@ def _noise(noise: NoiseOfBodies) -> Iterator[str]:
         )
 
 
-def _joint_axis(trial: FinishedTrial) -> Iterator[str]:
+def _joint_axis(trial: TrialView) -> Iterator[str]:
     joint = trial.joint_summary
     preferred, fit, screw_hinge = joint["preferred"], preferred_fit(joint), joint["screw_hinge"]
     if preferred is None or fit is None or screw_hinge is None:
@@ -172,7 +172,7 @@ def _joint_axis(trial: FinishedTrial) -> Iterator[str]:
     )
 
 
-def _model(trial: FinishedTrial) -> Iterator[str]:
+def _model(trial: TrialView) -> Iterator[str]:
     settings, model = trial.settings, trial.summary["interpolation"]
     method = _METHODS.get(settings.model_method, settings.model_method)
     keyframes = model["keyframes"]
@@ -198,7 +198,7 @@ def _model(trial: FinishedTrial) -> Iterator[str]:
     )
 
 
-def _laws(trial: FinishedTrial, model: ModelSummary) -> Iterator[str]:
+def _laws(trial: TrialView, model: ModelSummary) -> Iterator[str]:
     """Tell phases and laws; which law a best fit chose stands in the summary."""
     settings, phases = trial.settings, model["phases"]
     count = f"{phases} phase{'s' if phases > 1 else ''}"

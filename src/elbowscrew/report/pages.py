@@ -16,8 +16,8 @@ from markupsafe import Markup
 
 from elbowscrew._version import __version__
 from elbowscrew.errors import ResultError
-from elbowscrew.results.read_back import UNREADABLE
 from elbowscrew.results.staging import write_files
+from elbowscrew.results.trial_views import UNREADABLE
 
 MARK: Final = 'name="generator" content="elbowscrew'
 """What a page of ours has at its beginning, so that it may be replaced."""

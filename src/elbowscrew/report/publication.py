@@ -11,8 +11,8 @@ from typing import Final, NamedTuple
 
 from elbowscrew.errors import SettingError
 from elbowscrew.report.figure_files import figure_files, files_of
-from elbowscrew.results.read_back import read_finished
 from elbowscrew.results.staging import write_files
+from elbowscrew.results.trial_views import view_of_result
 from elbowscrew.view.figure_names import OVERLAY
 
 _LONGEST_NAME: Final = 80
@@ -70,7 +70,7 @@ def save_publication_figures(
     prefixes = _prefixes(results)
     curves, left_out, units = [], [], set()
     for result, prefix in zip(results, prefixes, strict=True):
-        trial = read_finished(result)
+        trial = view_of_result(result)
         for name, content in figure_files(trial, single, formats, width_mm).items():
             contents[folder / f"{prefix}{name}"] = content
         if OVERLAY in names:

@@ -9,8 +9,8 @@ import numpy as np
 from elbowscrew.geometry._blocks import evenly_thinned
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.report.charts import COLORS
-from elbowscrew.view.finished import FinishedTrial
 from elbowscrew.view.scene import Region, bodies_in_space, directions_across, joint_bundle
+from elbowscrew.view.trial_view import TrialView
 
 MOST_FRAMES: Final = 900
 """Frames that are played; of longer trials every so many."""
@@ -20,12 +20,12 @@ _DECIMALS: Final = 2
 _PURE_DECIMALS: Final = 5
 
 
-def scene_of(trial: FinishedTrial) -> dict[str, Any]:
+def scene_of(trial: TrialView) -> dict[str, Any]:
     """Gather bodies, axes and motion of a trial for the view that turns and plays.
 
     Parameters
     ----------
-    trial : FinishedTrial
+    trial : TrialView
 
     Returns
     -------
@@ -33,23 +33,22 @@ def scene_of(trial: FinishedTrial) -> dict[str, Any]:
         Numbers and the words for the segments, ready for JSON; None where nothing is known. Poses are displacements:
         quaternion, then translation, applied to the distal body as it is at the reference.
     """
-    screw = trial.screw
     bundle = joint_bundle(trial).scaled(1000.0)
     proximal, distal = _bodies(trial)
     across, _ = directions_across(bundle.direction)
-    rows = evenly_thinned(np.arange(screw.frame.size), MOST_FRAMES)
-    angle = np.degrees(screw.angle)
-    known = angle[screw.axis_known]
+    rows = evenly_thinned(np.arange(trial.frame.size), MOST_FRAMES)
+    angle = np.degrees(trial.angle)
+    known = angle[trial.axis_known]
     return {
-        "frame": screw.frame[rows].tolist(),
-        "time": _rounded(screw.time_s[rows], 4),
+        "frame": trial.frame[rows].tolist(),
+        "time": _rounded(trial.time_s[rows], 4),
         "theta": _rounded(angle[rows], _DECIMALS),
-        "slide": _rounded(1000.0 * screw.slide[rows], _DECIMALS),
-        "valid": screw.valid[rows].astype(int).tolist(),
-        "turn": _rounded(screw.euler_parameters[rows], _PURE_DECIMALS),
-        "shift": _rounded(1000.0 * screw.translation[rows], _DECIMALS),
-        "axis": _rounded(screw.axis_direction[rows], _PURE_DECIMALS),
-        "point": _rounded(1000.0 * screw.axis_point[rows], _DECIMALS),
+        "slide": _rounded(1000.0 * trial.slide[rows], _DECIMALS),
+        "valid": trial.valid[rows].astype(int).tolist(),
+        "turn": _rounded(trial.euler_parameters[rows], _PURE_DECIMALS),
+        "shift": _rounded(1000.0 * trial.translation[rows], _DECIMALS),
+        "axis": _rounded(trial.axis_direction[rows], _PURE_DECIMALS),
+        "point": _rounded(1000.0 * trial.axis_point[rows], _DECIMALS),
         "segments": _rounded(bundle.segments.reshape(-1, 6), _DECIMALS),
         "segmentTheta": _rounded(angle[bundle.rows], _DECIMALS),
         "thetaRange": [float(known.min()), float(known.max())],
@@ -65,7 +64,7 @@ def scene_of(trial: FinishedTrial) -> dict[str, Any]:
     }
 
 
-def _bodies(trial: FinishedTrial) -> tuple[dict[str, Any] | None, dict[str, Any] | None]:
+def _bodies(trial: TrialView) -> tuple[dict[str, Any] | None, dict[str, Any] | None]:
     """Give both bodies at the reference, with the words for their segments."""
     bodies, words = bodies_in_space(trial), trial.named_joint
     return (

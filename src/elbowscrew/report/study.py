@@ -16,9 +16,9 @@ from elbowscrew.errors import ResultError
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.model.summary_types import Summary
 from elbowscrew.reading.source import longest_cell
-from elbowscrew.results.read_back import is_result
 from elbowscrew.results.summary_reading import read_summary, settings_in
 from elbowscrew.results.table_reading import read_columns
+from elbowscrew.results.trial_views import is_result
 from elbowscrew.view.decimation import drawn_rows
 
 CONDITION: Final = "condition"

@@ -25,54 +25,52 @@ from elbowscrew.report.charts import (
     ticks_between,
 )
 from elbowscrew.report.scene import WIDEST
-from elbowscrew.view.finished import FinishedTrial
 from elbowscrew.view.scene import Bundle, directions_across, joint_bundle
+from elbowscrew.view.trial_view import TrialView
 
 _ASPECT: Final = (0.5 * WIDTH - 78.0) / (0.42 * WIDTH - 56.0)  # of the inner part of a panel of the axes
 
 
-def theta_chart(trial: FinishedTrial) -> Markup:
+def theta_chart(trial: TrialView) -> Markup:
     """Measured and modeled angle over time, with keyframes, movements and what was lost or filled in."""
-    screw = trial.screw
-    angle = np.degrees(screw.angle)
+    angle = np.degrees(trial.angle)
     motion = trial.summary["motion"]
     chart = _over_time(
         trial,
         "theta",
         "Angle over time",
-        f"Measured and modeled rotation angle over {screw.time_s[-1] - screw.time_s[0]:.2f} seconds; it is largest, "
+        f"Measured and modeled rotation angle over {trial.time_s[-1] - trial.time_s[0]:.2f} seconds; it is largest, "
         f"{motion['theta_max_deg']:.1f} degrees, at frame {motion['theta_max_frame']}.",
-        range_of(angle, np.degrees(trial.interpolated.angle)),
+        range_of(angle, np.degrees(trial.modeled_angle)),
         "Angle θ (deg)",
     )
-    time_s, phases = screw.time_s, trial.phases
+    time_s, phases = trial.time_s, trial.phases
     chart.spans(zip(time_s[phases.onset_rows], time_s[phases.offset_rows], strict=True), "fill-moving", "moving")
     _mark_tracking(chart, trial)
     _mark_interval(chart, trial)
     chart.line(time_s, angle, "measured", "measured")
-    chart.line(time_s, np.degrees(trial.interpolated.angle), "modeled", model_name(trial))
+    chart.line(time_s, np.degrees(trial.modeled_angle), "modeled", model_name(trial))
     rows = trial.keyframes.row
     chart.points(time_s[rows], angle[rows], "keyframe", "keyframes")
     return chart.svg()
 
 
-def error_chart(trial: FinishedTrial) -> Markup:
+def error_chart(trial: TrialView) -> Markup:
     """Angle error and RMS displacement of the model over time, one above the other."""
-    model = trial.interpolated
     panels: list[str] = []
     keys = Markup()
     for k, (values, label, unit) in enumerate(
         (
-            (np.degrees(model.angle_error), "Angle error", "deg"),
-            (1000.0 * model.rms_displacement, "RMS displacement", "mm"),
+            (np.degrees(trial.angle_error), "Angle error", "deg"),
+            (1000.0 * trial.rms_displacement, "RMS displacement", "mm"),
         )
     ):
         chart = _over_time(trial, f"error{k}", "", "", range_of(values, zero=True), f"{label} ({unit})", height=230.0)
         _mark_tracking(chart, trial)
-        chart.line(model.time_s, values, "measured", "model against measurement")
+        chart.line(trial.time_s, values, "measured", "model against measurement")
         if np.isfinite(values).any():
             level = float(np.sqrt(np.nanmean(values**2)))
-            chart.segment((model.time_s[0], model.time_s[-1]), (level, level), "level", label="RMS")
+            chart.segment((trial.time_s[0], trial.time_s[-1]), (level, level), "level", label="RMS")
         panels.append(chart.panel(0.0, 235.0 * k))
         keys = chart.keys()
     whose = f"the {trial.named_joint.distal.name}'s points"
@@ -80,9 +78,9 @@ def error_chart(trial: FinishedTrial) -> Markup:
     return keys + picture("error", "Error of the model over time", text, WIDTH, 465.0, panels)
 
 
-def euler_chart(trial: FinishedTrial) -> Markup:
+def euler_chart(trial: TrialView) -> Markup:
     """Measured and modeled e0..e3 over time, four panels."""
-    measured, modeled = trial.screw.euler_parameters, trial.interpolated.euler_parameters
+    measured, modeled = trial.euler_parameters, trial.modeled_euler_parameters
     panels = []
     keys = Markup()
     for k in range(4):
@@ -97,23 +95,23 @@ def euler_chart(trial: FinishedTrial) -> Markup:
             height=230.0,
         )
         _mark_tracking(chart, trial)
-        chart.line(trial.screw.time_s, measured[:, k], "measured", "measured")
-        chart.line(trial.screw.time_s, modeled[:, k], "modeled", "modeled")
+        chart.line(trial.time_s, measured[:, k], "measured", "measured")
+        chart.line(trial.time_s, modeled[:, k], "modeled", "modeled")
         rows = trial.keyframes.row
-        chart.points(trial.screw.time_s[rows], measured[rows, k], "keyframe", "keyframes", radius=3.0)
+        chart.points(trial.time_s[rows], measured[rows, k], "keyframe", "keyframes", radius=3.0)
         panels.append(chart.panel(0.5 * WIDTH * (k % 2), 235.0 * (k // 2)))
         keys = chart.keys()
     text = "e0 to e3, measured and modeled, over time."
     return keys + picture("euler", "Euler parameters over time", text, WIDTH, 465.0, panels)
 
 
-def axis_chart(trial: FinishedTrial) -> Markup:
+def axis_chart(trial: TrialView) -> Markup:
     """Axes of the frames and the joint's axis with what holds 95 %, end-on and from the side."""
     bundle = joint_bundle(trial).scaled(1000.0)
     across, names = directions_across(bundle.direction)
     offset = bundle.segments - bundle.center
     widest = _reach(bundle, offset - (offset @ bundle.direction)[..., None] * bundle.direction)
-    angle = np.degrees(trial.screw.angle[bundle.rows])
+    angle = np.degrees(trial.angle[bundle.rows])
     colors = [color_of(float(share)) for share in (angle - angle.min()) / (float(np.ptp(angle)) or 1.0)]
     size = (0.5 * WIDTH, 0.42 * WIDTH)
     end_on = Chart(
@@ -187,14 +185,14 @@ def repetition_chart(curve: Mapping[str, NDArray[Any]], count: int) -> Markup:
     return chart.svg()
 
 
-def model_name(trial: FinishedTrial) -> str:
+def model_name(trial: TrialView) -> str:
     """Name the model in a few words."""
     name = trial.settings.model_method
     return f"{METHOD_LABELS.get(name, name)} through {trial.keyframes.row.size} poses"
 
 
 def _over_time(
-    trial: FinishedTrial,
+    trial: TrialView,
     name: str,
     title: str,
     text: str,
@@ -204,7 +202,7 @@ def _over_time(
     width: float = WIDTH,
     height: float = 340.0,
 ) -> Chart:
-    time_s = trial.screw.time_s
+    time_s = trial.time_s
     return Chart(
         name,
         title,
@@ -217,21 +215,20 @@ def _over_time(
     )
 
 
-def _mark_interval(chart: Chart, trial: FinishedTrial) -> None:
-    screw = trial.screw
-    reach = NORMAL_95 * np.degrees(screw.angle_sd)
+def _mark_interval(chart: Chart, trial: TrialView) -> None:
+    reach = NORMAL_95 * np.degrees(trial.angle_sd)
     if np.isfinite(reach).any():
-        angle, label = np.degrees(screw.angle), f"95 % interval (±{np.nanmedian(reach):.2g})"
-        chart.band(screw.time_s, angle - reach, angle + reach, "band-known", label)
+        angle, label = np.degrees(trial.angle), f"95 % interval (±{np.nanmedian(reach):.2g})"
+        chart.band(trial.time_s, angle - reach, angle + reach, "band-known", label)
 
 
-def _mark_tracking(chart: Chart, trial: FinishedTrial) -> None:
-    screw, half = trial.screw, 0.5 / trial.recording.rate_hz
+def _mark_tracking(chart: Chart, trial: TrialView) -> None:
+    half = 0.5 / trial.rate_hz
     for mask, look, label in (
-        (~screw.valid & ~screw.filled, "fill-lost", "not tracked"),
-        (screw.filled, "fill-filled", "filled in"),
+        (~trial.valid & ~trial.filled, "fill-lost", "not tracked"),
+        (trial.filled, "fill-filled", "filled in"),
     ):
-        spans = [(screw.time_s[a] - half, screw.time_s[b] + half) for a, b in zip(*runs_of(mask), strict=True)]
+        spans = [(trial.time_s[a] - half, trial.time_s[b] + half) for a, b in zip(*runs_of(mask), strict=True)]
         chart.spans(spans, look, label)
 
 

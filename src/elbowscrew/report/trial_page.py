@@ -24,10 +24,10 @@ from elbowscrew.report.trial_charts import (
     theta_chart,
 )
 from elbowscrew.results.joint_summary import preferred_fit
-from elbowscrew.results.read_back import read_finished
 from elbowscrew.results.summary import settings_summary
+from elbowscrew.results.trial_views import view_of_result
 from elbowscrew.settings import SETTINGS, Settings
-from elbowscrew.view.finished import FinishedTrial
+from elbowscrew.view.trial_view import TrialView
 
 _FRAMES_TOLD: Final = 24
 _HARDLY_DEG: Final = 30.0  # a cone wider than this tells of no direction
@@ -47,23 +47,25 @@ _FILES: Final = (
 )
 
 
-def write_trial_page(folder: Path, trial: FinishedTrial | None = None) -> Path:
+def write_trial_page(folder: Path, trial: TrialView | None = None) -> Path:
     """Write ``report.html`` into a result folder; see `elbowscrew.report.write_trial_page`."""
-    shown = read_finished(folder) if trial is None else trial
+    shown = view_of_result(folder) if trial is None else trial
     try:
-        page = trial_page(shown)
+        page = trial_page(shown, folder)
     except UNSHOWABLE as error:
         raise unshowable(folder, error) from error
     return write_page(folder / "report.html", page)
 
 
-def trial_page(trial: FinishedTrial) -> str:
+def trial_page(trial: TrialView, folder: Path) -> str:
     """Make the page of one trial.
 
     Parameters
     ----------
-    trial : FinishedTrial
-        From `elbowscrew.results.read_back.read_finished`.
+    trial : TrialView
+        From `elbowscrew.results.trial_views.view_of_result`.
+    folder : Path
+        What else is in it is named.
 
     Returns
     -------
@@ -81,13 +83,13 @@ def trial_page(trial: FinishedTrial) -> str:
         "model": summary["interpolation"],
         "joint": joint,
         "title": summary["source"]["name"] or "trial",
-        "proximal_name": f"still {words.proximal.name}" if trial.proximal is None else trial.proximal.name,
-        "distal_name": trial.distal.name,
+        "proximal_name": f"still {words.proximal.name}" if trial.proximal_name is None else trial.proximal_name,
+        "distal_name": trial.distal_name,
         "proximal_word": words.proximal.name,
         "distal_word": words.distal.name,
         "bodies": [body for body in (summary["trial"]["proximal"], summary["trial"]["distal"]) if body is not None],
         "frame_name": _frame_names(trial.named_joint)[trial.settings.express_in],
-        "lost_frames": int((~trial.screw.valid & ~trial.screw.filled).sum()),
+        "lost_frames": int((~trial.valid & ~trial.filled).sum()),
         "warnings": [warning for warning in warnings if warning["severity"] == "warning"],
         "notes": [warning for warning in warnings if warning["severity"] != "warning"],
         "model_name": model_name(trial),
@@ -106,7 +108,7 @@ def trial_page(trial: FinishedTrial) -> str:
         "other_units": (trial.settings.angle_unit, trial.settings.length_unit) != ("deg", "mm"),
         "methods": methods_of(trial),
         "citations": citations_of(trial),
-        "files": [(name, text) for name, text in _FILES if (trial.folder / name).is_file()],
+        "files": [(name, text) for name, text in _FILES if (folder / name).is_file()],
     }
     return render("trial.html", styles=("page.css",), script="trial.js", data=scene_of(trial), content=content)
 
@@ -139,25 +141,24 @@ def _estimates(joint: JointSummary) -> list[dict[str, Any]]:
     ]
 
 
-def _axis_rows(trial: FinishedTrial) -> list[dict[str, Any]]:
+def _axis_rows(trial: TrialView) -> list[dict[str, Any]]:
     """Some frames with an axis, evenly chosen over the time that has one."""
-    screw = trial.screw
-    known = np.flatnonzero(screw.axis_known & screw.valid)
+    known = np.flatnonzero(trial.axis_known & trial.valid)
     rows = evenly_thinned(known, _FRAMES_TOLD)
     columns = {
-        "frame": screw.frame[rows],
-        "time_s": screw.time_s[rows],
-        "theta": np.degrees(screw.angle[rows]),
-        "slide": 1000.0 * screw.slide[rows],
-        "direction": screw.axis_direction[rows],
-        "point": 1000.0 * screw.axis_point[rows],
-        "cone": np.degrees(screw.axis_cone[rows]),
-        "radius": 1000.0 * screw.point_radius[rows],
+        "frame": trial.frame[rows],
+        "time_s": trial.time_s[rows],
+        "theta": np.degrees(trial.angle[rows]),
+        "slide": 1000.0 * trial.slide[rows],
+        "direction": trial.axis_direction[rows],
+        "point": 1000.0 * trial.axis_point[rows],
+        "cone": np.degrees(trial.axis_cone[rows]),
+        "radius": 1000.0 * trial.point_radius[rows],
     }
     return _rows(columns)
 
 
-def _repetition_rows(trial: FinishedTrial) -> list[dict[str, Any]]:
+def _repetition_rows(trial: TrialView) -> list[dict[str, Any]]:
     found = trial.repetitions
     return _rows(
         {

@@ -19,7 +19,7 @@ from elbowscrew.model.summary_types import (
     SpreadSummary,
     WarningSummary,
 )
-from elbowscrew.motion.tracking.quality import body_quality, check_bodies, clock_quality
+from elbowscrew.motion.tracking.quality import check_bodies, clock_quality
 from elbowscrew.motion.tracking.selection import choose_bodies
 from elbowscrew.reading.options import ASK_FOR_MARKERS
 from elbowscrew.settings import Settings
@@ -27,18 +27,17 @@ from elbowscrew.settings import Settings
 
 def summary_from_recording(recording: Recording, settings: Settings | None = None) -> FileSummary:
     """What a file holds, ready for JSON: source, clock, bodies with their tracking, and which is which segment."""
-    checked, warnings = check_bodies(recording, recording.bodies, settings or Settings())
-    quality = [body_quality(raw, found, recording) for raw, found in zip(recording.bodies, checked, strict=True)]
+    checked = check_bodies(recording, recording.bodies, settings or Settings())
     return {
         "elbowscrew": __version__,
         "source": source_summary(recording),
-        "trial": {**recording_summary(recording), "bodies": [quality_summary(body) for body in quality]},
+        "trial": {**recording_summary(recording), "bodies": [quality_summary(body) for body in checked.quality]},
         "markers": [
             {"name": marker.name, "seen_share": float(np.isfinite(marker.position).all(axis=1).mean())}
             for marker in recording.markers
         ],
         "roles": _roles(recording),
-        "warnings": warnings_summary((*recording.warnings, *warnings)),
+        "warnings": warnings_summary((*recording.warnings, *checked.warnings)),
     }
 
 

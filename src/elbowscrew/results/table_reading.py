@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from itertools import islice
 from pathlib import Path
-from typing import Any, Final, TextIO, TypeVar
+from typing import Any, Final, TextIO
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,36 +20,38 @@ _BLOCK_LINES: Final = 4096
 _INTEGERS: Final = (Quantity.INTEGER, Quantity.MASKED_INTEGER, Quantity.FLAG)
 _AS_THEY_ARE: Final = (*_INTEGERS, Quantity.NUMBER, Quantity.LABEL)
 
-Result = TypeVar("Result")
+Attributes = dict[str, NDArray[Any]]
+"""Columns of a result by the attributes that they are of."""
 
 
-class AsRead:
-    """A result whose numbers are those that its table gives when it is read back, to the last digit.
+def as_read(
+    result: object, table: tuple[Column, ...], names: Collection[str], angle_unit: AngleUnit, length_unit: LengthUnit
+) -> Attributes:
+    """Give attributes of a result with the numbers that its table gives when it is read back, to the last digit.
 
-    Only the sign of a zero is lost in a table. Each is made when it is asked for: all at once they would take as much
-    memory as the result.
+    Only the sign of a zero is lost in a table.
 
     Parameters
     ----------
     result : object
     table : tuple of Column
+    names : collection of str
+        Of the attributes wanted.
     angle_unit, length_unit : str
         Units of the table.
+
+    Returns
+    -------
+    dict of str to ndarray
+        As `read_attributes` does of the table.
     """
-
-    def __init__(
-        self, result: object, table: tuple[Column, ...], angle_unit: AngleUnit, length_unit: LengthUnit
-    ) -> None:
-        self._result = result
-        self._quantities = {column.attribute: column.quantity for column in table}
-        self._units = angle_unit, length_unit
-
-    def __getattr__(self, name: str) -> Any:
-        values = getattr(self._result, name)
-        quantity = self._quantities.get(name)
-        if quantity is None or quantity in _AS_THEY_ARE:
-            return values
-        return as_read_back(values, quantity, *self._units)
+    quantities = {column.attribute: column.quantity for column in table if column.attribute in names}
+    return {
+        name: getattr(result, name)
+        if quantity in _AS_THEY_ARE
+        else as_read_back(getattr(result, name), quantity, angle_unit, length_unit)
+        for name, quantity in quantities.items()
+    }
 
 
 def read_columns(
@@ -110,26 +112,32 @@ def _read(path: Path, table: tuple[Column, ...], angle_unit: AngleUnit, length_u
     ]
 
 
-def read_result(
-    path: Path, kind: type[Result], table: tuple[Column, ...], angle_unit: AngleUnit, length_unit: LengthUnit
-) -> Result:
-    """Read a table back as the result that it was written from.
+def read_attributes(
+    path: Path, table: tuple[Column, ...], names: Collection[str], angle_unit: AngleUnit, length_unit: LengthUnit
+) -> Attributes:
+    """Read attributes of a result back from its table; columns of no other are looked at.
 
     Parameters
     ----------
     path : Path
-    kind : type
-        A dataclass; the table must have columns of each of its fields.
     table : tuple of Column
+    names : collection of str
+        Of the attributes wanted.
     angle_unit, length_unit : str
         Units that the table was written in.
+
+    Returns
+    -------
+    dict of str to ndarray
+        Shape (N,), or (N, k) of k components; SI units and radians.
 
     Raises
     ------
     ResultError
         As `read_columns`.
     """
-    return kind(**attributes(_read(path, table, angle_unit, length_unit), table))
+    wanted = tuple(column for column in table if column.attribute in names)
+    return attributes(_read(path, wanted, angle_unit, length_unit), wanted)
 
 
 def _whole_lines(stream: TextIO) -> list[str]:

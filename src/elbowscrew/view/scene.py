@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_quaternion import conjugate, multiply, pose_from_dual_quat, transform_points
 from elbowscrew.geometry.quaternion import rotate
-from elbowscrew.view.shown import Shown
+from elbowscrew.view.trial_view import TrialView
 
 _MOST_AXES: Final = 60
 _STEEPEST: Final = 1.4
@@ -74,52 +74,51 @@ class Bundle(NamedTuple):
         )
 
 
-def bodies_in_space(shown: Shown) -> Bodies:
+def bodies_in_space(view: TrialView) -> Bodies:
     """Place the bodies in the frame the screws are expressed in."""
-    reference, proximal = shown.joint.reference, shown.joint.dual_quat_lab_proximal
+    reference, proximal = view.reference, view.proximal_in_lab
     identity = np.array([1.0, 0, 0, 0, 0, 0, 0, 0])
     change, at_reference = {
         "distal": (conjugate(reference), identity),
         "proximal": (identity, reference),
         "lab": (proximal, multiply(proximal, reference)),
-    }[shown.settings.express_in]
+    }[view.settings.express_in]
     markers = [
-        None if body is None or body.marker_offsets is None else transform_points(pose, body.marker_offsets)
-        for body, pose in ((shown.proximal, change), (shown.distal, at_reference))
+        None if offsets is None else transform_points(pose, offsets)
+        for offsets, pose in ((view.proximal_markers, change), (view.distal_markers, at_reference))
     ]
     start = pose_from_dual_quat(at_reference)[1]
     # The displacement takes the distal body's origin along from where it is at the reference.
-    path = shown.screw.translation
+    path = view.translation
     if start.any():
-        path = path + rotate(shown.screw.euler_parameters, start)
+        path = path + rotate(view.euler_parameters, start)
     return Bodies(
         path=path,
         middle=np.mean(path, axis=0, where=np.isfinite(path)),
         corners=np.stack([np.fmin.reduce(path, axis=0), np.fmax.reduce(path, axis=0)]),
         start=start,
-        proximal=None if shown.proximal is None else pose_from_dual_quat(change)[1],
+        proximal=None if view.proximal_name is None else pose_from_dual_quat(change)[1],
         proximal_markers=markers[0],
         distal_markers=markers[1],
     )
 
 
-def joint_bundle(shown: Shown) -> Bundle:
+def joint_bundle(view: TrialView) -> Bundle:
     """Gather the joint's axis, the axes of the frames about it, and what holds 95 % of each."""
-    best = shown.joint_axis.best
-    line = shown.joint_axis.weighted_mean if best is None else best.line
-    bodies = bodies_in_space(shown)
-    center = line.point + ((bodies.middle - line.point) @ line.direction) * line.direction
+    direction, point, known = view.joint_direction, view.joint_point, view.confidence95
+    bodies = bodies_in_space(view)
+    center = point + ((bodies.middle - point) @ direction) * direction
     half = half_length(bodies, center)
-    rows, segments = axis_segments(shown, center, half)
+    rows, segments = axis_segments(view, center, half)
     return Bundle(
-        name="mean axis" if best is None else "joint axis",
-        direction=line.direction,
+        name="mean axis" if known is None else "joint axis",
+        direction=direction,
         center=center,
         half=1.15 * half,
         rows=rows,
         segments=segments,
-        spread=Region(*shown.mean_axis.spread95),
-        confidence=None if best is None else Region(best.axis_cone, best.point_radius),
+        spread=Region(*view.spread95),
+        confidence=None if known is None else Region(*known),
     )
 
 
@@ -128,10 +127,10 @@ def half_length(bodies: Bodies, center: Float) -> float:
     return 0.55 * float(np.max(np.ptp(np.concatenate([bodies.corners, center[None]]), axis=0)))
 
 
-def axis_segments(shown: Shown, center: Float, half: float) -> tuple[NDArray[np.int64], Float]:
+def axis_segments(view: TrialView, center: Float, half: float) -> tuple[NDArray[np.int64], Float]:
     """Rows (M,) of some of the frames with an axis, and pieces (M, 2, 3) of their axes about the center, meters."""
-    rows = thinned(np.flatnonzero(shown.screw.axis_known), _MOST_AXES)
-    direction, point = shown.screw.axis_direction[rows], shown.screw.axis_point[rows]
+    rows = thinned(np.flatnonzero(view.axis_known), _MOST_AXES)
+    direction, point = view.axis_direction[rows], view.axis_point[rows]
     middle = point + np.sum((center - point) * direction, axis=1, keepdims=True) * direction
     return rows, np.stack([middle - half * direction, middle + half * direction], axis=1)
 

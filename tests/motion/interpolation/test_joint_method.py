@@ -15,7 +15,7 @@ from elbowscrew.errors import SettingError
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.model import Analysis
 from elbowscrew.report.methods import methods_of
-from elbowscrew.results.read_back import read_finished
+from elbowscrew.results.trial_views import view_of_result
 
 EXACT: dict[str, Any] = {"frames": 160, "inversion": 70, "marker_noise_mm": 0.0}
 FRAMES = (0, 25, 70, 100, 159)
@@ -156,7 +156,7 @@ def test_the_commands(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: p
     save_simulation(simulate_trial(frames=160, inversion=70, joint_type="two-axes"), tmp_path / "study" / "a.csv")
     assert main(["batch", "study", "-o", "out", "--method", "joint", "--figure-format", "none"]) == 0
     folder = next((tmp_path / "out").glob("*/keyframes.csv")).parent
-    assert "interpolation of the joint's own angles" in methods_of(read_finished(folder))
+    assert "interpolation of the joint's own angles" in methods_of(view_of_result(folder))
     assert main(["report", str(folder)]) == 0
     assert main(["interpolate", str(folder / "keyframes.csv"), "--frames", "50"]) == 0
     plain = tmp_path / "r"

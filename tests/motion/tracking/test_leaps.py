@@ -20,7 +20,7 @@ from elbowscrew.model import TrackingLoss
 from elbowscrew.motion.smoothing.gaps import fill_gaps
 from elbowscrew.motion.tracking.clock import elapsed_time
 from elbowscrew.motion.tracking.leaps import check_tracking
-from elbowscrew.motion.tracking.quality import body_quality, check_bodies, clock_quality, clock_warnings
+from elbowscrew.motion.tracking.quality import check_bodies, clock_quality, clock_warnings
 
 
 def body(pose: Float, name: str = "b") -> RigidBody:
@@ -214,7 +214,7 @@ def test_bodies_that_exchange_their_places_are_told() -> None:
     swapped_one, swapped_other = one.copy(), other.copy()
     swapped_one[120:140], swapped_other[120:140] = other[120:140], one[120:140]
     taken = Recording.from_bodies([body(swapped_one, "A"), body(swapped_other, "B")], rate_hz=100)
-    found, warnings = check_bodies(taken, taken.bodies, Settings())
+    _, found, _, warnings = check_bodies(taken, taken.bodies, Settings())
     swaps = [warning for warning in warnings if warning.code == "swapped-bodies"]
     assert [warning.frames for warning in swaps] == [(120, 140)]
     for body_found in found:
@@ -227,7 +227,7 @@ def test_an_exchange_behind_a_gap_is_told() -> None:
     swapped_one[150:], swapped_other[150:] = other[150:], one[150:]
     swapped_one[135:150] = swapped_other[135:150] = np.nan
     taken = Recording.from_bodies([body(swapped_one, "A"), body(swapped_other, "B")], rate_hz=100)
-    warnings = check_bodies(taken, taken.bodies, Settings())[1]
+    warnings = check_bodies(taken, taken.bodies, Settings()).warnings
     assert [warning.frames for warning in warnings if warning.code == "swapped-bodies"] == [(150,)]
 
 
@@ -248,8 +248,8 @@ def test_quality_tells_the_figures_of_a_body() -> None:
     residual[70] = 8e-3
     one = replace(body(pose), marker_residual=residual, marker_offsets=np.array([[0.1, 0, 0], [0.0, 0.02, 0]]))
     taken = Recording.from_bodies([one], rate_hz=100)
-    (found,), warnings = check_bodies(taken, taken.bodies, Settings())
-    quality = body_quality(one, found, taken)
+    checked = check_bodies(taken, taken.bodies, Settings())
+    (quality,), warnings = checked.quality, checked.warnings
     assert quality.tracked_share == pytest.approx(0.95)
     assert quality.lost_frames == {"blank": 5}
     assert quality.sign_flips == 2

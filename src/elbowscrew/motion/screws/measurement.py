@@ -125,13 +125,15 @@ def measure(recording: Recording, settings: Settings) -> Measurement:
     proximal, distal, broken_rows, warnings = tracked.proximal, tracked.distal, tracked.broken_rows, tracked.warnings
     express_in, doubts = frame_called(settings.express_in, tracked.joint)
     warnings += doubts
-    elapsed = elapsed_time(recording)
+    elapsed = tracked.elapsed
     smoothing = Smoothing.of(proximal, distal, elapsed, recording.rate_hz, broken_rows, settings)
     noise = JointNoise.of(proximal, distal, recording.rate_hz, settings)
     unfiltered = Unfiltered(proximal, distal, elapsed, recording.rate_hz)
     proximal, distal = smoothing.apply(proximal, distal)
     if settings.resample_hz is not None:
-        recording, proximal, distal, more = _resampled(recording, proximal, distal, broken_rows, settings.resample_hz)
+        recording, proximal, distal, more = _resampled(
+            recording, proximal, distal, elapsed, broken_rows, settings.resample_hz
+        )
         folding = smoothing.cutoff_hz is None or smoothing.cutoff_hz > 0.5 * settings.resample_hz
         warnings += tuple(warning for warning in more if folding or warning.code != "aliasing")
         elapsed, broken_rows = elapsed_time(recording), np.empty(0, dtype=np.intp)
@@ -208,12 +210,13 @@ def _resampled(
     recording: Recording,
     proximal: RigidBody | None,
     distal: RigidBody,
+    elapsed: Float,
     broken_rows: NDArray[np.intp],
     rate_hz: float,
 ) -> tuple[Recording, RigidBody | None, RigidBody, tuple[QualityWarning, ...]]:
     """Put the two bodies, as they are now, and the markers on another clock."""
     chosen = (distal,) if proximal is None else (proximal, distal)
-    resampled = resample_recording(replace(recording, bodies=chosen, warnings=()), rate_hz, broken_rows)
+    resampled = resample_recording(replace(recording, bodies=chosen, warnings=()), rate_hz, broken_rows, elapsed)
     proximal = None if proximal is None else resampled.bodies[0]
     warnings = resampled.warnings
     return replace(resampled, warnings=recording.warnings), proximal, resampled.bodies[-1], warnings

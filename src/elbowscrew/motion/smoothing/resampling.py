@@ -21,7 +21,9 @@ _SAME: Final = 1e-7
 _ROUNDING: Final = 1e-12
 
 
-def resample_recording(recording: Recording, rate_hz: float, broken_rows: Index | None = None) -> Recording:
+def resample_recording(
+    recording: Recording, rate_hz: float, broken_rows: Index | None = None, elapsed: Float | None = None
+) -> Recording:
     """Put a recording on an even clock, by interpolation between neighboring frames.
 
     Poses go by ScLERP, positions of markers and figures of the bodies linearly; nothing is interpolated across a frame
@@ -32,11 +34,13 @@ def resample_recording(recording: Recording, rate_hz: float, broken_rows: Index 
     Parameters
     ----------
     recording : Recording
-        Interpolated over its clock by `elapsed_time`.
+        Interpolated over its clock.
     rate_hz : float
         Frames per second of the result.
     broken_rows : ndarray of int, optional
         Rows that a body reaches by a leap: what lies between one of them and the row before is lost.
+    elapsed : ndarray, shape (N,), optional
+        The recording's clock; that by `elapsed_time` if it is not given.
 
     Returns
     -------
@@ -63,7 +67,7 @@ def resample_recording(recording: Recording, rate_hz: float, broken_rows: Index 
     >>> trial.rate_hz, trial.frame.size, [warning.code for warning in trial.warnings]
     (50.0, 225, ['resampled', 'aliasing'])
     """
-    elapsed = elapsed_time(recording)
+    elapsed = elapsed_time(recording) if elapsed is None else elapsed
     count = _frame_count(recording, elapsed, rate_hz)
     since_start = np.arange(count) / rate_hz
     between = _neighbors(elapsed, since_start, recording.rate_hz, broken_rows)

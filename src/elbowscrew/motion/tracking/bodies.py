@@ -9,10 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowscrew.errors import AnalysisError, SettingError
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.joints import Joint
 from elbowscrew.model import BodyQuality, QualityWarning, Recording, RigidBody, marker_matches
 from elbowscrew.motion.tracking.marker_poses import body_from_markers
-from elbowscrew.motion.tracking.quality import body_quality, check_bodies
+from elbowscrew.motion.tracking.quality import check_bodies
 from elbowscrew.motion.tracking.selection import ChosenBodies, choose_bodies
 from elbowscrew.settings import Settings
 
@@ -29,6 +30,8 @@ class TrackedBodies(NamedTuple):
         What the joint is called.
     broken_rows : ndarray of int
         Rows that a body reaches by a leap.
+    elapsed : ndarray, shape (N,)
+        Clock, as by `elapsed_time`.
     quality : tuple of BodyQuality
     warnings : tuple of QualityWarning
         Those of the recording, too.
@@ -38,6 +41,7 @@ class TrackedBodies(NamedTuple):
     distal: RigidBody
     joint: Joint
     broken_rows: NDArray[np.intp]
+    elapsed: Float
     quality: tuple[BodyQuality, ...]
     warnings: tuple[QualityWarning, ...]
 
@@ -55,8 +59,8 @@ def tracked_bodies(recording: Recording, settings: Settings) -> TrackedBodies:
     chosen_bodies = _chosen_bodies(recording, settings)
     proximal, distal = chosen_bodies.proximal, chosen_bodies.distal
     chosen = (distal,) if proximal is None else (proximal, distal)
-    checked, warnings = check_bodies(recording, chosen, settings)
-    for found in checked:
+    checked = check_bodies(recording, chosen, settings)
+    for found in checked.bodies:
         body = found.body
         share = 100.0 * float(body.tracked.mean()) if body.loss.size else 0.0
         if share < settings.min_tracked_percent or not body.tracked.any():
@@ -68,16 +72,16 @@ def tracked_bodies(recording: Recording, settings: Settings) -> TrackedBodies:
                 + "".join(f"; {warning.message}" for warning in found.warnings if warning.code == "leap")
             )
             raise AnalysisError(msg)
-    quality = tuple(body_quality(raw, found, recording) for raw, found in zip(chosen, checked, strict=True))
-    proximal = None if proximal is None else checked[0].body
-    broken_rows = np.unique(np.concatenate([found.broken_rows for found in checked]))
+    proximal = None if proximal is None else checked.bodies[0].body
+    broken_rows = np.unique(np.concatenate([found.broken_rows for found in checked.bodies]))
     return TrackedBodies(
         proximal=proximal,
-        distal=checked[-1].body,
+        distal=checked.bodies[-1].body,
         joint=chosen_bodies.joint,
         broken_rows=broken_rows,
-        quality=quality,
-        warnings=(*recording.warnings, *chosen_bodies.warnings, *warnings),
+        elapsed=checked.elapsed,
+        quality=checked.quality,
+        warnings=(*recording.warnings, *chosen_bodies.warnings, *checked.warnings),
     )
 
 

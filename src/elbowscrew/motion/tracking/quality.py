@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from itertools import combinations
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,34 +19,53 @@ _LARGE_RESIDUAL_M: Final = 0.005
 _FAR_PIVOT_M: Final = 0.02
 
 
-def check_bodies(
-    recording: Recording, bodies: tuple[RigidBody, ...], settings: Settings
-) -> tuple[tuple[CheckedBody, ...], tuple[QualityWarning, ...]]:
+class CheckedRecording(NamedTuple):
+    """Result of `check_bodies`.
+
+    Attributes
+    ----------
+    elapsed : ndarray, shape (N,)
+        Clock, as by `elapsed_time`.
+    bodies : tuple of CheckedBody
+        In the order of the bodies.
+    quality : tuple of BodyQuality
+        Theirs.
+    warnings : tuple of QualityWarning
+        Those of the bodies, of pairs of them, and of the clock; the recording's own are not among them.
+    """
+
+    elapsed: Float
+    bodies: tuple[CheckedBody, ...]
+    quality: tuple[BodyQuality, ...]
+    warnings: tuple[QualityWarning, ...]
+
+
+def check_bodies(recording: Recording, bodies: tuple[RigidBody, ...], settings: Settings) -> CheckedRecording:
     """Take out what is no measurement, and collect all there is to say about these bodies and the clock.
 
-    Returns
-    -------
-    checked : tuple of CheckedBody
-        In the order of the bodies.
-    warnings : tuple of QualityWarning
-        Theirs, those of pairs of them, and those of the clock; the recording's own are not among them.
+    Raises
+    ------
+    RecordingError
+        If the recording has no usable clock.
     """
     elapsed = elapsed_time(recording)
     checked = tuple(check_tracking(body, recording, elapsed, settings) for body in bodies)
+    flips = tuple(_sign_flips(body) for body in bodies)
     warnings = list(clock_warnings(recording))
-    for body, found in zip(bodies, checked, strict=True):
+    for body, found, flipped in zip(bodies, checked, flips, strict=True):
         warnings += found.warnings
+        warnings += _sign_flip_warnings(body, flipped, recording)
         warnings += [warning for check in BODY_CHECKS for warning in check(body, recording)]
     for one, other in combinations(bodies, 2):
         warnings += check_swaps(one, other, recording, elapsed)
-    return checked, tuple(warnings)
+    quality = tuple(_body_quality(found, flipped.size, elapsed) for found, flipped in zip(checked, flips, strict=True))
+    return CheckedRecording(elapsed, checked, quality, tuple(warnings))
 
 
-def body_quality(raw: RigidBody, checked: CheckedBody, recording: Recording) -> BodyQuality:
+def _body_quality(checked: CheckedBody, sign_flips: int, elapsed: Float) -> BodyQuality:
     """Figures of one body, of the poses that count as measured."""
     body = checked.body
     known = np.flatnonzero(body.tracked)
-    elapsed = elapsed_time(recording)
     span = np.diff(elapsed[known])
     pose = body.dual_quat_lab_body[known]
     turn, distance = angle_between(pose[:-1], pose[1:]), origin_distance(pose[:-1], pose[1:])
@@ -55,7 +74,7 @@ def body_quality(raw: RigidBody, checked: CheckedBody, recording: Recording) -> 
         identifier=body.identifier,
         tracked_share=float(body.tracked.mean()) if body.loss.size else 0.0,
         lost_frames=body.loss_counts(),
-        sign_flips=int(_sign_flips(raw).size),
+        sign_flips=sign_flips,
         leaps=int(checked.leap_rows.size),
         fastest_turn=float((turn / span).max(initial=0.0)),
         fastest_speed=float((distance / span).max(initial=0.0)),
@@ -109,8 +128,7 @@ def clock_warnings(recording: Recording) -> tuple[QualityWarning, ...]:
     return tuple(found)
 
 
-def _sign_flip_warnings(body: RigidBody, recording: Recording) -> list[QualityWarning]:
-    flips = _sign_flips(body)
+def _sign_flip_warnings(body: RigidBody, flips: NDArray[np.intp], recording: Recording) -> list[QualityWarning]:
     if not flips.size:
         return []
     message = (
@@ -146,7 +164,7 @@ def _pivot_warnings(body: RigidBody, _recording: Recording) -> list[QualityWarni
     return [QualityWarning(code="pivot-offset", message=message, severity="note")]
 
 
-BODY_CHECKS: Final = (_sign_flip_warnings, _residual_warnings, _pivot_warnings)
+BODY_CHECKS: Final = (_residual_warnings, _pivot_warnings)
 """A new check of a body is one function and one entry here."""
 
 

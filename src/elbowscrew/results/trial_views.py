@@ -1,0 +1,228 @@
+"""What figures and pages show of a trial: of an analysis in memory, and of a result read back from its folder.
+
+Both go the same way, from the numbers as the files of a result have them, so that they show the same to the last byte.
+"""
+
+from __future__ import annotations
+
+from dataclasses import fields
+from pathlib import Path
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from elbowscrew import tables
+from elbowscrew.errors import ResultError
+from elbowscrew.geometry.arrays import Float
+from elbowscrew.geometry.dual_quaternion import dual_quat_from_pose
+from elbowscrew.joints import joint_called
+from elbowscrew.model import Analysis, Keyframes, ModelPhases, MovementPhases, Repetitions
+from elbowscrew.model.joint_summary_types import JointSummary, PoseSummary, Vector
+from elbowscrew.model.summary_types import AnalysisSummary, ModelSummary, MovementSummary
+from elbowscrew.results.joint_summary import joint_summary, preferred_fit
+from elbowscrew.results.summary import summary_from_analysis
+from elbowscrew.results.summary_reading import SUMMARY, read_joint_summary, read_summary, settings_in
+from elbowscrew.results.table_reading import Attributes, as_read, read_attributes, read_columns
+from elbowscrew.settings import Settings
+from elbowscrew.view.trial_view import TrialView
+
+_SCREW: Final = (
+    "frame", "time_s", "valid", "filled", "angle", "angle_sd", "slide", "axis_direction", "axis_point", "axis_cone",
+    "point_radius", "euler_parameters", "translation",
+)  # fmt: skip
+_MODEL: Final = ("phase", "angle", "euler_parameters", "angle_error", "rms_displacement")
+_REPETITIONS: Final = tuple(field.name for field in fields(Repetitions))
+UNREADABLE: Final = (KeyError, TypeError, ValueError, IndexError, AttributeError, OverflowError)
+"""What a result that somebody edited raises where its numbers do not go together."""
+
+
+def is_result(folder: Path) -> bool:
+    """Tell whether a folder holds the result of one trial."""
+    return (folder / SUMMARY).is_file() and (folder / "screw.csv").is_file()
+
+
+def view_of(trial: Analysis | TrialView) -> TrialView:
+    """Give what is shown of an analysis; a view is given back as it is."""
+    if isinstance(trial, TrialView):
+        return trial
+    return view_of_analysis(trial, summary_from_analysis(trial), joint_summary(trial))
+
+
+def view_of_result(folder: Path) -> TrialView:
+    """Read what is shown of a result, without analyzing anything again.
+
+    Parameters
+    ----------
+    folder : Path
+        As `elbowscrew.save_analysis` wrote it, in whatever units.
+
+    Returns
+    -------
+    TrialView
+
+    Raises
+    ------
+    ResultError
+        If the folder holds no finished result, or a damaged one.
+    """
+    summary = read_summary(folder)
+    joint = read_joint_summary(folder)
+    settings = settings_in(summary, folder)
+    units = settings.angle_unit, settings.length_unit
+    curve = folder / "repetition_curve.csv"
+    try:
+        read = _Tables(
+            screw=read_attributes(folder / "screw.csv", tables.SCREW_COLUMNS, _SCREW, *units),
+            model=read_attributes(folder / "interpolation.csv", tables.INTERPOLATION_COLUMNS, _MODEL, *units),
+            repetitions=read_attributes(folder / "repetitions.csv", tables.REPETITION_COLUMNS, _REPETITIONS, *units),
+            curve=read_columns(curve, tables.CURVE_COLUMNS, *units) if curve.exists() else None,
+        )
+        return _view(summary, joint, settings, read)
+    except UNREADABLE as error:
+        msg = (
+            f"{folder}: not a result of this version of the program: {type(error).__name__} {error}; "
+            "analyze the trial again"
+        )
+        raise ResultError(" ".join(msg.split())) from error
+
+
+def view_of_analysis(analysis: Analysis, summary: AnalysisSummary, joint: JointSummary) -> TrialView:
+    """Give what `view_of_result` reads of the folder that an analysis is written to, to the last digit.
+
+    Parameters
+    ----------
+    analysis : Analysis
+    summary : AnalysisSummary
+    joint : JointSummary
+    """
+    units = analysis.settings.angle_unit, analysis.settings.length_unit
+    curve = None
+    if analysis.repetitions.number.size > 1:
+        names = [column.attribute for column in tables.CURVE_COLUMNS]
+        values = as_read(analysis.repeatability, tables.CURVE_COLUMNS, names, *units)
+        curve = {column.name: values[column.attribute] for column in tables.CURVE_COLUMNS}
+    written = _Tables(
+        screw=as_read(analysis.screw, tables.SCREW_COLUMNS, _SCREW, *units),
+        model=as_read(analysis.interpolated, tables.INTERPOLATION_COLUMNS, _MODEL, *units),
+        repetitions=as_read(analysis.repetitions, tables.REPETITION_COLUMNS, _REPETITIONS, *units),
+        curve=curve,
+    )
+    resolved = {"method": analysis.settings.model_method, "law": analysis.settings.model_law}
+    return _view(summary, joint, analysis.settings.model_copy(update=resolved), written)
+
+
+class _Tables(NamedTuple):
+    """Columns of the tables, by attributes; of the curve by names, and None where there is none."""
+
+    screw: Attributes
+    model: Attributes
+    repetitions: Attributes
+    curve: dict[str, NDArray[Any]] | None
+
+
+def _view(summary: AnalysisSummary, joint: JointSummary, settings: Settings, read: _Tables) -> TrialView:
+    trial, motion, bodies, words = summary["trial"], summary["motion"], joint["bodies"], summary["trial"]["joint"]
+    screw, model, dispersion = read.screw, read.model, joint["dispersion"]
+    frame, fit = _Frames(screw["frame"]), preferred_fit(joint)
+    line = joint["weighted_mean"] if fit is None else fit
+    return TrialView(
+        summary=summary,
+        joint_summary=joint,
+        settings=settings,
+        named_joint=joint_called(words["name"], words["proximal"], words["distal"]),
+        rate_hz=trial["rate_hz"],
+        proximal_name=None if trial["proximal"] is None else trial["proximal"]["name"],
+        distal_name=trial["distal"]["name"],
+        proximal_markers=_markers(bodies["proximal_markers_mm"]),
+        distal_markers=_markers(bodies["distal_markers_mm"]),
+        reference=_pose(bodies["distal_in_proximal"]),
+        proximal_in_lab=_pose(bodies["proximal_in_lab"]),
+        frame=screw["frame"],
+        time_s=screw["time_s"],
+        valid=screw["valid"],
+        filled=screw["filled"],
+        angle=screw["angle"],
+        angle_sd=screw["angle_sd"],
+        slide=screw["slide"],
+        axis_direction=screw["axis_direction"],
+        axis_point=screw["axis_point"],
+        axis_cone=screw["axis_cone"],
+        point_radius=screw["point_radius"],
+        euler_parameters=screw["euler_parameters"],
+        translation=screw["translation"],
+        modeled_angle=model["angle"],
+        modeled_euler_parameters=model["euler_parameters"],
+        angle_error=model["angle_error"],
+        rms_displacement=model["rms_displacement"],
+        phases=_phases(motion["movements"], frame),
+        keyframes=_keyframes(summary["interpolation"], model["phase"], frame),
+        repetitions=Repetitions(**read.repetitions),
+        repetition_curve=read.curve,
+        mean_direction=np.array(motion["mean_axis"]["direction"], dtype=np.float64),
+        mean_point=_millimeters(motion["mean_axis"]["point_mm"]),
+        spread95=_region(dispersion["direction_95_deg"], dispersion["place_95_mm"]),
+        joint_direction=np.array(line["direction"], dtype=np.float64),
+        joint_point=_millimeters(line["point_mm"]),
+        confidence95=None if fit is None else _region(fit["axis_cone95_deg"], fit["point_radius95_mm"]),
+    )
+
+
+def _pose(pose: PoseSummary) -> Float:
+    return dual_quat_from_pose(np.array(pose["quaternion"], dtype=np.float64), _millimeters(pose["position_mm"]))
+
+
+def _millimeters(values: Any) -> Float:
+    """Read lengths in millimeters as meters."""
+    return np.array(values, dtype=np.float64) / 1000.0
+
+
+def _markers(offsets: list[Vector] | None) -> Float | None:
+    return None if offsets is None else _millimeters(offsets).reshape(-1, 3)
+
+
+def _region(angle_deg: float | None, radius_mm: float | None) -> tuple[float, float]:
+    """Read a half-angle and a radius as radians and meters; NaN where not known."""
+    angle, radius = (np.nan if value is None else value for value in (angle_deg, radius_mm))
+    return float(np.radians(angle)), radius / 1000.0
+
+
+class _Frames:
+    """Rows of frame numbers; a number that stands twice is taken where it stands first."""
+
+    def __init__(self, frame: NDArray[np.int64]) -> None:
+        self.frame = frame
+        increasing = bool((frame[1:] > frame[:-1]).all())
+        self._order = None if increasing else np.argsort(frame, kind="stable")
+
+    def rows(self, numbers: Any) -> NDArray[np.int64]:
+        wanted = np.array(numbers, dtype=np.int64)
+        places = np.searchsorted(self.frame, wanted, sorter=self._order)
+        if not (places == self.frame.size).any():
+            rows = places if self._order is None else self._order[places]
+            if (self.frame[rows] == wanted).all():
+                return rows.astype(np.int64)
+        msg = "a frame of the summary is not in screw.csv"
+        raise ValueError(msg)
+
+
+def _phases(movements: list[MovementSummary], frame: _Frames) -> MovementPhases:
+    onset = frame.rows([movement["onset_frame"] for movement in movements])
+    offset = frame.rows([movement["offset_frame"] for movement in movements])
+    moving = np.zeros(frame.frame.size, dtype=bool)
+    for first, last in zip(onset, offset, strict=True):
+        moving[first : last + 1] = True
+    return MovementPhases(onset_rows=onset, offset_rows=offset, moving=moving)
+
+
+def _keyframes(model: ModelSummary, phase: NDArray[Any], frame: _Frames) -> Keyframes:
+    """Read the keyframes; a phase begins where its number first stands, and the last one ends at the last keyframe."""
+    row = frame.rows(model["keyframes"])
+    known = np.ma.masked_array(phase)
+    rows = np.flatnonzero(~np.ma.getmaskarray(known))
+    number = known.data[rows]
+    begins = np.append(True, number[1:] != number[:-1])
+    bounds = np.append(rows[begins], row[-1])
+    laws = frame.rows([[law["start_frame"], law["end_frame"]] for law in model["phase_laws"]])
+    phases = ModelPhases(bound_rows=bounds.astype(np.int64), law_rows=laws)
+    return Keyframes(row=row, frame=frame.frame[row], phases=phases, knots=())
