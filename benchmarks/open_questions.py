@@ -2,6 +2,7 @@
 
 Real hinges are taken in where ELBOWSCREW_REAL_DATA names their folder.
 Run: python benchmarks/open_questions.py [FOLDER OF THE FIGURE]
+     python benchmarks/open_questions.py --elbows       (how few numbers describe an elbow, alone)
 """
 
 from __future__ import annotations
@@ -16,7 +17,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowscrew import Comparison, ComparisonPlan, Recording, Settings, compare, read_recording, simulate_trial
+from elbowscrew import Comparison, ComparisonPlan, Recording, Settings, analyze, compare, read_recording, simulate_trial
+from elbowscrew.choices import MethodName
+from elbowscrew.errors import SettingError
 from elbowscrew.plots import style
 from elbowscrew.plots.comparison import plain_ticks, series_look
 
@@ -119,6 +122,54 @@ def main() -> None:
         draw(results, target)
 
 
+ELBOW_METHODS = ("joint", "sclerp", "dlb")
+_SEARCHED: tuple[MethodName, ...] = ("joint", "sclerp")
+LIMITS_MM = (1.0, 2.0, 5.0)
+SHARED, OF_JOINT, OF_POSE = 12, 2, 6
+"""Numbers of two axes, of a pose that moves about them, and of a pose; times and laws are the same for all."""
+
+
+def elbows() -> None:
+    """Keyframes and numbers that describe elbows with two axes."""
+    trials = {"natural elbow": ROOT / "sample_data" / "elbow_natural.csv"}
+    real = Path(os.environ.get("ELBOWSCREW_REAL_DATA", "")) / "cases" / "das3_real_motion.csv"
+    if real.exists():
+        trials["real angles on published axes"] = real
+    plan = ComparisonPlan(
+        methods=ELBOW_METHODS, laws=("best",), blends=("piecewise",), counts=tuple(range(2, 21)), data=("raw",)
+    )
+    print("\n## keyframes in all (evenly in each phase, best law), and numbers, by RMS displacement\n")
+    print("| motion | within | " + " | ".join(ELBOW_METHODS) + " |\n| --- | --- | --- | --- | --- |")
+    for name, path in trials.items():
+        models = compare(read_recording(path), plan=plan).models
+        for limit in LIMITS_MM:
+            cells = []
+            for method in ELBOW_METHODS:
+                # Of two poses a phase DLB is sDLB.
+                mine = (models.method == method) | ((method == "dlb") & (models.method == "sdlb"))
+                kept = models.keyframes[mine & (models.rms_displacement <= 1e-3 * limit)]
+                cells.append(_numbers(method, int(kept.min())) if kept.size else "–")
+            print(f"| {name} | {limit:g} mm | " + " | ".join(cells) + " |")
+    print("\n## fewest keyframes, constant speed between, by the largest displacement\n")
+    print("| motion | within | joint | sclerp |\n| --- | --- | --- | --- |")
+    for name, path in trials.items():
+        recording = read_recording(path)
+        for limit in LIMITS_MM:
+            cells = []
+            for method in _SEARCHED:
+                try:
+                    found = analyze(recording, Settings(method=method, tolerance_mm=limit))
+                    cells.append(_numbers(method, found.keyframes.row.size))
+                except SettingError:
+                    cells.append("–")
+            print(f"| {name} | {limit:g} mm | " + " | ".join(cells) + " |", flush=True)
+
+
+def _numbers(method: str, keyframes: int) -> str:
+    numbers = SHARED + OF_JOINT * keyframes if method == "joint" else OF_POSE * keyframes
+    return f"{keyframes}, {numbers}"
+
+
 def _filled(found: Comparison, method: str) -> Comparison:
     """Tell two poses of ScLERP as those of DIB, which are the same: the comparison has them once."""
     if method != "dib":
@@ -169,4 +220,6 @@ def draw(results: dict[str, Comparison], target: Path) -> None:
 
 
 if __name__ == "__main__":
-    main()
+    if "--elbows" not in sys.argv:
+        main()
+    elbows()

@@ -308,7 +308,7 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
         faults = {
             twice: self.keyframes is not None,
             f"--tolerance: with --method {self.method} a piece depends on more than its two keyframes, and no best "
-            "set can be told; expected sclerp or sdlb": self.model_method not in ("sclerp", "sdlb"),
+            "set can be told; expected sclerp, sdlb or joint": self.model_method not in ("sclerp", "sdlb", "joint"),
             "--tolerance: the recording's own law need not go forward all the time; expected another --law than "
             "empirical": self.law == "empirical",
             "--tolerance: the model must pass each keyframe at its own time, piece by piece; leave --knots and "

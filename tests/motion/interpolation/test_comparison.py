@@ -141,7 +141,7 @@ def test_the_known_errors_of_blending_a_hinge() -> None:
 
 def test_the_selection_is_that_of_the_movement() -> None:
     found = compare(TRIAL, Settings(tolerance_mm=5.0), SMALL)
-    assert set(found.selections) == {"sclerp", "sdlb"}
+    assert set(found.selections) == {"joint", "sclerp", "sdlb"}
     for method, selection in found.selections.items():
         assert selection.row[0] == found.phases.bound_rows[0]
         assert selection.row[-1] == found.phases.bound_rows[-1]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -18,9 +18,11 @@ from elbowscrew.geometry import dual_quat_from_screw, sclerp, sdlb
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry import quaternion as qn
 from elbowscrew.geometry.arrays import Float
+from elbowscrew.model.joint_coordinates import JointCoordinates
 from elbowscrew.motion.difference import points_from_markers
 from elbowscrew.motion.interpolation.keyframe_selection import select_keyframes
-from elbowscrew.motion.interpolation.segment_errors import BASES, PoseTrack, displacement_along, squares_along
+from elbowscrew.motion.interpolation.segment_errors import BASES, JointSeries, PoseTrack
+from elbowscrew.motion.joint.coordinates import joint_poses
 
 MARKERS = np.array([[38, 12, 31], [-41, 27, 8], [9, -44, -28], [-6, 5, -47], [60, 3, 10]]) * 1e-3
 POINTS = points_from_markers(MARKERS)
@@ -144,18 +146,18 @@ def test_errors_of_segments_are_those_of_the_poses_blended(method: str, seed: in
     rng = np.random.default_rng(seed)
     twist = rng.normal(size=(6, 6)) * np.repeat([small, 0.1], 3)
     pose = dq.multiply(wandering(1, seed, 0.5), dq.exp(twist))
-    track = PoseTrack.of(pose, POINTS)
+    track = PoseTrack.of(pose, POINTS, method)
     share = rng.uniform(0.0, 1.0, size=(4, 2))
     segments = track.segments_from(0, [1, 2])
     seen = track.seen_from(0, slice(2, 6))
-    squares = squares_along(seen, segments, share, BASES[method])
+    squares = segments.squares(seen, share)
     for m, k in itertools.product(range(4), range(2)):
         model = BETWEEN[method](pose[0], pose[1 + k], share[m, k], way="as given")
         apart = dq.transform_points(pose[2 + m], MARKERS) - dq.transform_points(model, MARKERS)
         direct = np.sqrt(np.mean(np.sum(apart**2, axis=-1)))
         assert np.sqrt(squares[m, k]) == pytest.approx(direct, abs=1e-7)
-        one = segments._replace(angle=segments.angle[[k]], vectors=segments.vectors[:, [k]])
-        assert displacement_along(seen[[m]], one, share[m, [k]], BASES[method]) == pytest.approx([direct], abs=1e-12)
+        one = segments.at([k])
+        assert one.displacement(seen[[m]], share[m, [k]]) == pytest.approx([direct], abs=1e-12)
 
 
 @pytest.mark.parametrize("method", BASES)
@@ -163,7 +165,7 @@ def test_errors_of_segments_are_those_of_the_poses_blended(method: str, seed: in
 def test_the_screen_leaves_every_segment_that_holds(method: str, seed: int, tolerance: float, step: float) -> None:
     pose = wandering(10, seed, step)
     parameter = np.cumsum(np.random.default_rng(seed).uniform(0.3, 1.0, 10))
-    track = selection_module._Track(PoseTrack.of(pose, POINTS), parameter, POINTS, method, np.array([0, 9]))
+    track = selection_module._Track(PoseTrack.of(pose, POINTS, method), parameter, POINTS, method, np.array([0, 9]))
     screen = selection_module._Screen.of(track, tolerance)
     for first, last in itertools.combinations(range(10), 2):
         rows = np.arange(first, last + 1)
@@ -175,7 +177,7 @@ def test_the_screen_leaves_every_segment_that_holds(method: str, seed: int, tole
 @pytest.mark.parametrize(
     ("options", "says"),
     [
-        ({"method": "dlb"}, "expected sclerp or sdlb"),
+        ({"method": "dlb"}, "expected sclerp, sdlb or joint"),
         ({"keyframes": (0, 10)}, "either --tolerance or --keyframes"),
         ({"law": "empirical"}, "another --law"),
         ({"knots": "chord"}, "leave --knots and --blend out"),
@@ -203,3 +205,104 @@ def test_the_model_of_an_analysis_stays_within_the_tolerance(law: Any) -> None:
     assert np.nanmax(error) == pytest.approx(analysis.selection.largest[-1], abs=1e-12)
     assert analysis.screw.valid[analysis.keyframes.row].all()
     assert set(analysis.keyframes.phases.bound_rows.tolist()) <= set(analysis.keyframes.row.tolist())
+
+
+# In the joint's own angles.
+
+JOINTS = ("hinge", "two_axes", "ball")
+
+
+def joint_motion(kind: str, count: int, seed: int, off: float = 0.004) -> tuple[Float, JointSeries]:
+    """Poses (N, 8) near those of a joint, and the joint with its angles."""
+    rng = np.random.default_rng(seed)
+    size = {"hinge": 1, "two_axes": 2, "ball": 3}[kind]
+    axes = 0 if kind == "ball" else size
+    direction = rng.normal(size=(axes, 3))
+    joint = JointCoordinates(
+        type=cast(Any, kind),
+        axis=direction / np.linalg.norm(direction, axis=1)[:, None],
+        point=rng.normal(scale=0.1, size=(max(axes, 1), 3)),
+        pitch=0.0,
+        end=dq.exp(rng.normal(size=6) * np.repeat([0.02, 0.003], 3)),
+    )
+    angle = np.cumsum(rng.normal(scale=0.2, size=(count, size)), axis=0)
+    twist = rng.normal(size=(count, 6)) * np.repeat([10.0 * off, off], 3)
+    pose = dq.multiply(joint_poses(joint, angle), dq.exp(0.5 * twist))
+    return dq.continuous_signs(pose), JointSeries(joint, angle)
+
+
+def joint_errors(pose: Float, series: JointSeries, parameter: Float, keys: tuple[int, ...]) -> Float:
+    """RMS distance of the markers in every frame, by the joint at angles between those of the keyframes."""
+    angle = np.stack([np.interp(parameter, parameter[list(keys)], a[list(keys)]) for a in series.angle.T], axis=1)
+    model = joint_poses(series.joint, angle)
+    if series.joint.type == "ball":
+        ends = joint_poses(series.joint, series.angle)
+        for first, last in itertools.pairwise(keys):
+            rows = np.arange(first, last + 1)
+            share = (parameter[rows] - parameter[first]) / (parameter[last] - parameter[first])
+            model[rows] = sclerp(ends[first], ends[last], share, way="as given")
+    apart = dq.transform_points(pose[:, None], MARKERS) - dq.transform_points(model[:, None], MARKERS)
+    distance: Float = np.sqrt(np.mean(np.sum(apart**2, axis=-1), axis=1))
+    return distance
+
+
+@pytest.mark.parametrize("limit", [1, 600])
+@pytest.mark.parametrize("kind", JOINTS)
+@settings(max_examples=12, deadline=None)
+@given(seed=st.integers(0, 10_000), count=st.integers(3, 8), share=st.floats(0.1, 1.0))
+def test_no_smaller_set_in_a_joints_angles(kind: str, limit: int, seed: int, count: int, share: float) -> None:
+    """Against every set there is, the keyframes' own errors among those that count."""
+    pose, series = joint_motion(kind, count, seed)
+    parameter = np.cumsum(np.random.default_rng(seed).uniform(0.2, 1.0, count))
+    truth: dict[int, float] = {}
+    for inner in itertools.chain.from_iterable(
+        itertools.combinations(range(1, count - 1), k) for k in range(count - 1)
+    ):
+        worst = float(joint_errors(pose, series, parameter, (0, *inner, count - 1)).max())
+        truth[len(inner) + 2] = min(truth.get(len(inner) + 2, np.inf), worst)
+    tolerance = max(share * truth[2], min(truth.values())) + 1e-6
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(selection_module, "MOST_FRAMES_COMPLETE", limit)
+        found = select_keyframes(pose, parameter, POINTS, tolerance, method="joint", series=series)
+    assert found.row.size == min(number for number, error in truth.items() if error <= tolerance)
+    errors = joint_errors(pose, series, parameter, tuple(found.row.tolist()))
+    assert found.largest[-1] == pytest.approx(errors.max(), abs=1e-12)
+    assert found.rms[-1] == pytest.approx(np.sqrt(np.mean(errors**2)), abs=1e-12)
+    if limit > 1:
+        for number, largest in zip(found.count.tolist(), found.largest.tolist(), strict=True):
+            assert largest == pytest.approx(truth[number], abs=1e-8)
+
+
+@given(seed=st.integers(0, 10_000), small=st.sampled_from([1.0, 1e-3, 0.0]))
+def test_errors_about_two_axes_are_those_of_the_joints_poses(seed: int, small: float) -> None:
+    pose, series = joint_motion("two_axes", 6, seed)
+    series = series._replace(angle=series.angle * small)
+    track = PoseTrack.of(pose, POINTS, "joint", series)
+    share = np.random.default_rng(seed).uniform(0.0, 1.0, size=(4, 2))
+    segments, seen = track.segments_from(0, [1, 2]), track.seen_from(0, slice(2, 6))
+    squares = segments.squares(seen, share)
+    for m, k in itertools.product(range(4), range(2)):
+        angle = series.angle[0] + share[m, k] * (series.angle[1 + k] - series.angle[0])
+        model = joint_poses(series.joint, angle[None])[0]
+        apart = dq.transform_points(pose[2 + m], MARKERS) - dq.transform_points(model, MARKERS)
+        direct = np.sqrt(np.mean(np.sum(apart**2, axis=-1)))
+        assert np.sqrt(squares[m, k]) == pytest.approx(direct, abs=1e-7)
+        assert segments.at([k]).displacement(seen[[m]], share[m, [k]]) == pytest.approx([direct], abs=1e-12)
+
+
+def test_a_joint_that_leaves_more_than_the_tolerance_is_told() -> None:
+    pose, series = joint_motion("two_axes", 8, 1)
+    with pytest.raises(SettingError, match="the joint itself leaves up to"):
+        select_keyframes(pose, np.arange(8.0), POINTS, 1e-4, method="joint", series=series)
+
+
+def test_the_joints_model_of_an_analysis_stays_within_the_tolerance() -> None:
+    trial = simulate_trial(
+        joint_type="two-axes", marker_noise_mm=0.05, frames=200, inversion=90, gaps=1, seed=1
+    ).recording
+    by_joint, by_pose = (analyze(trial, Settings(tolerance_mm=2.0, method=method)) for method in ("joint", "sclerp"))
+    error = by_joint.interpolated.rms_displacement
+    assert by_joint.selection is not None
+    assert np.nanmax(error) <= 2e-3 * (1 + 1e-9)
+    assert np.nanmax(error) == pytest.approx(by_joint.selection.largest[-1], abs=1e-12)
+    assert by_joint.keyframes.row.size <= by_pose.keyframes.row.size

@@ -18,6 +18,7 @@ from elbowscrew.model import (
     Comparison,
     ModelPhases,
     PhaseLaw,
+    QualityWarning,
     Recording,
     Selection,
 )
@@ -29,7 +30,7 @@ from elbowscrew.motion.interpolation.law_fit import FittedLaw, laws_of
 from elbowscrew.motion.interpolation.model_building import body_points, phases_of
 from elbowscrew.motion.interpolation.model_errors import model_errors
 from elbowscrew.motion.interpolation.modeling import FROM_NEIGHBORS, ModeledPoses, model_motion
-from elbowscrew.motion.interpolation.segment_errors import BASES
+from elbowscrew.motion.interpolation.segment_errors import BASES, JointSeries
 from elbowscrew.motion.movements.measured import measured_cuts
 from elbowscrew.motion.screws.measurement import Measurement, measure
 from elbowscrew.settings import Settings
@@ -94,6 +95,7 @@ def compare(recording: Recording, settings: Settings | None = None, plan: Compar
             for model in models_of(plan)
         ]
     tolerance = _DEFAULT_TOLERANCE if wanted.tolerance_mm is None else 1e-3 * wanted.tolerance_mm
+    selections, doubts = _selections(measured, phases, points, tolerance, plan.methods, joint)
     return Comparison(
         recording=measured.recording,
         settings=wanted.model_copy(update={"express_in": measured.express_in}),
@@ -101,13 +103,9 @@ def compare(recording: Recording, settings: Settings | None = None, plan: Compar
         phases=phases,
         frame=measured.screw.frame,
         laws=laws,
-        selections={
-            method: _selection(measured, phases, points, tolerance, method)
-            for method in plan.methods
-            if method in BASES
-        },
+        selections=selections,
         points=points,
-        warnings=measured.warnings,
+        warnings=measured.warnings + doubts,
     )
 
 
@@ -265,14 +263,32 @@ def _ranked(rows: list[dict[str, Any]]) -> ComparedModels:
     return ComparedModels(**columns)
 
 
-def _selection(
-    measured: Measurement, phases: ModelPhases, points: BodyPoints, tolerance: float, method: str
-) -> Selection:
-    """Fewest keyframes of the movement, in time itself."""
+def _selections(
+    measured: Measurement,
+    phases: ModelPhases,
+    points: BodyPoints,
+    tolerance: float,
+    methods: tuple[str, ...],
+    joint: ModelJoint | str | None,
+) -> tuple[dict[str, Selection], tuple[QualityWarning, ...]]:
+    """Fewest keyframes of the movement, in time itself, by each method that takes them; why one has none, in a note."""
     rows = np.arange(phases.bound_rows[0], phases.bound_rows[-1] + 1)
     rows = rows[measured.joint.measured[rows]]
     if rows.size < 2:
         msg = "fewer than two measured poses in the movement: there is nothing to choose keyframes from"
         raise AnalysisError(msg)
-    found = select_keyframes(measured.displacement[rows], measured.elapsed[rows], points, tolerance, method=method)
-    return found.of_rows(rows)
+    pose = measured.displacement[rows]
+    found, doubts = {}, []
+    for method in methods:
+        series = None
+        if method == "joint" and isinstance(joint, ModelJoint):
+            series = JointSeries(joint.coordinates, joint.angles_of(measured.displacement)[rows])
+        elif method not in BASES:
+            continue
+        try:
+            chosen = select_keyframes(pose, measured.elapsed[rows], points, tolerance, method=method, series=series)
+        except SettingError as error:  # the joint leaves more than the tolerance
+            doubts.append(QualityWarning(code="no-fewest-keyframes", message=str(error), severity="note"))
+        else:
+            found[method] = chosen.of_rows(rows)
+    return found, tuple(doubts)

@@ -10,7 +10,7 @@ import numpy as np
 from elbowscrew.errors import SettingError
 from elbowscrew.geometry.arrays import Bool, Float, Index
 from elbowscrew.model import BodyPoints, Selection
-from elbowscrew.motion.interpolation.segment_errors import BASES, PoseTrack, displacement_along, squares_along
+from elbowscrew.motion.interpolation.segment_errors import JointSeries, PoseTrack
 
 # Up to so many frames every pair of them is looked at, and so the best set of each size is known.
 MOST_FRAMES_COMPLETE: Final = 600
@@ -31,6 +31,7 @@ def select_keyframes(
     tolerance: float,
     *,
     method: str = "sclerp",
+    series: JointSeries | None = None,
     required: Index | None = None,
 ) -> Selection:
     """Fewest poses between which the RMS displacement stays within a tolerance in every frame.
@@ -51,8 +52,11 @@ def select_keyframes(
         What the displacement is averaged over.
     tolerance : float
         Meters.
-    method : {"sclerp", "sdlb"}
+    method : {"sclerp", "sdlb", "joint"}
         How the model goes from one keyframe to the next.
+    series : JointSeries, optional
+        The joint whose angles ``joint`` interpolates, with these in each row. A pose of which the joint leaves more
+        than the tolerance is no keyframe.
     required : ndarray of int, optional
         Rows that must be keyframes.
 
@@ -64,7 +68,8 @@ def select_keyframes(
     Raises
     ------
     SettingError
-        If the motion does not rest where the parameter does, so that no set stays within the tolerance.
+        If no set stays within the tolerance: the motion does not rest where the parameter does, or the joint leaves
+        more of it.
 
     References
     ----------
@@ -80,11 +85,14 @@ def select_keyframes(
     [0, 50, 100]
     """
     stops = np.unique(np.concatenate([[0, len(pose) - 1], [] if required is None else required])).astype(np.int64)
-    track = _Track(PoseTrack.of(pose, points), parameter, points, method, stops)
+    track = _Track(PoseTrack.of(pose, points, method, series), parameter, points, method, stops)
+    limit = tolerance * (1.0 + _ROUND_OFF) + _NANOMETERS
+    if track.left[stops].max() > limit:
+        raise _no_set(track, tolerance)
     complete = len(pose) <= MOST_FRAMES_COMPLETE
     found = _best_of_each_size(track, tolerance) if complete else _thinned_and_fewest(track, tolerance)
-    if not found or _errors(track, found[-1]).max() > tolerance * (1.0 + _ROUND_OFF) + _NANOMETERS:
-        raise _no_set(tolerance)
+    if not found or _errors(track, found[-1]).max() > limit:
+        raise _no_set(track, tolerance)
     errors = [_errors(track, row) for row in found]
     return Selection(
         row=found[-1],
@@ -104,6 +112,11 @@ class _Track(NamedTuple):
     method: str
     stops: Index
 
+    @property
+    def left(self) -> Float:
+        """What the model leaves of each row as a keyframe, m."""
+        return self.poses.left
+
     def fraction(self, first: int, last: Index | int, rows: Index | int) -> Float:
         """How far rows are from one keyframe to the next; at the first where the parameter stands still."""
         span = np.asarray(self.parameter[last] - self.parameter[first])
@@ -118,12 +131,13 @@ class _Track(NamedTuple):
 def _errors(track: _Track, keyframes: Index) -> Float:
     """RMS displacement of every frame, shape (N,)."""
     error = np.zeros(track.parameter.size)
+    error[keyframes] = track.left[keyframes]
     for first, last in itertools.pairwise(keyframes.tolist()):
         rows = np.arange(first + 1, last)
         if rows.size:
             segment = track.poses.segments_from(first, [last])
             seen = track.poses.seen_from(first, rows)
-            error[rows] = displacement_along(seen, segment, track.fraction(first, last, rows), BASES[track.method])
+            error[rows] = segment.displacement(seen, track.fraction(first, last, rows))
     return error
 
 
@@ -150,7 +164,7 @@ def _all_pairs(track: _Track) -> tuple[Float, Float]:
     """Largest error and sum of squared errors of the frames between every two rows, shape (N, N); inf backward."""
     count = track.parameter.size
     largest, total = np.full((count, count), np.inf), np.full((count, count), np.inf)
-    basis = BASES[track.method]
+    left = track.left
     for first in range(count - 1):
         reach = track.reach(first)
         every = slice(first, reach + 1)
@@ -158,14 +172,13 @@ def _all_pairs(track: _Track) -> tuple[Float, Float]:
         for start in range(first + 1, reach + 1, _BLOCK):
             ends = np.arange(start, min(start + _BLOCK, reach + 1))
             rows = np.arange(first + 1, ends[-1])
+            largest[first, ends], total[first, ends] = np.maximum(left[first], left[ends]), left[first] ** 2
             if not rows.size:
-                largest[first, ends], total[first, ends] = 0.0, 0.0
                 continue
-            part = segments._replace(angle=segments.angle[ends - first], vectors=segments.vectors[:, ends - first])
-            square = squares_along(seen[rows - first], part, track.fraction(first, ends, rows[:, None]), basis)
+            square = segments.at(ends - first).squares(seen[rows - first], track.fraction(first, ends, rows[:, None]))
             square[rows[:, None] >= ends] = 0.0
-            largest[first, ends] = np.sqrt(square.max(axis=0))
-            total[first, ends] = square.sum(axis=0)
+            largest[first, ends] = np.maximum(largest[first, ends], np.sqrt(square.max(axis=0)))
+            total[first, ends] += square.sum(axis=0)
     stands = track.parameter[None, :] <= track.parameter[:, None]
     largest[stands], total[stands] = np.inf, np.inf
     return largest, total
@@ -193,7 +206,7 @@ def _thinned_and_fewest(track: _Track, tolerance: float) -> list[Index]:
         np.concatenate([track.stops, np.linspace(0, track.parameter.size - 1, _THINNED).round().astype(np.int64)])
     )
     thinned = track._replace(
-        poses=PoseTrack.of(track.poses.pose[kept], track.points),
+        poses=track.poses.at(kept),
         parameter=track.parameter[kept],
         stops=np.searchsorted(kept, track.stops),
     )
@@ -223,7 +236,7 @@ def _fewest(track: _Track, tolerance: float) -> Index:
                 break
         frontier = np.sort(np.concatenate(reached))
         if not frontier.size:
-            raise _no_set(tolerance)
+            raise _no_set(track, tolerance)
     rows = [count - 1]
     while rows[-1]:
         rows.append(int(before[rows[-1]]))
@@ -232,21 +245,22 @@ def _fewest(track: _Track, tolerance: float) -> Index:
 
 def _reached_from(track: _Track, screen: _Screen, first: int, ends: Index, tolerance: float) -> Index:
     """Those of the rows (increasing) to which a segment from a row stays within the tolerance."""
+    ends = ends[track.left[ends] <= tolerance]
     ends = ends[screen.may_hold(track, first, ends)]
     if not ends.size:
         return ends
-    poses, basis = track.poses, BASES[track.method]
+    poses = track.poses
     segments = poses.segments_from(first, ends)
 
     def keep(good: Bool) -> None:
         nonlocal ends, segments
         ends = ends[good]
-        segments = segments._replace(angle=segments.angle[good], vectors=segments.vectors[:, good])
+        segments = segments.at(good)
 
     for share in _PROBES:
         rows = _row_at(track, first, ends, share)
         seen = poses.seen_from(first, rows)
-        keep(displacement_along(seen, segments, track.fraction(first, ends, rows), basis) <= tolerance)
+        keep(segments.displacement(seen, track.fraction(first, ends, rows)) <= tolerance)
         if not ends.size:
             return ends
     seen = poses.seen_from(first, slice(first, ends[-1] + 1))
@@ -255,15 +269,14 @@ def _reached_from(track: _Track, screen: _Screen, first: int, ends: Index, toler
         if not holds[k]:
             continue
         rows = np.arange(first + 1, ends[k])
-        one = segments._replace(angle=segments.angle[k], vectors=segments.vectors[:, k : k + 1])
-        error = displacement_along(seen[1 : rows.size + 1], one, track.fraction(first, ends[k], rows), basis)
+        one = segments.at(slice(k, k + 1))
+        error = one.displacement(seen[1 : rows.size + 1], track.fraction(first, ends[k], rows))
         if error.max(initial=0.0) <= tolerance:
             continue
         # What fails in one row mostly fails there for the nearer ends, too.
         row = first + 1 + int(error.argmax())
         rest = np.flatnonzero(holds[: k + 1] & (ends[: k + 1] > row))
-        others = segments._replace(angle=segments.angle[rest], vectors=segments.vectors[:, rest])
-        at_row = displacement_along(seen[row - first], others, track.fraction(first, ends[rest], row), basis)
+        at_row = segments.at(rest).displacement(seen[row - first], track.fraction(first, ends[rest], row))
         holds[rest] = at_row <= tolerance
         holds[k] = False
     return ends[holds]
@@ -276,7 +289,13 @@ def _row_at(track: _Track, first: int, ends: Index, share: float) -> Index:
     return rows
 
 
-def _no_set(tolerance: float) -> SettingError:
+def _no_set(track: _Track, tolerance: float) -> SettingError:
+    if track.poses.series is not None:
+        left = 1000.0 * track.left.max()
+        return SettingError(
+            f"--tolerance {1000.0 * tolerance:g}mm: the joint itself leaves up to {left:.2g} mm of the measured poses, "
+            "so that no keyframes keep to it; give a larger tolerance, or --method sclerp"
+        )
     return SettingError(
         f"--tolerance {1000.0 * tolerance:g}mm: where the law rests the motion itself moves by more than that, so that "
         "no keyframes keep to it; give a larger tolerance, or leave --law out"
@@ -310,7 +329,7 @@ class _Screen(NamedTuple):
         # E^2 >= 4 sin^2(delta/2) a^2, a the least RMS distance of the points from an axis through their centroid.
         proximal = float(np.sqrt(max(spread[0] + spread[1], 0.0)))
         sine = (tolerance + _ROUND_OFF) / max(2.0 * proximal, _ROUND_OFF)
-        half_turn = float(np.arcsin(sine)) if sine < 1.0 else np.pi
+        half_turn = float(np.arcsin(sine)) if sine < 1.0 and track.poses.series is None else np.pi
         return cls(np.ascontiguousarray(track.poses.pose[:, :4]), half_turn, track.method == "sclerp")
 
     def may_hold(self, track: _Track, first: int, ends: Index) -> Bool:

@@ -27,6 +27,7 @@ from elbowscrew.motion.interpolation.keyframes import keyframes_at, phase_time, 
 from elbowscrew.motion.interpolation.law_fit import FittedLaw, laws_of
 from elbowscrew.motion.interpolation.model_phases import model_phases, one_phase, phases_of_keyframes
 from elbowscrew.motion.interpolation.modeling import ModeledPoses, model_motion
+from elbowscrew.motion.interpolation.segment_errors import JointSeries
 from elbowscrew.motion.movements.boundaries import Movements
 from elbowscrew.motion.screws.measurement import Measurement
 from elbowscrew.settings import Settings
@@ -67,6 +68,7 @@ def build_model(
     frame, elapsed, pose = measured.screw.frame, measured.elapsed, measured.displacement
     method = settings.model_method
     joint = ModelJoint.of(measured, settings, joint_type) if method == "joint" else None
+    coordinates, make, known = interpolation_called(method, pose, joint)
     points = body_points(measured.distal, settings)
     rows = None
     if settings.keyframes is not None:
@@ -81,7 +83,8 @@ def build_model(
     laws = model_laws(measured, phases, points, settings.model_law, settings.law_peak)
     selection = None
     if settings.tolerance_mm is not None:
-        selection = _selected(measured, phases, laws, points, settings)
+        series = None if known is None else JointSeries(known, coordinates)
+        selection = _selected(measured, phases, laws, points, settings, series)
         rows = selection.row
     keyframes = keyframes_at(
         phases.bound_rows if rows is None else rows,
@@ -93,7 +96,6 @@ def build_model(
         laws=[law.function for law in laws],
         piecewise=settings.blend == "piecewise",
     )
-    coordinates, make, known = interpolation_called(method, pose, joint)
     if known is not None:
         keyframes = replace(keyframes, joint=known, joint_angle=coordinates[keyframes.row])
     poses = model_motion(coordinates, elapsed, keyframes, make, [law.function for law in laws])
@@ -154,7 +156,12 @@ def _measured_rows(measured: Measurement) -> NDArray[np.int64]:
 
 
 def _selected(
-    measured: Measurement, phases: ModelPhases, laws: tuple[FittedLaw, ...], points: BodyPoints, settings: Settings
+    measured: Measurement,
+    phases: ModelPhases,
+    laws: tuple[FittedLaw, ...],
+    points: BodyPoints,
+    settings: Settings,
+    series: JointSeries | None,
 ) -> Selection:
     """Choose the keyframes among the measured poses; the phases' bounds are keyframes in any case."""
     bounds = phases.bound_rows
@@ -174,6 +181,7 @@ def _selected(
         points,
         1e-3 * float(settings.tolerance_mm or 0.0),
         method=settings.model_method,
+        series=None if series is None else series._replace(angle=series.angle[rows]),
         required=np.searchsorted(rows, bounds),
     )
     return found.of_rows(rows)
