@@ -1,9 +1,11 @@
 """Whether the search for two axes fails, which joint is told for which, and what the intervals cover.
 
-    python benchmarks/joint_types.py [--quick] [starts] [types] [coverage]
+    python benchmarks/joint_types.py [--quick] [--seed N] [--trials N] [starts] [types] [pronation] [coverage]
 
 Synthetic joints with both bodies' noise. Types: by noise, range and what real joints add, an axis that wanders by 5 deg
-and a cluster that moves on the bone by 4 deg and 5 mm; the noise's size is not told to the choice.
+and a cluster that moves on the bone by 4 deg and 5 mm; the noise's size is not told to the choice. Apart from these
+stand hinges with an axial turn of 5 to 20 deg that goes with the flexion, as a knee's, and elbows that pronate while
+they flex by 140 deg, with the noise told and not.
 """
 
 from __future__ import annotations
@@ -21,33 +23,44 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "support"
 import moving_joints as mj
 
 from elbowscrew.geometry import dual_quaternion as dq
+from elbowscrew.geometry import quaternion as qn
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.motion.joint.choice import choose_type
 from elbowscrew.motion.joint.fitting import fit_type
 from elbowscrew.motion.joint.likelihood import Poses, fit_mechanism
 from elbowscrew.motion.joint.starts import find_two_axes
+from elbowscrew.motion.joint.typed import identify_joint
 
 FRAMES = 200
 NOISES = ((0.1, 2e-4), (0.5, 1e-3))
 RANGES_DEG = (20, 40, 90, 140)
 DISTURBANCES = ("clean", "wander", "skin")
+PRONATIONS_DEG = (2, 5, 10, 20, 30, 60)
 TYPES = ("rigid", "hinge", "two_axes", "ball", "free")
 
 
 def main() -> None:
     """Print the tables in Markdown."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("parts", nargs="*", default=["starts", "types", "coverage"])
+    parser.add_argument("parts", nargs="*", default=["starts", "types", "pronation", "coverage"])
     parser.add_argument("--quick", action="store_true")
+    parser.add_argument("--seed", type=int, default=15)
+    parser.add_argument(
+        "--trials", type=int, default=None, help="in a cell; of the searches, the share of 1,500 is 1 in N"
+    )
     options = parser.parse_args()
+    trials = options.trials
     if "starts" in options.parts:
-        starts(20 if options.quick else 1)
+        starts(trials or (20 if options.quick else 1), options.seed)
     if "types" in options.parts:
-        types(2 if options.quick else 12)
+        types(trials or (2 if options.quick else 12), options.seed)
+    if "pronation" in options.parts:
+        pronation(trials or (3 if options.quick else 20), options.seed)
     if "coverage" in options.parts:
-        coverage(30 if options.quick else 300)
+        coverage(trials or (30 if options.quick else 300), options.seed)
 
 
-def starts(share: int) -> None:
+def starts(share: int, seed: int) -> None:
     """Print how many searches end above the likelihood of the truth."""
     kinds = {
         "elbow": (1000, (60.0, 120.0), (0.0, 0.025)),
@@ -56,7 +69,7 @@ def starts(share: int) -> None:
     }
     print("| axes | searches | failures | CPU time each, ms |\n| --- | --- | --- | --- |")
     for name, (count, between, distance) in kinds.items():
-        rng = np.random.default_rng(len(name))
+        rng = np.random.default_rng([seed, len(name)])
         failures, used = 0, 0.0
         for _ in range(count // share):
             ranges = (float(rng.uniform(20.0, 140.0)), float(rng.uniform(20.0, 140.0)))
@@ -87,11 +100,11 @@ def sample(kind: str, range_deg: float, rng: np.random.Generator) -> mj.MovingJo
     return mj.free(FRAMES, range_deg, rng)
 
 
-def types(trials: int) -> None:
+def types(trials: int, seed: int) -> None:
     """Print what is told for each type, and the shares that are right and surely wrong at ranges from 40 deg."""
     told: dict[tuple[str, str, int], Counter[str]] = {}
     right = sure_wrong = total = 0
-    rng = np.random.default_rng(15)
+    rng = np.random.default_rng(seed)
     for disturbance in DISTURBANCES:
         for range_deg in RANGES_DEG:
             for kind in TYPES:
@@ -112,15 +125,77 @@ def types(trials: int) -> None:
                             total += 1
                             right += name == kind
                             sure_wrong += name != kind and choice.status == "determined"
+    for range_deg in RANGES_DEG:
+        counter = told.setdefault(("axial turn", "hinge", range_deg), Counter())
+        for noise in NOISES:
+            for _ in range(trials):
+                seen, covariance = mj.noisy(screwing_home(range_deg, rng), rng, *noise)
+                choice = choose_type(Poses.of(seen, covariance), noise_known=False)
+                name = "hinge" if choice.type == "screw_hinge" else choice.type
+                counter[f"{name} {choice.status or ''}".strip()] += 1
     print("\n| disturbance | joint | range, deg | told |\n| --- | --- | --- | --- |")
     for (disturbance, kind, range_deg), counter in told.items():
         print(f"| {disturbance} | {kind} | {range_deg} | " + ", ".join(f"{n} {k}" for k, n in counter.items()) + " |")
     print(f"\nFrom 40 deg: right {right / total:.3f}, wrong and determined {sure_wrong / total:.3f} of {total}.")
 
 
-def coverage(trials: int) -> None:
+def screwing_home(range_deg: float, rng: np.random.Generator) -> Float:
+    """A hinge whose distal body turns on about a line of its own over the first part of the range."""
+    exact = mj.hinge(FRAMES, range_deg, rng)
+    angle, axis = exact.truth["angles"], exact.truth["axis1"]
+    place = np.clip((angle - angle.min()) / np.ptp(angle) / rng.uniform(0.25, 1.0), 0.0, 1.0)
+    turn = np.radians(rng.uniform(5.0, 20.0)) * (3.0 * place**2 - 2.0 * place**3)
+    across = mj.unit(np.cross(axis[:3], rng.normal(size=3)))
+    line = mj.line(across, np.cross(axis[:3], axis[3:]) + rng.normal(0.0, 0.01, 3))
+    return dq.multiply(exact.poses, mj.turned(turn, dq.transform_lines(dq.conjugate(exact.poses[0]), line)))
+
+
+def pronation(trials: int, seed: int) -> None:
+    """Print what is told of an elbow that flexes by 140 deg and pronates by a little, out and back on other ways."""
+    rng = np.random.default_rng(seed)
+    print("\n| pronation, deg | cluster | noise | told | second rotation, deg | flexion axis off, deg |")
+    print("| --- | --- | --- | --- | --- | --- |")
+    for skin in (False, True):
+        for size in PRONATIONS_DEG:
+            for stated in (True, False):
+                told: Counter[str] = Counter()
+                second, off = [], []
+                for _ in range(trials):
+                    poses, axis = pronating(size, rng)
+                    poses = mj.with_skin(poses, rng, 4.0, 0.005) if skin else poses
+                    seen, covariance = mj.noisy(poses, rng, *NOISES[0])
+                    found = identify_joint(seen, covariance, seen[0], noise_known=stated)
+                    told[f"{found.type} {found.status or ''}".strip()] += 1
+                    if found.second_rotation is not None:
+                        second.append(float(np.degrees(found.second_rotation.range)))
+                    if found.two_axes is not None:
+                        off.append(np.degrees(mj.angle_between(found.two_axes.axis1.direction_proximal, axis)))
+                print(
+                    f"| {size} | {'moves' if skin else 'sits'} | {'stated' if stated else 'not stated'} | "
+                    + ", ".join(f"{n} {k}" for k, n in told.items())
+                    + f" | {np.median(second):.1f} |" * bool(second)
+                    + " |" * (not second)
+                    + (f" {np.median(off):.2f} |" if off else " |"),
+                    flush=True,
+                )
+
+
+def pronating(size_deg: float, rng: np.random.Generator) -> tuple[Float, Float]:
+    """Poses (450, 8) of an elbow, and its flexion axis (6,)."""
+    time = np.linspace(0.0, 2.0 * np.pi, 450)
+    flexion = np.radians(140.0) * 0.5 * (1.0 - np.cos(time))
+    turn = np.radians(size_deg) * 0.5 * (1.0 - np.cos(time - rng.uniform(0.4, 1.2)))
+    h1, p1 = mj.unit(rng.normal(size=3)), rng.normal(0.0, 0.08, 3)
+    normal = mj.unit(np.cross(h1, rng.normal(size=3)))
+    h2 = qn.rotate(qn.quat_from_rotation_vector(np.radians(rng.uniform(80.0, 95.0)) * normal), h1)
+    first, second = mj.line(h1, p1), mj.line(h2, p1 + 0.013 * h1 + 0.008 * normal)
+    poses = dq.multiply(dq.multiply(mj.turned(flexion, first), mj.turned(turn, second)), mj.rest_pose(rng))
+    return poses, first
+
+
+def coverage(trials: int, seed: int) -> None:
     """Print how often the truth is within its interval of 95 %, on white noise."""
-    rng = np.random.default_rng(95)
+    rng = np.random.default_rng(seed)
     inside = {"axis 1 direction": 0, "axis 1 place": 0, "axis 2 direction": 0, "axis 2 place": 0, "center": 0}
     for _ in range(trials):
         exact = mj.two_axes(FRAMES, (100.0, 70.0), 85.0, 0.012, rng)

@@ -35,7 +35,7 @@ NOT_IN_TABLES_OF_JOINT = {
     r"(screw_)?hinge\.(noise_ratio|frames_that_count_as_one)": "tests/motion/joint/test_joint_axis.py",
     r"screw_hinge\.pitch_sd_mm_per_rad": "tests/motion/joint/test_interval.py",
     # Fits of other joints than hinges: recovered from motions that were made so.
-    r"joint_type\.(type|status|reason|candidates.*|second_rotation|two_axes|ball|interval_note)": (
+    r"joint_type\.(type|status|reason|candidates.*|second_rotation|two_axes|ball|decided_by|interval_method)": (
         "tests/motion/joint/test_joint_type.py"
     ),
     r"joint_type\.two_axes\.axis.*": f"{HERE}::test_two_axes_are_those_of_the_motion",

@@ -300,13 +300,17 @@ def _joint_type(found: JointTypeSummary) -> str:
         apart = f"{axes['angle_between_deg']:.1f} deg"
         if axes["distance_mm"] is not None:
             apart += f" and {abs(axes['distance_mm']):.1f} mm"
-        return f"two axes ({found['status']}): {told}; {apart} apart (intervals {found['interval_note']})"
+        return f"two axes ({found['status']}): {told}; {apart} apart ({_stands_on(found)})"
     if ball is not None:
         return (
             f"ball ({found['status']}): center ({_vector(ball['center_in_proximal_mm'], 1)}) mm in the proximal body "
-            f"within {ball['radius95_mm']:.2g} mm ({found['interval_note']})"
+            f"within {ball['radius95_mm']:.2g} mm ({_stands_on(found)})"
         )
     return f"none: the motion has no single axis ({found['type'].replace('_', ' ')}: {found['reason']})"
+
+
+def _stands_on(found: JointTypeSummary) -> str:
+    return f"95 %, for the clusters' frames, {found['interval_method'] or 'not known'}"
 
 
 def _one_of_two(axis: JointLineSummary, body: Literal["proximal", "distal"]) -> str:

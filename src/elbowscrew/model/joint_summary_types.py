@@ -195,7 +195,8 @@ class JointTypeSummary(TypedDict):
     two_axes: TwoAxesSummary | None
     ball: BallSummary | None
     second_rotation: SecondRotationSummary | None
-    interval_note: str | None
+    decided_by: Literal["A", "B", "J"] | None
+    interval_method: str | None
     """What the intervals of two axes and of a center stand on."""
 
 

@@ -55,8 +55,6 @@ class JointLine(ArrayRecord):
     ----------
     direction_proximal, point_proximal, direction_distal, point_distal : ndarray, shape (3,)
         In the frames of the bodies, with the joint in its reference pose; the point is where `point_radius` holds.
-    covariance : ndarray, shape (4, 4)
-        Of tilts and shifts about two axes across the line, in the body it belongs to.
     axis_cone, point_radius : float
         Half-angle (rad) and radius (m) that hold 95 %.
     axis_sd : float
@@ -73,7 +71,6 @@ class JointLine(ArrayRecord):
     point_proximal: Float
     direction_distal: Float
     point_distal: Float
-    covariance: Float
     axis_cone: float
     point_radius: float
     axis_sd: float
@@ -98,7 +95,8 @@ class TwoAxes(ArrayRecord):
     ----------
     axis1, axis2 : JointLine
     covariance : ndarray, shape (12, 12)
-        Of tilts and shifts of axis 1, four numbers between the axes, and tilts and shifts of axis 2.
+        Of tilts and shifts of axis 1, four numbers between the axes, and tilts and shifts of axis 2, under noise of the
+        residuals' size and autocorrelation; cones, radii and deviations have all that tells of errors in them.
     angle_between : Measure
         Folded to 90 deg at most, rad.
     distance, foot1, foot2 : Measure or None
@@ -132,7 +130,7 @@ class BallJoint(ArrayRecord):
     center_proximal, center_distal : ndarray, shape (3,)
         In the frames of both bodies, m.
     covariance : ndarray, shape (6, 6)
-        Of both, in that order, along the axes of the bodies.
+        Of both, in that order, along the axes of the bodies, as that of `TwoAxes`.
     radius : float
         That holds 95 % of the center in the proximal body, m.
     """
@@ -174,6 +172,9 @@ class JointType(ArrayRecord):
     ball : BallJoint or None
     second_rotation : SecondRotation or None
         Beside a hinge.
+    decided_by : {"A", "B", "J"} or None
+        What the cone of axis 1, or the radius of the center, stands on: the markers' own motion, the residuals'
+        spectrum, or blocks of the motion; None of other types.
     coordinates : JointCoordinates or None
         The motion that the joint allows; None of a joint without angles.
     angle, angle_sd : ndarray, shape (N, k)
@@ -190,6 +191,7 @@ class JointType(ArrayRecord):
     two_axes: TwoAxes | None
     ball: BallJoint | None
     second_rotation: SecondRotation | None
+    decided_by: Literal["A", "B", "J"] | None
     coordinates: JointCoordinates | None
     angle: Float
     angle_sd: Float

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Final
+from typing import Any
 
 import numpy as np
 
@@ -33,7 +33,7 @@ from elbowscrew.model.joint_summary_types import (
     WanderSummary,
 )
 from elbowscrew.motion.screws.frames import frame_called
-from elbowscrew.results.joint_type_summary import joint_type_summary
+from elbowscrew.results.joint_type_summary import INTERVAL_METHODS, joint_type_summary
 from elbowscrew.results.statistics import known, rms, statistic
 
 
@@ -81,14 +81,6 @@ def dispersion_summary(analysis: Analysis) -> DispersionSummary:
 def preferred_fit(joint: JointSummary) -> FitSummary | None:
     """Give the fit to believe; None where the motion has no single axis."""
     return None if joint["preferred"] is None else joint[joint["preferred"]]
-
-
-INTERVAL_METHODS: Final = {
-    "A": "from the markers' motion among themselves",
-    "B": "from the residuals of the joint's model and how they go together in time",
-    "J": "from blocks of the motion",
-}
-"""What an interval stands on."""
 
 
 def _fitted(fit: FittedJoint | None) -> FitSummary | None:

@@ -21,10 +21,12 @@ from elbowscrew.results.statistics import known
 
 _MILLIMETERS: Final = 1000.0
 _DEGREES: Final = float(np.degrees(1.0))
-INTERVAL_NOTE: Final = (
-    "95 %, from the size and the autocorrelation of the residuals; skin that moves with the motion is not included"
-)
-"""What the intervals of two axes and of a center stand on."""
+INTERVAL_METHODS: Final = {
+    "A": "from the markers' motion among themselves",
+    "B": "from the residuals of the joint's model and how they go together in time",
+    "J": "from blocks of the motion",
+}
+"""What an interval stands on."""
 
 
 def joint_type_summary(analysis: Analysis) -> JointTypeSummary:
@@ -43,7 +45,8 @@ def joint_type_summary(analysis: Analysis) -> JointTypeSummary:
             "two_axes": None,
             "ball": None,
             "second_rotation": None,
-            "interval_note": None,
+            "decided_by": None,
+            "interval_method": None,
         }
     candidates: list[CandidateSummary] = [
         {
@@ -65,7 +68,8 @@ def joint_type_summary(analysis: Analysis) -> JointTypeSummary:
         "two_axes": None if found.two_axes is None else _two_axes(found.two_axes),
         "ball": None if found.ball is None else _ball(found.ball),
         "second_rotation": None if found.second_rotation is None else _second_rotation(found.second_rotation),
-        "interval_note": INTERVAL_NOTE,
+        "decided_by": found.decided_by,
+        "interval_method": None if found.decided_by is None else INTERVAL_METHODS[found.decided_by],
     }
 
 

@@ -29,8 +29,7 @@ from elbowscrew.model.summary_types import (
     TrialSummary,
 )
 from elbowscrew.motion.screws.frames import frame_called
-from elbowscrew.results.joint_summary import INTERVAL_METHODS
-from elbowscrew.results.joint_type_summary import joint_type_summary
+from elbowscrew.results.joint_type_summary import INTERVAL_METHODS, joint_type_summary
 from elbowscrew.results.recording_summary import quality_summary, recording_summary, source_summary, warnings_summary
 from elbowscrew.results.statistics import known, rms, statistic
 from elbowscrew.settings import Settings

@@ -23,7 +23,7 @@ from elbowscrew.motion.joint.lines import Z_LINE
 from elbowscrew.motion.joint.pieces import influence_pieces
 from elbowscrew.motion.joint.simple_types import OneAxis
 from elbowscrew.motion.joint.starts import find_two_axes
-from elbowscrew.motion.joint.two_axes import TwoAxesMechanism, axes_geometry, geometry_covariance
+from elbowscrew.motion.joint.two_axes import TwoAxesMechanism, axes_geometry, geometry_slopes
 from elbowscrew.motion.joint.typed import identify_joint
 from elbowscrew.motion.screws.uncertainty import joint_covariance
 
@@ -114,7 +114,8 @@ def test_two_axes_are_covered_by_their_intervals() -> None:
             square = error @ np.linalg.solve(C[8 * k : 8 * k + 4, 8 * k : 8 * k + 4], error)
             squares[k] += square / count
             inside[k] += square < 9.488
-        geometry, G = axes_geometry(fit.mechanism), geometry_covariance(fit.mechanism, C)
+        geometry, slopes = axes_geometry(fit.mechanism), geometry_slopes(fit.mechanism)
+        G = slopes @ C @ slopes.T
         folded = min(geometry.angle, np.pi - geometry.angle)
         inside[2] += abs(folded - np.radians(85.0)) < 1.96 * np.sqrt(G[0, 0])
         inside[3] += abs(abs(geometry.distance) - 0.012) < 1.96 * np.sqrt(G[1, 1])

@@ -25,7 +25,7 @@ def block_jackknife(influence: Influence, blocks: int = BLOCKS) -> Mixture:
     ----------
     Künsch 1989 for the jackknife of blocks; each estimate without a block is one linear step from the whole.
     """
-    travel = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(influence.angle)))])
+    travel = np.concatenate([[0.0], np.cumsum(np.sum(np.abs(np.diff(influence.angles, axis=0)), axis=1))])
     whole = max(float(travel[-1]), np.finfo(np.float64).tiny)
     number = np.minimum((blocks * travel / whole).astype(np.int64), blocks - 1)
     starts = np.searchsorted(number, np.arange(1, blocks))

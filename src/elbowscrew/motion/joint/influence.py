@@ -31,6 +31,8 @@ class Influence(NamedTuple):
         What makes a whitened residual of a small twist ``xi`` of the distal body's pose, ``J_t exp(xi)``.
     joint : ndarray, shape (F, 8)
         The relative poses themselves.
+    second : ndarray, shape (F,), or None
+        Another angle, where the motion is told by two.
     """
 
     angle: Float
@@ -39,6 +41,12 @@ class Influence(NamedTuple):
     design: Float
     whitener: Float
     joint: Float
+    second: Float | None = None
+
+    @property
+    def angles(self) -> Float:
+        """All that the motion is told by, shape (F, 1) or (F, 2)."""
+        return self.angle[:, None] if self.second is None else np.stack([self.angle, self.second], axis=1)
 
     @property
     def of_distal(self) -> Float:

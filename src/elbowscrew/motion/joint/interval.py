@@ -7,12 +7,12 @@ moves as a whole with the flexion no single trial shows; the user states it.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final, Literal
 
 import numpy as np
 
-from elbowscrew.geometry.arrays import Float
+from elbowscrew.geometry.arrays import Float, Index
 from elbowscrew.geometry.sensitivity import confidence_radius
 from elbowscrew.motion.joint.blocks import block_jackknife
 from elbowscrew.motion.joint.influence import Influence
@@ -51,6 +51,11 @@ class ClusterMotion:
     nonrigid: Float | None = None
     rms: Float | None = None
     own_shape: bool = False
+
+    def at(self, rows: Index) -> ClusterMotion:
+        """Of some of the frames."""
+        nonrigid, rms = (None if part is None else part[rows] for part in (self.nonrigid, self.rms))
+        return replace(self, nonrigid=nonrigid, rms=rms)
 
     def covariance(self, influence: Influence) -> Mixture | None:
         """Covariance of the shared numbers by these markers; None where they do not tell."""
@@ -136,6 +141,7 @@ def joint_interval(
     *,
     skin: tuple[SkinMotion, ...] = (),
     reference_angle: float | None = None,
+    reference_second: float | None = None,
     noise_known: bool = True,
 ) -> JointInterval:
     """Find how far a fitted joint may be from the truth.
@@ -147,7 +153,7 @@ def joint_interval(
         Of the bodies that move; those without markers are left out.
     skin : tuple of SkinMotion
         Each body's, as the user states it.
-    reference_angle : float, optional
+    reference_angle, reference_second : float, optional
         Where the clusters are taken to sit right, radians; the first frame's if not told.
     noise_known : bool
         Whether the poses' noise is stated; else the residuals alone tell of it.
@@ -161,28 +167,35 @@ def joint_interval(
             markers = found if markers is None else markers.plus(found)
     residuals = residual_spectrum(influence, noise_known=noise_known)
     asked = not residuals.flat and (markers is None or residuals.variance > _BEYOND_NOISE)
-    start = float(influence.angle[0]) if reference_angle is None else reference_angle
     return JointInterval(
         markers=markers,
         residuals=residuals,
         blocks=block_jackknife(influence) if asked else None,
-        skin=skin_covariance(influence, skin, start) if skin else None,
+        skin=skin_covariance(influence, skin, reference_angle, reference_second) if skin else None,
     )
 
 
-def skin_covariance(influence: Influence, skin: tuple[SkinMotion, ...], reference_angle: float) -> Float:
+def skin_covariance(
+    influence: Influence,
+    skin: tuple[SkinMotion, ...],
+    reference_angle: float | None = None,
+    reference_second: float | None = None,
+) -> Float:
     """Covariance (P, P) by clusters that move as a whole with the angle, at the worst of some courses.
 
     References
     ----------
     ``D diag(r^2/3, s^2/3) D^T`` with ``D = sum_t f_t Psi_t``; the worst is the largest in units of the noise's own.
     """
-    off = influence.angle - reference_angle
-    largest = float(np.abs(off).max())
-    signed = off / (largest if largest > 0.0 else 1.0)
-    u = np.abs(signed)
+    courses: list[Float] = []
+    for angle, start in zip(influence.angles.T, (reference_angle, reference_second), strict=False):
+        off = angle - (float(angle[0]) if start is None else start)
+        largest = float(np.abs(off).max())
+        signed = off / (largest if largest > 0.0 else 1.0)
+        u = np.abs(signed)
+        courses += [u, np.sin(0.5 * np.pi * u), u**2, np.sin(np.pi * u), signed]
     worst = np.zeros_like(influence.inverse)
-    for course in (u, np.sin(0.5 * np.pi * u), u**2, np.sin(np.pi * u), signed):
+    for course in courses:
         total = np.zeros_like(worst)
         for part in skin:
             psi = influence.of_distal if part.segment == "distal" else influence.of_proximal

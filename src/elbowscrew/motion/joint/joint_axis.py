@@ -6,11 +6,10 @@ from dataclasses import replace
 from typing import Final, Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from elbowscrew.choices import ExpressIn
 from elbowscrew.geometry._blocks import evenly_thinned
-from elbowscrew.geometry.arrays import Float
+from elbowscrew.geometry.arrays import Float, Index
 from elbowscrew.geometry.dual_quaternion import conjugate, pose_from_dual_quat, transform_lines
 from elbowscrew.geometry.sensitivity import NORMAL_95
 from elbowscrew.model import FittedJoint, JointAxis, JointMotion, PoseNoise
@@ -85,7 +84,7 @@ def estimate_joint_axis(
     unexplained = _rms(hinge.residual[:, :2], hinge.weight) / spread if spread > 0.0 else np.inf
     single = bool(stated is not None or unexplained <= LARGEST_UNEXPLAINED)
     told = noise.known is not None
-    clusters = tuple(ClusterMotion(segment=one.segment, shape=one.shape, rms=one.rms[rows]) for one in markers)
+    clusters = clusters_of(markers, rows)
     influences = {screw: influence_of_fit(fit, poses, covariance) for screw, fit in fits.items()}
     reference = {screw: _reference_angle(fit, rows, joint) for screw, fit in fits.items()}
     fitted: dict[bool, FittedJoint] = {}
@@ -116,7 +115,7 @@ def estimate_joint_axis(
     return replace(found, wander=away.wander, mean_axis=away.mean_axis, path=away.path)
 
 
-def fitted_frames(joint: JointMotion, noise: JointNoise, noise_gain: Float) -> tuple[NDArray[np.int64], Float, Float]:
+def fitted_frames(joint: JointMotion, noise: JointNoise, noise_gain: Float) -> tuple[Index, Float, Float]:
     """Rows (F,) of the frames that a joint is fitted to, their poses (F, 8) and the covariances (F, 6, 6) of these."""
     rows = np.flatnonzero(joint.measured)
     rows = evenly_thinned(rows, _MOST_FRAMES)
@@ -138,7 +137,12 @@ class BodyMarkers(NamedTuple):
     rms: Float
 
 
-def _reference_angle(fit: LineFit, rows: NDArray[np.int64], joint: JointMotion) -> float:
+def clusters_of(markers: tuple[BodyMarkers, ...], rows: Index) -> tuple[ClusterMotion, ...]:
+    """What the markers tell of the frames that a joint is fitted to."""
+    return tuple(ClusterMotion(segment=one.segment, shape=one.shape, rms=one.rms[rows]) for one in markers)
+
+
+def _reference_angle(fit: LineFit, rows: Index, joint: JointMotion) -> float:
     return float(fit.angle[int(np.argmin(np.abs(rows - joint.reference_row)))])
 
 
@@ -146,7 +150,7 @@ def _fitted_joint(
     fit: LineFit,
     interval: JointInterval,
     joint: JointMotion,
-    rows: NDArray[np.int64],
+    rows: Index,
     express_in: ExpressIn,
     start: Float,
     noise: JointNoise,

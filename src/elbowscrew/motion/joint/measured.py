@@ -18,6 +18,7 @@ from elbowscrew.motion.joint.joint_axis import (
     LARGEST_UNEXPLAINED,
     BodyMarkers,
     assumed_noise,
+    clusters_of,
     distal_line,
     estimate_joint_axis,
     fitted_frames,
@@ -63,7 +64,7 @@ def measured_joint_type(measured: Measurement, joint_axis: JointAxis, settings: 
     stated = settings.stated_joint
     if stated == "free":
         return _without_numbers(stated, "free, as stated")
-    _, poses, covariance = fitted_frames(measured.joint, measured.noise, measured.noise_gain)
+    rows, poses, covariance = fitted_frames(measured.joint, measured.noise, measured.noise_gain)
     if not np.ptp(pose_from_dual_quat(poses)[1], axis=0).max() > _LEAST_SHIFT:
         return None
     return identify_joint(
@@ -76,6 +77,8 @@ def measured_joint_type(measured: Measurement, joint_axis: JointAxis, settings: 
         one=joint_axis.preferred,
         left=side_of(measured.distal.name) == "left",
         everywhere=_everywhere(measured, settings),
+        clusters=clusters_of(_markers(measured), rows),
+        skin=_skin(measured, settings),
     )
 
 
@@ -88,6 +91,7 @@ def _without_numbers(name: StatedJoint, reason: str) -> JointType:
         two_axes=None,
         ball=None,
         second_rotation=None,
+        decided_by=None,
         coordinates=None,
         angle=np.zeros((0, 0)),
         angle_sd=np.zeros((0, 0)),

@@ -12,7 +12,7 @@ from typing import Final, Literal
 import numpy as np
 from scipy.special import multigammaln
 
-from elbowscrew.geometry.arrays import Float
+from elbowscrew.geometry.arrays import Float, Index
 from elbowscrew.motion.joint.influence import Influence
 from elbowscrew.motion.joint.spectrum import band_starts, band_sums, cosine_transform
 from elbowscrew.motion.joint.tails import Mixture
@@ -25,6 +25,7 @@ _WORTH: Final = np.array([2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0, 1e3, 1e4, 1e5]
 _WORTH_IF_COLORED: Final = 2.0
 _LEAST_KNOWN: Final = 0.5
 _ANGLE_BINS: Final = 15
+_PAIR_BINS: Final = 5  # of each of two angles
 _ALIKE: Final = 3.0
 _RANK: Final = 1e-6
 
@@ -84,9 +85,9 @@ def nonrigid_covariance(
     psi = _of_rigid_coordinates(influence, shape, segment)
     moved = np.tensordot(z, psi, axes=(0, 0))  # (nu, P, 6)
     measured = np.einsum("jpa,jqa->pq", moved, moved) / nu
-    model = _Stationary(z, influence.angle, own_shape=own_shape)
+    model = _Stationary(z, influence.angles, own_shape=own_shape)
     expected, model_freedom = model.covariance(psi, influence)
-    worth, weight = _worth_of_model(z, influence.angle, model, own_shape=own_shape)
+    worth, weight = _worth_of_model(z, influence.angles, model, own_shape=own_shape)
     covariance = (worth[:, None, None] * expected + nu * measured) / (worth + nu)[:, None, None]
     return Mixture(covariance, np.minimum(worth, model_freedom) + nu, weight)
 
@@ -116,11 +117,9 @@ def residual_covariance(
     if nu < 1 or not influence.determined or np.mean(known) < _LEAST_KNOWN:
         return None
     square = len(shape) * rms[known] ** 2 / nu
-    low, span = float(influence.angle.min()), float(np.ptp(influence.angle))
-    place = (influence.angle - low) / (span if span > 0.0 else 1.0)
-    bins = np.minimum((_ANGLE_BINS * place).astype(np.int64), _ANGLE_BINS - 1)
-    number = np.bincount(bins[known], minlength=_ANGLE_BINS)
-    mean = np.bincount(bins[known], square, _ANGLE_BINS) / np.maximum(number, 1)
+    bins, count = _bins_of(influence.angles)
+    number = np.bincount(bins[known], minlength=count)
+    mean = np.bincount(bins[known], square, count) / np.maximum(number, 1)
     whole = float(square.mean())
     chance = whole * np.sqrt(2.0 / (nu * np.maximum(number, 1)))
     used = number > 0
@@ -173,8 +172,8 @@ def _worth_of_model(z: Float, angle: Float, model: _Stationary, *, own_shape: bo
     is drawn from an inverse Wishart distribution about the model's, the tighter the more the model is worth.
     """
     nu = z.shape[1]
-    about = angle - angle.mean()
-    waves = np.stack([np.ones(len(angle)), np.cos(about), np.sin(about), about], axis=1)
+    about = angle - angle.mean(axis=0)
+    waves = np.concatenate([np.ones((len(angle), 1)), np.cos(about), np.sin(about), about], axis=1)
     if own_shape:
         waves = waves[:, 1:] - waves[:, 1:].mean(axis=0)
     basis, size, _ = np.linalg.svd(waves, full_matrices=False)
@@ -197,6 +196,17 @@ def _worth_of_model(z: Float, angle: Float, model: _Stationary, *, own_shape: bo
     )
     weight = np.exp(evidence - evidence.max())
     return worth, weight / weight.sum()
+
+
+def _bins_of(angles: Float) -> tuple[Index, int]:
+    """Bin of each frame by its angles (F, A), and how many bins there are."""
+    parts = _ANGLE_BINS if angles.shape[1] == 1 else _PAIR_BINS
+    bins = np.zeros(len(angles), dtype=np.int64)
+    for angle in angles.T:
+        span = float(np.ptp(angle))
+        place = (angle - angle.min()) / (span if span > 0.0 else 1.0)
+        bins = parts * bins + np.minimum((parts * place).astype(np.int64), parts - 1)
+    return bins, parts ** angles.shape[1]
 
 
 def _of_rigid_coordinates(influence: Influence, shape: Float, segment: Segment) -> Float:

@@ -34,20 +34,23 @@ def band_starts(angle: Float) -> Index:
 
     Parameters
     ----------
-    angle : ndarray, shape (F,)
-        The motion, radians.
+    angle : ndarray, shape (F,) or (F, A)
+        The motion, radians; the fastest of several angles counts.
     """
     count = len(angle)
-    motion = np.stack([np.cos(angle), np.sin(angle)], axis=1)
-    energy = np.sum(cosine_transform(motion - motion.mean(axis=0)) ** 2, axis=1)
-    summed = np.cumsum(energy)
-    slowest = int(np.searchsorted(summed, _MOTION_SHARE * summed[-1])) if summed[-1] > 0.0 else 1
-    own = min(max(slowest, 1) / (2.0 * count), _SLOWEST_FASTEST)
+    own = min(max(1, *(_own_index(one) for one in angle.reshape(count, -1).T)) / (2.0 * count), _SLOWEST_FASTEST)
     edges = [_PAST_THE_MOTION * own]
     while edges[-1] * _BAND_RATIO < 0.5:
         edges.append(edges[-1] * _BAND_RATIO)
     starts = np.ceil(2.0 * count * np.array(edges)).astype(np.int64)
     return np.unique(np.concatenate([[0], starts[starts < count]]))
+
+
+def _own_index(angle: Float) -> int:
+    """Index of a cosine transform below which a motion has nearly all of its energy."""
+    motion = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    summed = np.cumsum(np.sum(cosine_transform(motion - motion.mean(axis=0)) ** 2, axis=1))
+    return int(np.searchsorted(summed, _MOTION_SHARE * summed[-1])) if summed[-1] > 0.0 else 1
 
 
 def band_sums(values: Float, starts: Index) -> Float:
@@ -108,7 +111,7 @@ def residual_spectrum(influence: Influence, *, noise_known: bool = True) -> Resi
     count, dims, shared = influence.design.shape
     square = np.sum(cosine_transform(influence.whitened) ** 2, axis=1)
     design = cosine_transform(influence.design)
-    starts = band_starts(influence.angle)
+    starts = band_starts(influence.angles)
     # One product a band: a product a frequency would need as much memory as all frames' information matrices.
     information = np.stack([np.tensordot(d, d, axes=((0, 1), (0, 1))) for d in np.split(design, starts[1:])])
     power_sum, number = band_sums(square, starts), dims * np.diff(np.append(starts, count)).astype(np.float64)

@@ -157,16 +157,14 @@ def axes_geometry(at: TwoAxesMechanism) -> AxesGeometry:
     )
 
 
-def geometry_covariance(at: TwoAxesMechanism, covariance: Float) -> Float:
-    """Covariance (5, 5) of `AxesGeometry` from that of the shared numbers (12, 12), by central differences."""
+def geometry_slopes(at: TwoAxesMechanism) -> Float:
+    """Derivatives (5, 12) of `AxesGeometry` by the shared numbers, from central differences."""
     columns = []
     for step in np.eye(12) * _STEP:
         zero = np.zeros(at.frames.shape)
         ahead, behind = (np.array(axes_geometry(at.moved(s, zero))) for s in (step, -step))
         columns.append((ahead - behind) / (2.0 * _STEP))
-    slope = np.stack(columns, axis=1)
-    found: Float = slope @ covariance @ slope.T
-    return found
+    return np.stack(columns, axis=1)
 
 
 def angle_sd(fit: Fit[Mechanism]) -> Float:

@@ -9,25 +9,28 @@ import numpy as np
 
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry.arrays import Float
-from elbowscrew.geometry.sensitivity import NORMAL_95, confidence_radius
+from elbowscrew.geometry.sensitivity import NORMAL_95
 from elbowscrew.model.joint_coordinates import JointCoordinates
 from elbowscrew.model.joint_type import BallJoint, JointLine, JointType, Measure, SecondRotation, TwoAxes
 from elbowscrew.motion.joint.choice import LEAST_RANGE_IN_SD, RMS_TO_RANGE, Choice, choose_type, middle_range
 from elbowscrew.motion.joint.coordinates import coordinates_of
 from elbowscrew.motion.joint.every_frame import Everywhere, FrameNumbers, numbers_everywhere, reference_numbers
 from elbowscrew.motion.joint.fitting import Fitted, shared_covariance
+from elbowscrew.motion.joint.interval import ClusterMotion, JointInterval, Method, SkinMotion
 from elbowscrew.motion.joint.likelihood import Fit, Mechanism, Poses, fit_mechanism, fit_robustly
 from elbowscrew.motion.joint.lines import Z_LINE
 from elbowscrew.motion.joint.simple_types import Ball, OneAxis
-from elbowscrew.motion.joint.two_axes import TwoAxesMechanism, angle_sd, axes_geometry, geometry_covariance
+from elbowscrew.motion.joint.two_axes import TwoAxesMechanism, angle_sd, axes_geometry, geometry_slopes
+from elbowscrew.motion.joint.type_interval import Evidence, interval_of_type
 
 _MOST_FRAMES: Final = 5000
 _PARALLEL: Final = np.radians(5.0)
 _SURE: Final = 3.0
 _SHARES_THE_HINGE: Final = 1.5
 _LARGEST_AXIS_SD: Final = np.radians(15.0)
-# Radius of the ball that holds 95 % of an isotropic error in space: root of the quantile of chi-square with 3.
-_BALL_95: Final = 2.795483
+# Rows of the tilts and of the shifts of both axes among the 12 shared numbers.
+_TILTS: Final = (np.eye(12)[0:2], np.eye(12)[8:10])
+_SHIFTS: Final = (np.eye(12)[2:4], np.eye(12)[10:12])
 
 
 def identify_joint(
@@ -41,6 +44,8 @@ def identify_joint(
     one: Fitted | None = None,
     left: bool = False,
     everywhere: Everywhere | None = None,
+    clusters: tuple[ClusterMotion, ...] = (),
+    skin: tuple[SkinMotion, ...] = (),
 ) -> JointType:
     """Tell which joint moved so, and where its axes or its center are.
 
@@ -64,6 +69,10 @@ def identify_joint(
         Of a left side the second axis points away from the joint, so that pronation is positive.
     everywhere : Everywhere, optional
         The frames whose angles are wanted; those that the joint is fitted to by default.
+    clusters : tuple of ClusterMotion
+        Of every body that moves, in the F frames; empty if one of them has no markers.
+    skin : tuple of SkinMotion
+        How the clusters are stated to move as a whole on their bones.
 
     Returns
     -------
@@ -76,7 +85,8 @@ def identify_joint(
     if choice.type in ("free", "undetermined"):
         return _result(choice, None)
     found = choice.fits[choice.type]
-    most, _ = poses.thinned(_MOST_FRAMES)
+    most, rows = poses.thinned(_MOST_FRAMES)
+    evidence = Evidence(noise_known=noise_known, clusters=clusters, skin=skin)
     fit = fit_mechanism(found.mechanism.placed(most.joint), most)
     fit = fit_robustly(fit, most) if robust else fit
     if everywhere is None:
@@ -91,18 +101,22 @@ def identify_joint(
         every = numbers_everywhere(at, everywhere, reference)
         every = every._replace(angle=_near_zero(every.angle))
         allowed = coordinates_of(replace(at, frames=np.zeros((1, 2))), reference)
-        two = _two_axes(written, reference, noise_known=noise_known)
-        return _result(choice, every, scale, coordinates=allowed, two_axes=two)
+        interval = interval_of_type(written, most, evidence.at(rows), np.zeros(2))
+        two = _two_axes(written, reference, interval, noise_known=noise_known)
+        method = interval.decided_by(_TILTS[0])
+        return _result(choice, every, scale, coordinates=allowed, two_axes=two, decided_by=method)
     start = reference_numbers(mechanism, everywhere, reference)
     allowed = coordinates_of(replace(mechanism, frames=start.own), reference)
     every = numbers_everywhere(mechanism, everywhere, reference)
     if isinstance(mechanism, Ball):
-        center = _ball(fit, mechanism, noise_known=noise_known)
-        return _result(choice, every, scale, coordinates=allowed, ball=center)
+        interval = interval_of_type(fit, most, evidence.at(rows))
+        center = _ball(fit, mechanism, interval, noise_known=noise_known)
+        method = interval.decided_by(np.eye(6)[:3])
+        return _result(choice, every, scale, coordinates=allowed, ball=center, decided_by=method)
     if isinstance(mechanism, OneAxis):
         angle = _near_zero(every.angle)
         sense = 1.0 if np.nanmax(angle) >= -np.nanmin(angle) else -1.0
-        second = _second_rotation(choice, reference, noise_known=noise_known)
+        second = _second_rotation(choice, poses, reference, evidence)
         allowed = None if allowed is None else replace(allowed, axis=sense * allowed.axis)
         return _result(choice, every._replace(angle=sense * angle), scale, coordinates=allowed, second=second)
     return _result(choice, every, scale)
@@ -117,6 +131,7 @@ def _result(
     two_axes: TwoAxes | None = None,
     ball: BallJoint | None = None,
     second: SecondRotation | None = None,
+    decided_by: Method | None = None,
 ) -> JointType:
     """Put a result together; `scale` is how many times the stated variance the residuals have."""
     if every is None:
@@ -129,6 +144,7 @@ def _result(
         two_axes=two_axes,
         ball=ball,
         second_rotation=second,
+        decided_by=decided_by,
         coordinates=coordinates,
         angle=every.angle,
         angle_sd=np.sqrt(scale) * every.angle_sd,
@@ -172,28 +188,27 @@ def _to_origin(pose: Float) -> float:
     return -float(dq.pose_from_dual_quat(pose)[1] @ dq.transform_lines(pose, Z_LINE)[:3])
 
 
-def _two_axes(fit: Fit[TwoAxesMechanism], reference: Float, *, noise_known: bool) -> TwoAxes:
+def _two_axes(fit: Fit[TwoAxesMechanism], reference: Float, interval: JointInterval, *, noise_known: bool) -> TwoAxes:
     at = fit.mechanism
-    covariance = shared_covariance(fit, noise_known=noise_known)
     geometry = axes_geometry(at)
-    sd = np.sqrt(np.maximum(np.diag(geometry_covariance(at, covariance)), 0.0))
+    sd = [interval.radius(row[None]) / NORMAL_95 for row in geometry_slopes(at)]
     between = min(geometry.angle, np.pi - geometry.angle)
     parallel = between < max(_PARALLEL, _SURE * sd[0])
-    lines = _lines(at, fit, reference, covariance)
+    lines = _lines(at, fit, reference, interval)
     return TwoAxes(
         axis1=lines[0],
         axis2=lines[1],
-        covariance=covariance,
-        angle_between=Measure(value=between, sd=float(sd[0])),
-        distance=None if parallel else Measure(value=geometry.distance, sd=float(sd[1])),
-        foot1=None if parallel else Measure(value=geometry.foot1, sd=float(sd[2])),
-        foot2=None if parallel else Measure(value=geometry.foot2, sd=float(sd[3])),
-        offset=Measure(value=geometry.offset, sd=float(sd[4])) if parallel else None,
+        covariance=shared_covariance(fit, noise_known=noise_known),
+        angle_between=Measure(value=between, sd=sd[0]),
+        distance=None if parallel else Measure(value=geometry.distance, sd=sd[1]),
+        foot1=None if parallel else Measure(value=geometry.foot1, sd=sd[2]),
+        foot2=None if parallel else Measure(value=geometry.foot2, sd=sd[3]),
+        offset=Measure(value=geometry.offset, sd=sd[4]) if parallel else None,
     )
 
 
 def _lines(
-    at: TwoAxesMechanism, fit: Fit[Mechanism], reference: Float, covariance: Float
+    at: TwoAxesMechanism, fit: Fit[Mechanism], reference: Float, interval: JointInterval
 ) -> tuple[JointLine, JointLine]:
     deviation = angle_sd(fit)
     poses = [
@@ -202,8 +217,7 @@ def _lines(
     ]
     lines = []
     for k, (proximal, distal) in enumerate(poses):
-        block = covariance[8 * k : 8 * k + 4, 8 * k : 8 * k + 4]
-        tilt_sd = float(np.sqrt(np.diag(block)[:2].max()))
+        tilt_sd = max(interval.radius(row[None]) for row in _TILTS[k]) / NORMAL_95
         reach = middle_range(at.frames[:, k])
         lines.append(
             JointLine(
@@ -211,9 +225,8 @@ def _lines(
                 point_proximal=dq.pose_from_dual_quat(proximal)[1],
                 direction_distal=dq.transform_lines(distal, Z_LINE)[:3],
                 point_distal=dq.pose_from_dual_quat(distal)[1],
-                covariance=block,
-                axis_cone=float(confidence_radius(block[:2, :2])),
-                point_radius=float(confidence_radius(block[2:, 2:])),
+                axis_cone=interval.radius(_TILTS[k]),
+                point_radius=interval.radius(_SHIFTS[k]),
                 axis_sd=tilt_sd,
                 range=reach,
                 angle_sd=float(deviation[k]),
@@ -223,14 +236,15 @@ def _lines(
     return lines[0], lines[1]
 
 
-def _second_rotation(choice: Choice, reference: Float, *, noise_known: bool) -> SecondRotation | None:
+def _second_rotation(choice: Choice, poses: Poses, reference: Float, evidence: Evidence) -> SecondRotation | None:
     """What turns beside a hinge; None where it was not looked for, as the stated noise explains the hinge."""
     if "two_axes" not in choice.fits:
         return None
     two = choice.fits["two_axes"]
     if not isinstance(two.mechanism, TwoAxesMechanism):
         return None
-    lines = _lines(two.mechanism, two, reference, shared_covariance(two, noise_known=noise_known))
+    few, rows = poses.thinned(len(two.weight))
+    lines = _lines(two.mechanism, two, reference, interval_of_type(two, few, evidence.at(rows)))
     smaller = min(lines, key=lambda line: line.range)
     left = RMS_TO_RANGE * next(c for c in choice.candidates if c.type == choice.type).residual_rotation
     valid = any(candidate.valid for candidate in choice.candidates if candidate.type == "two_axes")
@@ -241,15 +255,10 @@ def _second_rotation(choice: Choice, reference: Float, *, noise_known: bool) -> 
     return SecondRotation(range=left, axis=None)
 
 
-def _ball(fit: Fit[Mechanism], at: Ball, *, noise_known: bool) -> BallJoint:
-    covariance = shared_covariance(fit, noise_known=noise_known)
-    # Between that of one direction and that of three alike: exact at both ends.
-    values = np.linalg.eigvalsh(covariance[:3, :3]) if np.isfinite(covariance).all() else np.full(3, np.nan)
-    roundness = (values.sum() / values.max() - 1.0) / 2.0
-    factor = NORMAL_95 + (_BALL_95 / np.sqrt(3.0) - NORMAL_95) * roundness
+def _ball(fit: Fit[Mechanism], at: Ball, interval: JointInterval, *, noise_known: bool) -> BallJoint:
     return BallJoint(
         center_proximal=at.proximal,
         center_distal=at.distal,
-        covariance=covariance,
-        radius=float(factor * np.sqrt(values.sum())),
+        covariance=shared_covariance(fit, noise_known=noise_known),
+        radius=interval.radius(np.eye(6)[:3]),
     )

@@ -1,0 +1,72 @@
+"""Intervals of two axes and of a ball: truth within them under skin, and the hinge's own where both can be asked."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from cluster_noise import Hinge, Noise, seen, skin, white
+from trials import START
+from typed_noise import AXIS2, Kind, fitted_type, joint_of, skin_of_both, typed_coverage
+
+from elbowscrew.geometry import dual_quaternion as dq
+from elbowscrew.motion.joint.influence import influence_of_fit
+from elbowscrew.motion.joint.interval import SkinMotion, joint_interval
+from elbowscrew.motion.joint.joint_fit import fit_joint
+from elbowscrew.motion.joint.likelihood import Poses, fit_mechanism
+from elbowscrew.motion.joint.lines import Z_LINE
+from elbowscrew.motion.joint.simple_types import OneAxis
+from elbowscrew.motion.joint.type_interval import Evidence, interval_of_type
+from elbowscrew.motion.screws.uncertainty import joint_covariance
+
+
+def test_a_hinge_has_one_interval_in_both_searches() -> None:
+    """The general way, by any type's derivatives, and the hinge's own meet."""
+    hinge = Hinge(top_deg=100.0)
+    case = seen(hinge, skin(3e-3)(hinge, np.random.default_rng(1)))
+    covariance = joint_covariance(case.joint, *case.noise)
+    poses = Poses.of(case.joint, covariance)
+    fit = fit_mechanism(OneAxis.start(case.joint), poses, tolerance=1e-15)
+    stated = (SkinMotion(segment="distal", shift=2e-3, turn=0.02), SkinMotion(segment="proximal", shift=1e-3))
+    evidence = Evidence(noise_known=True, clusters=case.clusters, skin=stated)
+    found = interval_of_type(fit, poses, evidence)
+    near = dq.pose_from_dual_quat(fit.mechanism.proximal)[1]
+    line = fit_joint(case.joint, covariance, dq.transform_lines(fit.mechanism.proximal, Z_LINE), near)
+    own = joint_interval(influence_of_fit(line, case.joint, covariance), case.clusters, skin=stated)
+    for k in (0, 4):  # tilts of the line in either body, whose axes across it may stand otherwise
+        rows = np.eye(9)[k : k + 2]
+        assert found.radius(rows) == pytest.approx(own.radius(rows), rel=1e-3)
+        assert found.skin_radius(rows) == pytest.approx(own.skin_radius(rows), rel=1e-3)
+        assert found.radii(rows).keys() == own.radii(rows).keys()
+
+
+KINDS: list[tuple[Kind, Noise, float]] = [
+    ("two_axes", white(), 0.93),
+    ("two_axes", skin(5e-3), 0.88),
+    ("two_axes", skin_of_both(5e-3), 0.88),
+    ("ball", white(), 0.93),
+    ("ball", skin(5e-3), 0.88),
+]
+
+
+@pytest.mark.parametrize(("kind", "noise", "least"), KINDS, ids=["white", "skin", "both", "ball-white", "ball-skin"])
+def test_the_truth_is_within_the_interval(kind: Kind, noise: Noise, least: float) -> None:
+    """Pooled over the numbers, which go together within a trial: three standard deviations of 25 trials at worst."""
+    trials = 25
+    found = typed_coverage(kind, joint_of(kind, 100.0), noise, trials, seed=2)
+    slack = 3.0 * np.sqrt(least * (1.0 - least) / trials)
+    assert found.held.mean() > least - slack
+    assert (found.sharpness < 6.0).all()
+
+
+def test_skin_taken_for_white_noise_would_not_hold() -> None:
+    """What makes the intervals hold is the markers' own motion: under white noise alone they would hold a third."""
+    joint, rng = joint_of("two_axes", 100.0), np.random.default_rng(3)
+    white_only = []
+    for _ in range(12):
+        mechanism, interval = fitted_type("two_axes", seen(joint, skin(5e-3)(joint, rng)))
+        assert interval.residuals is not None
+        assert interval.markers is not None
+        off = dq.transform_lines(dq.conjugate(mechanism.residual_frame), dq.transform_lines(dq.conjugate(START), AXIS2))
+        tilt = float(np.hypot(off[0], off[1]))
+        white_only.append(tilt <= interval.residuals.white.of(np.eye(12)[8:10]).radius(0.95))
+    assert np.mean(white_only) < 0.7

@@ -1,0 +1,141 @@
+"""Two axes and balls seen by markers that err as those of `cluster_noise`, and how often intervals hold the truth."""
+
+from __future__ import annotations
+
+from typing import Literal, NamedTuple
+
+import moving_joints as mj
+import numpy as np
+from cluster_noise import Hinge, Noise, Seen, seen, white, with_rms_alone
+from trials import LINE, START
+
+from elbowscrew.geometry import dual_quaternion as dq
+from elbowscrew.geometry import quaternion as qn
+from elbowscrew.geometry.arrays import Float
+from elbowscrew.motion.joint.interval import JointInterval
+from elbowscrew.motion.joint.likelihood import Mechanism, Poses, fit_mechanism
+from elbowscrew.motion.joint.simple_types import Ball
+from elbowscrew.motion.joint.starts import _from_lines
+from elbowscrew.motion.joint.two_axes import TwoAxesMechanism, axes_geometry, geometry_slopes
+from elbowscrew.motion.joint.type_interval import Evidence, interval_of_type
+from elbowscrew.motion.screws.uncertainty import joint_covariance
+
+Kind = Literal["two_axes", "ball"]
+POINT = np.cross(LINE[:3], LINE[3:])
+NORMAL = mj.unit(np.cross(LINE[:3], [0.0, 0.0, 1.0]))
+BETWEEN, APART = np.radians(86.0), 0.01
+ACROSS = qn.rotate(qn.quat_from_rotation_vector(BETWEEN * NORMAL), LINE[:3])
+# At the reference; the feet of the common normal are where the places of the axes are told.
+AXIS2 = mj.line(ACROSS, POINT + APART * NORMAL)
+CENTER = POINT + 0.02 * NORMAL
+
+
+def second_angle(hinge: Hinge) -> Float:
+    """Pronation of half the range, an eighth of a turn behind the flexion, so that no way is retraced."""
+    phase = np.arange(hinge.frames) * 2.0 * np.pi / (hinge.frames / hinge.cycles)
+    return np.asarray(np.radians(0.5 * hinge.top_deg) * 0.5 * (1.0 - np.cos(phase - 0.8)))
+
+
+def joint_of(kind: Kind, top_deg: float, cycles: int = 1) -> Hinge:
+    """A moving joint for the kinds of noise, which go with its flexion."""
+    plain = Hinge(top_deg=top_deg, cycles=cycles)
+    first, second = mj.turned(plain.angle, LINE), mj.turned(second_angle(plain), AXIS2)
+    if kind == "two_axes":
+        return Hinge(top_deg=top_deg, cycles=cycles, exact=dq.multiply(dq.multiply(first, second), START))
+    third = mj.turned(0.5 * second_angle(plain)[::-1], mj.line(NORMAL, CENTER))
+    about = [
+        mj.turned(angle, mj.line(h, CENTER)) for angle, h in ((plain.angle, LINE[:3]), (second_angle(plain), ACROSS))
+    ]
+    exact = dq.multiply(dq.multiply(dq.multiply(about[0], about[1]), third), START)
+    return Hinge(top_deg=top_deg, cycles=cycles, exact=exact)
+
+
+def skin_of_both(size: float) -> Noise:
+    """Each marker goes one way with the flexion and another with the pronation, half as far on the proximal body."""
+
+    def noise(hinge: Hinge, rng: np.random.Generator) -> tuple[Float, Float]:
+        courses = [np.sin(0.5 * a) / np.sin(0.5 * np.ptp(a)) for a in (hinge.angle, second_angle(hinge))]
+        quiet = white()(hinge, rng)
+        off = []
+        for share, shape, rest in zip((0.5, 1.0), hinge.shapes, quiet, strict=True):
+            ways = rng.normal(size=(2, *shape.shape))
+            ways *= share * size / np.sqrt(2.0) / np.linalg.norm(ways, axis=2)[..., None]
+            off.append(np.einsum("cf,cmk->fmk", courses, ways) + rest)
+        return off[0], off[1]
+
+    return noise
+
+
+class TypedCoverage(NamedTuple):
+    """Errors and 95 % radii, shape (trials, numbers), of what `names` says."""
+
+    names: tuple[str, ...]
+    error: Float
+    radius: Float
+
+    @property
+    def held(self) -> Float:
+        return np.asarray(np.mean(self.error <= self.radius, axis=0))
+
+    @property
+    def sharpness(self) -> Float:
+        return np.asarray(self.radius.mean(axis=0) / np.quantile(self.error, 0.95, axis=0))
+
+
+def fitted_type(kind: Kind, case: Seen) -> tuple[Mechanism, JointInterval]:
+    """The joint fitted from a start at the truth, and its interval."""
+    poses = Poses.of(case.joint, joint_covariance(case.joint, *case.noise))
+    start: Mechanism
+    if kind == "ball":
+        start = Ball.start(case.joint)
+    else:
+        back = dq.conjugate(START)
+        one, two = (
+            (LINE[:3], POINT),
+            (dq.transform_lines(back, AXIS2)[:3], dq.transform_points(back, POINT + APART * NORMAL)),
+        )
+        start = _from_lines(case.joint, one, two)
+    fit = fit_mechanism(start, poses)
+    return fit.mechanism, interval_of_type(fit, poses, Evidence(noise_known=True, clusters=case.clusters))
+
+
+def typed_coverage(
+    kind: Kind, hinge: Hinge, noise: Noise, trials: int, *, seed: int, rms_alone: bool = True
+) -> TypedCoverage:
+    """How far the numbers of a joint are from the truth, and how far they are told to be at most."""
+    rng = np.random.default_rng(seed)
+    error, radius = [], []
+    for _ in range(trials):
+        case = seen(hinge, noise(hinge, rng))
+        mechanism, interval = fitted_type(kind, with_rms_alone(case) if rms_alone else case)
+        told = _of_ball(mechanism, interval) if isinstance(mechanism, Ball) else _of_axes(mechanism, interval)
+        error.append(told[0])
+        radius.append(told[1])
+    names: tuple[str, ...] = ("center in the proximal body", "center in the distal body")
+    if kind == "two_axes":
+        names = ("direction 1", "place 1", "direction 2", "place 2", "angle between", "distance")
+    return TypedCoverage(names, np.array(error), np.array(radius))
+
+
+def _of_ball(found: Ball, interval: JointInterval) -> tuple[list[float], list[float]]:
+    truth = CENTER, dq.transform_points(dq.conjugate(START), CENTER)
+    off = [float(np.linalg.norm(p - q)) for p, q in zip((found.proximal, found.distal), truth, strict=True)]
+    return off, [interval.radius(rows) for rows in (np.eye(6)[:3], np.eye(6)[3:])]
+
+
+def _of_axes(found: Mechanism, interval: JointInterval) -> tuple[list[float], list[float]]:
+    assert isinstance(found, TwoAxesMechanism)
+    error, radius = [], []
+    truth = LINE, dq.transform_lines(dq.conjugate(START), AXIS2)
+    for k, (pose, line) in enumerate(zip((found.proximal, found.distal), truth, strict=True)):
+        off = dq.transform_lines(dq.conjugate(pose), line)
+        off = off if off[2] > 0.0 else -off
+        point = np.cross(off[:3], off[3:])
+        point = point - off[:3] * (point[2] / off[2])
+        error += [float(np.hypot(off[0], off[1])), float(np.hypot(point[0], point[1]))]
+        radius += [interval.radius(np.eye(12)[8 * k + n : 8 * k + n + 2]) for n in (0, 2)]
+    geometry, slopes = axes_geometry(found), geometry_slopes(found)
+    between = min(geometry.angle, np.pi - geometry.angle)
+    error += [abs(between - BETWEEN), abs(abs(geometry.distance) - APART)]
+    radius += [interval.radius(row[None]) for row in slopes[:2]]
+    return error, radius
