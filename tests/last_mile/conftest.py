@@ -32,7 +32,7 @@ TRIALS: dict[str, tuple[str, tuple[str, ...]]] = {
     "knee": ("knee.csv", ("--tolerance", "2mm")),
     "cycles": ("cycles.csv", ("--step", "20", "--angle-unit", "rad", "--length-unit", "m", "--express-in", "proximal")),
     "lost": ("lost.csv", ("--law", "harmonic", "--phases", "whole", "--marker-noise", "0.4", "--reference", "5",
-                          "--export", "sto")),
+                          "--reference-window", "3", "--export", "sto")),
     "two_axes": ("two_axes.csv", ("--express-in", "proximal",)),
     "ball": ("ball.csv", ("--proximal", "none", "--distal", "Thigh", "--method", "sclerp", "--no-cycles")),
 }  # fmt: skip

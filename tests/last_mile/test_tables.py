@@ -23,6 +23,7 @@ from recomputed import (
     pierced,
     pose_of,
     relative_poses,
+    screw_errors,
     two_bodies,
     vectors,
 )
@@ -109,9 +110,25 @@ def of_screw(told: Told) -> set[str]:
     with np.errstate(divide="ignore", invalid="ignore"):
         axis, point, slide = poses.screws(theta)
     axis[~(poses.angle >= 10.0)], point[~(poses.angle >= 10.0)], slide[~(poses.angle >= 10.0)] = np.nan, np.nan, np.nan
+    seen |= errors_of_screw(told)
     return seen | {"theta_deg", "proximal_loss", "distal_loss"} | near(screw, AXIS, axis) | near(
         screw, POINT, point, 1e-6
     ) | near(screw, ["slide_mm"], slide, 1e-6)  # fmt: skip
+
+
+def errors_of_screw(told: Told) -> set[str]:
+    """Of bodies with markers: what the noise of all poses makes of angle, slide and direction."""
+    screw, bodies = told.screw, told.joint["bodies"]
+    if not (bodies["proximal_markers_mm"] and bodies["distal_markers_mm"]):
+        return set()
+    errors = screw_errors(told, int(told.option("--reference-window") or 1))
+    axis = screw["axis_x"].notna()
+    errors.loc[~axis, ["slide_sd_mm", "axis_sd_deg"]] = np.nan
+    # An angle below five deviations is that of the noise's own rotation.
+    significance = screw["theta_deg"].abs() / errors["theta_sd_deg"]
+    assert (np.abs(significance - 5.0) > 1e-3).all() or significance.isna().any()
+    errors.loc[~(significance >= 5.0), "theta_sd_deg"] = np.nan
+    return near(screw, list(errors.columns), errors.to_numpy(float), 1e-4)
 
 
 def of_interpolation(told: Told) -> set[str]:

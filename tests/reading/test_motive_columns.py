@@ -155,8 +155,11 @@ def test_a_missing_euler_order_must_be_given(tmp_path: Path) -> None:
 MIRROR = np.diag([1.0, 1.0, -1.0])
 
 
-def mirrored_file(path: Path, *, markers: bool, version: str = "1.1", trial: KnownTrial = TRIAL) -> Path:
-    """Bodies written mirrored in z, as version 1.1 has them, their markers as they are."""
+def mirrored_file(
+    path: Path, *, markers: bool, version: str = "1.1", trial: KnownTrial = TRIAL, noise_m: float = 0.0
+) -> Path:
+    """Bodies written mirrored in z, as version 1.1 has them, their markers as they are, or seen with noise."""
+    rng = np.random.default_rng(1)
     offsets = np.array([[0.03, 0.0, 0.01], [-0.02, 0.04, 0.0], [0.0, -0.05, 0.02]])
     labels: list[tuple[str, ...]] = []
     columns: list[Float] = []
@@ -166,7 +169,7 @@ def mirrored_file(path: Path, *, markers: bool, version: str = "1.1", trial: Kno
         columns += [quaternion_xyzw(MIRROR @ body.R @ MIRROR), body.p @ MIRROR]
         for k, offset in enumerate(offsets if markers else []):
             labels += [("Rigid Body Marker", f"Marker {k + 1}", body.identifier, "Position", axis) for axis in "XYZ"]
-            columns.append(body.R @ offset + body.p)
+            columns.append(body.R @ offset + body.p + noise_m * rng.normal(size=body.p.shape))
     lines = [f"Format Version,{version},Take Name,x,Capture Frame Rate,100,Export Frame Rate,99.999992", ""]
     lines += [",".join(["", "", *(label[row] for label in labels)]) for row in range(4)]
     lines.append(",".join(["Frame", "Time", *(label[4] for label in labels)]))
@@ -183,6 +186,30 @@ def test_mirrored_bodies_of_version_1_1_are_corrected_against_their_markers(tmp_
     assert recording.bodies[0].marker_offsets == pytest.approx(
         np.array([[0.03, 0.0, 0.01], [-0.02, 0.04, 0.0], [0.0, -0.05, 0.02]]), abs=1e-9
     )
+
+
+@pytest.mark.parametrize(("noise_mm", "rest"), [(1.0, True), (8.0, False)])
+def test_markers_that_the_cameras_saw_belong_to_a_body_in_which_they_rest(
+    tmp_path: Path, noise_mm: float, rest: bool
+) -> None:
+    """Seen markers stray by a millimeter or so; what strays by more than skin does is no part of the body."""
+    recording = read_recording(mirrored_file(tmp_path / "a.csv", markers=True, noise_m=1e-3 * noise_mm), units="m")
+    for body in recording.bodies:
+        assert (body.marker_offsets is not None) == rest
+        if body.marker_offsets is not None:
+            expected = np.array([[0.03, 0.0, 0.01], [-0.02, 0.04, 0.0], [0.0, -0.05, 0.02]])
+            assert body.marker_offsets == pytest.approx(expected, abs=1e-3)
+
+
+@pytest.mark.parametrize(("stated", "believed"), [(100.4, True), (99.6, True), (103.0, False), (97.0, False)])
+def test_a_header_whose_rate_is_off_by_more_than_rounding_is_overruled_by_the_times(
+    tmp_path: Path, stated: float, believed: bool
+) -> None:
+    long = known_trial(95.0, frames=1000, inversion=400, seed=3)  # of few frames the ends' rounding explains more
+    path = write_columns(tmp_path / "a.csv", bodies_of(long), header={"Export Frame Rate": f"{stated:.6f}"})
+    recording = read_recording(path)
+    assert recording.rate_hz == pytest.approx(stated if believed else 100.0, rel=1e-6)
+    assert [warning.code for warning in recording.warnings] == ([] if believed else ["frame-rate"])
 
 
 def test_without_markers_the_version_decides_and_says_so(tmp_path: Path) -> None:

@@ -19,6 +19,7 @@ from scipy.spatial.transform import Rotation
 from told_results import Body, Float, Told
 
 XYZ = ("x", "y", "z")
+POSE = ["e0", "e1", "e2", "e3", "d_x_mm", "d_y_mm", "d_z_mm"]
 
 
 class Poses:
@@ -723,8 +724,7 @@ def _noise(told: Told, body: Body | None) -> dict[str, Any] | None:
     usual = (1.0 - 2.0 / (9.0 * freedom)) ** 3 * freedom  # median of chi-square, Wilson and Hilferty
     sigma = np.sqrt(count * np.median(body.residual[body.tracked] ** 2) / usual)
     sigma = sigma if stated is None else float(stated)
-    rows = [np.concatenate([-cross_matrix(x), np.eye(3)], axis=1) for x in markers]
-    covariance = sigma**2 * np.linalg.inv(sum(J.T @ J for J in rows))
+    covariance = marker_covariance(markers, sigma)
     deviation = np.sqrt(np.diag(covariance))
     return {
         "source": "marker residuals" if stated is None else "option",
@@ -736,6 +736,66 @@ def _noise(told: Told, body: Body | None) -> dict[str, Any] | None:
 
 def cross_matrix(v: Float) -> Float:
     return np.array([[0.0, -v[2], v[1]], [v[2], 0.0, -v[0]], [-v[1], v[0], 0.0]])
+
+
+def marker_covariance(markers: Float, sigma: float) -> Float:
+    """Covariance (6, 6) of a pose fitted to markers: rotation vector (rad), then shift (mm), in the body's frame."""
+    rows = [np.concatenate([-cross_matrix(x), np.eye(3)], axis=1) for x in markers]
+    return np.asarray(sigma**2 * np.linalg.inv(sum(J.T @ J for J in rows)))
+
+
+def adjoint(R: Float, p: Float) -> Float:
+    """How small twists, rotation first, go from the frame of a pose to the one it is seen from."""
+    found = np.zeros((6, 6))
+    found[:3, :3] = found[3:, 3:] = R
+    found[3:, :3] = cross_matrix(p) @ R
+    return found
+
+
+def screw_errors(told: Told, reference_frames: int) -> pd.DataFrame:
+    """Standard deviations of angle, slide and direction in every measured frame, by central differences.
+
+    The noise of both bodies' markers goes through the poses of the frame and of the reference, which is a mean of so
+    many, and through the screw of the displacement.
+    """
+    bodies, noise = told.joint["bodies"], told.joint["noise"]
+    J0, j0 = pose_of(bodies["distal_in_proximal"])
+    S = {
+        name: marker_covariance(np.array(bodies[f"{name}_markers_mm"]), noise[name]["marker_noise_mm"])
+        for name in ("proximal", "distal")
+    }
+
+    def relative(R: Float, p: Float) -> Float:
+        lever = adjoint(R.T, -R.T @ p)
+        return np.asarray(S["distal"] + lever @ S["proximal"] @ lever.T)
+
+    rows = np.flatnonzero(told.screw["valid"] == 1)
+    R, p = relative_poses(told)
+    found = np.full((len(told.screw), 3), np.nan)
+    theta = told.screw["theta_deg"].to_numpy(float)[rows]
+    D, d = J0.T @ R, (p - j0) @ J0
+    covariance = np.stack(
+        [
+            adjoint(D[k], d[k]) @ relative(R[k], p[k]) @ adjoint(D[k], d[k]).T + relative(J0, j0) / reference_frames
+            for k in range(len(rows))
+        ]
+    )
+    steps = np.diag([1e-5] * 3 + [1e-4] * 3)
+    slopes = np.zeros((len(rows), 5, 6))
+    for k, step in enumerate(steps):
+        ends = []
+        for sign in (1.0, -1.0):
+            turn = Rotation.from_rotvec(sign * step[:3]).as_matrix()
+            quat = Rotation.from_matrix(turn @ D).as_quat()[:, [3, 0, 1, 2]]
+            moved = Poses(pd.DataFrame(np.column_stack([quat, d @ turn.T + sign * step[3:]]), columns=POSE))
+            angle = np.where(theta < 0.0, -1.0, 1.0) * moved.angle
+            axis, _, slide = moved.screws(angle)
+            ends.append(np.column_stack([angle, slide, axis]))
+        slopes[:, :, k] = (ends[0] - ends[1]) / (2.0 * step.max())
+    spread = slopes @ covariance @ np.swapaxes(slopes, 1, 2)
+    found[rows, 0], found[rows, 1] = np.sqrt(spread[:, 0, 0]), np.sqrt(spread[:, 1, 1])
+    found[rows, 2] = np.degrees(np.sqrt(np.trace(spread[:, 2:, 2:], axis1=1, axis2=2)))
+    return pd.DataFrame(found, columns=["theta_sd_deg", "slide_sd_mm", "axis_sd_deg"])
 
 
 def curves_of(told: Told) -> Float:
@@ -774,11 +834,32 @@ def _repeatability(told: Told) -> dict[str, Any]:
     return found
 
 
+def times(a: Float, b: Float) -> Float:
+    """Hamilton's product of quaternions, scalar first."""
+    return np.array([a[0] * b[0] - a[1:] @ b[1:], *(a[0] * b[1:] + b[0] * a[1:] + np.cross(a[1:], b[1:]))])
+
+
+def mean_pose(R: Float, p: Float) -> tuple[Float, Float]:
+    """Mean of poses as dual quaternions, made one of unit length again."""
+    quat = Rotation.from_matrix(R).as_quat()[:, [3, 0, 1, 2]]
+    quat = np.sign(quat @ quat[0])[:, None] * quat
+    real = quat.mean(axis=0)
+    dual = np.mean([times(np.array([0.0, *place]), q) for place, q in zip(p, quat, strict=True)], axis=0)
+    back = times(dual, real * [1.0, -1.0, -1.0, -1.0]) / (real @ real)
+    return Rotation.from_quat(real[[1, 2, 3, 0]]).as_matrix(), back[1:]
+
+
 def _bodies(told: Told) -> dict[str, Any]:
     proximal, distal = two_bodies(told)
-    row = int(np.flatnonzero(told.recording.frame == told.summary["trial"]["reference_frame"])[0])
-    A, a = (np.eye(3), np.zeros(3)) if proximal is None else (proximal.R[row], proximal.p[row])
-    J, j = A.T @ distal.R[row], A.T @ (distal.p[row] - a)
+    first = int(np.flatnonzero(told.recording.frame == told.summary["trial"]["reference_frame"])[0])
+    measured = np.flatnonzero(told.screw["valid"] == 1)
+    rows = measured[measured >= first][: int(told.option("--reference-window") or 1)]
+    count = len(told.screw)
+    here = (np.tile(np.eye(3), (count, 1, 1)), np.zeros((count, 3))) if proximal is None else (proximal.R, proximal.p)
+    back = np.swapaxes(here[0], 1, 2)
+    A, a = mean_pose(here[0][rows], here[1][rows])
+    between = (back @ distal.R)[rows], np.einsum("nij,nj->ni", back, distal.p - here[1])[rows]
+    J, j = mean_pose(*between)
 
     def written(name: str, R: Float, p: Float) -> dict[str, Any]:
         x, y, z, w = Rotation.from_matrix(R).as_quat()

@@ -231,6 +231,19 @@ def test_an_exchange_behind_a_gap_is_told() -> None:
     assert [warning.frames for warning in warnings if warning.code == "swapped-bodies"] == [(150,)]
 
 
+@pytest.mark.parametrize(("gap_s", "told"), [(0.5, True), (1.5, False)])
+def test_where_bodies_were_long_out_of_sight_an_exchange_is_no_claim(gap_s: float, told: bool) -> None:
+    """In a second and more each may have gone where the other was."""
+    one, other = series(600), dq.multiply(dq.dual_quat_from_pose([1.0, 0, 0, 0], [0.4, 0.1, 0.0]), series(600)[::-1])
+    swapped_one, swapped_other = one.copy(), other.copy()
+    swapped_one[400:], swapped_other[400:] = other[400:], one[400:]
+    lost = slice(400 - round(100 * gap_s), 400)
+    swapped_one[lost] = swapped_other[lost] = np.nan
+    taken = Recording.from_bodies([body(swapped_one, "A"), body(swapped_other, "B")], rate_hz=100)
+    warnings = check_bodies(taken, taken.bodies, Settings()).warnings
+    assert ("swapped-bodies" in [warning.code for warning in warnings]) == told
+
+
 @pytest.mark.parametrize("rate_hz", [5.0, 9.0, 10.0, 11.0, 25.0, 60.0, 360.0])
 def test_flips_are_found_at_any_rate(rate_hz: float) -> None:
     pose = dual_quat_from_screw(np.linspace(0.0, 2.0, 120), 0.0, [0.0, 0.6, 0.8], [0.1, -0.08, 0.06])
