@@ -227,3 +227,15 @@ def test_gimbal_by_way_of_a_plain_table(
     assert np.nanmax(deviation) == pytest.approx(largest_deg, abs=0.06)
     assert 1000 * np.nanmin(analysis.screw.slide) == pytest.approx(slide_mm[0], abs=0.06)
     assert 1000 * np.nanmax(analysis.screw.slide) == pytest.approx(slide_mm[1], abs=0.06)
+
+
+def test_bodies_of_different_sides_are_refused_with_both_sides_and_the_options(real_data: Path) -> None:
+    recording = read_recording(real_data / "cases" / "sides_mixed.csv")
+    with pytest.raises(SettingError) as caught:
+        analyze(recording)
+    told = str(caught.value)
+    assert caught.value.exit_code == 4
+    for word in ("'Upper Arm L' is left", "'Forearm R' is right", "--proximal", "--distal"):
+        assert word in told
+    named = analyze(recording, Settings(proximal="Upper Arm L", distal="Forearm R"))
+    assert "sides-differ" in [warning.code for warning in named.warnings]

@@ -8,7 +8,7 @@ import numpy as np
 
 from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat
 from elbowscrew.model import Analysis, InterpolatedMotion, Landmarks, QualityWarning, Recording
-from elbowscrew.motion.anatomy.anatomy import anatomical_motion, joint_of_landmarks, proximal_lines
+from elbowscrew.motion.anatomy.anatomy import anatomical_motion, joint_of_landmarks, proximal_lines, side_doubts
 from elbowscrew.motion.axes.measured import (
     lines_one_way,
     measured_instantaneous_motion,
@@ -103,6 +103,8 @@ def analyze(recording: Recording, settings: Settings | None = None, *, landmarks
         warnings += (QualityWarning(code="several-repetitions", message=message),)
     anatomy = None
     if landmarks is not None:
+        named = wanted.distal is not None and (measured.proximal is None or wanted.proximal is not None)
+        warnings += side_doubts(landmarks, measured.proximal, measured.distal, named=named)
         anatomy, doubts = anatomical_motion(
             landmarks,
             recording,

@@ -25,7 +25,7 @@ from elbowscrew.geometry.dual_quaternion import (
     transform_points,
 )
 from elbowscrew.geometry.quaternion import quat_from_rotation_matrix, rotation_matrix_from_quat
-from elbowscrew.joints import ELBOW, GENERIC, Joint
+from elbowscrew.joints import ELBOW, GENERIC, Joint, side_between, side_of
 from elbowscrew.model import JointMotion, LineEstimate, QualityWarning, Recording, RigidBody
 from elbowscrew.model.anatomy import AnatomicalMotion, Landmarks, Side
 from elbowscrew.motion.anatomy.landmarks import landmark_points
@@ -258,6 +258,41 @@ def joint_of_landmarks(named: Joint, landmarks: Landmarks) -> Joint:
         )
         raise SettingError(msg)
     return ELBOW
+
+
+def side_doubts(
+    landmarks: Landmarks, proximal: RigidBody | None, distal: RigidBody, *, named: bool
+) -> tuple[QualityWarning, ...]:
+    """Look whether the landmarks are of the side that the bodies' names speak of: the angles' signs hang on it.
+
+    Parameters
+    ----------
+    landmarks : Landmarks
+    proximal : RigidBody or None
+    distal : RigidBody
+    named : bool
+        Whether options name the bodies: then a body of another side may be meant.
+
+    Returns
+    -------
+    tuple of QualityWarning
+        "landmarks-side" where they disagree and options name the bodies.
+
+    Raises
+    ------
+    SettingError
+        If they disagree otherwise.
+    """
+    side = side_of(distal.name) if proximal is None else side_between(proximal.name, distal.name)
+    if side in (None, landmarks.side):
+        return ()
+    bodies = f"{distal.name!r}" if proximal is None else f"{proximal.name!r} and {distal.name!r}"
+    message = f"{landmarks.source}: the landmarks are of the {landmarks.side} side, and {bodies} of the {side} one"
+    if not named:
+        what = "--distal" if proximal is None else "both --proximal and --distal"
+        msg = f'{message}; write side = "{side}" there, or give {what} if that is meant'
+        raise SettingError(msg)
+    return (QualityWarning(code="landmarks-side", message=f"{message}; its side decides the signs of the angles"),)
 
 
 def _mirrored(side: Side) -> float:
