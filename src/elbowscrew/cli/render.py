@@ -72,7 +72,7 @@ def analysis_table(summary: AnalysisSummary, folder: Path) -> None:
         ("Frames", _frames(trial)),
         (
             "Angle θ",
-            f"{motion['theta_min_deg']:.2f} to {motion['theta_max_deg']:.2f} deg"
+            f"{_number(motion['theta_min_deg'])} to {_number(motion['theta_max_deg'])} deg"
             + ("" if motion["signed"] else ", without a sense"),
         ),
         ("Inversion", _inversions(motion["inversion_frames"])),
@@ -270,11 +270,11 @@ def _frames(trial: TrialSummary) -> str:
 
 
 def _number(value: float | None) -> str:
-    return "–" if value is None else f"{value:.2f}"
+    return "–" if value is None else f"{value:z.2f}"
 
 
 def _vector(values: Iterable[float], decimals: int) -> str:
-    return ", ".join(f"{value:.{decimals}f}" for value in values)
+    return ", ".join(f"{value:z.{decimals}f}" for value in values)
 
 
 def _joint_axis(motion: MotionSummary) -> str:
