@@ -103,3 +103,9 @@ def ball() -> list[BodyData]:
     R = Rotation.from_rotvec(np.stack([np.sin(turn), np.sin(2.0 * turn), 0.3 * np.cos(turn)], axis=1))
     place = np.array([0.03, 1.2, 0.08]) + R.apply([0.0, -0.25, 0.0])
     return [BodyData("Thigh", "C" * 32, R.as_matrix(), place)]
+
+
+@pytest.fixture
+def two_rotations() -> list[BodyData]:
+    """A body of a joint that no axis dominates."""
+    return ball()
