@@ -41,7 +41,7 @@ def test_options_are_stronger_than_the_file_and_the_file_than_defaults(tmp_path:
         ("keyframes = [5]", "keyframes"),
         ("= 3", "not TOML"),
         ("a = " + "[" * 20000, "not TOML"),
-        ("min-angle = 5\nmin_angle_deg = 6", "twice under two spellings"),
+        ("min-angle = 5\nmin_angle_deg = 6", "twice, under two spellings"),
     ],
 )
 def test_a_bad_setting_is_named_with_its_file(tmp_path: Path, text: str, says: str) -> None:

@@ -45,7 +45,7 @@ def _read_toml(config: Path) -> dict[str, Any]:
             given = tomllib.load(stream)
             table = {option_name(key): value for key, value in given.items()}
             if len(table) < len(given):
-                msg = f"{config}: one setting stands twice under two spellings; keep one of {', '.join(given)}"
+                msg = f"{config}: one setting is given twice, under two spellings; keep one of {', '.join(given)}"
                 raise UsageError(msg)
             return {key: [value] if key in LISTS and isinstance(value, str) else value for key, value in table.items()}
     except OSError as error:

@@ -217,7 +217,7 @@ def save_simulation(
 
     export = Path(path)
     if not export.name or export.name in (".", ".."):
-        msg = f"{str(path)!r} is no name of a file to write; give one such as trial.csv"
+        msg = f"{str(path)!r} is not the name of a file to write; give one such as trial.csv"
         raise UsageError(msg)
     truth = export.with_suffix(".truth.json")
     if layout == "row-tagged" and length_unit != "m":

@@ -67,13 +67,11 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
     distal_markers: tuple[str, ...] | None = setting(
         None, "Markers of the distal body: names or patterns.", BODIES, metavar="NAMES", min_length=1
     )
-    pose_method: Literal["svd", "dual-qr"] = setting("svd", "How poses are found from markers.", BODIES)
+    pose_method: Literal["svd", "dual-qr"] = setting("svd", "How poses are computed from markers.", BODIES)
     reference: int | None = setting(
         None, "Frame all displacements are counted from.", MOTION, metavar="FRAME", shown="first tracked frame"
     )
-    reference_window: int = setting(
-        1, "Mean of so many frames from the reference on, as reference.", MOTION, metavar="N", ge=1
-    )
+    reference_window: int = setting(1, "Average this many frames from the reference on.", MOTION, metavar="N", ge=1)
     express_in: Literal["distal", "proximal", "lab", "arm", "forearm"] | str = setting(
         "distal",
         "Frame the screw is written in: distal, proximal, lab, or a segment's own word.",
@@ -81,7 +79,7 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
         metavar="FRAME",
     )
     max_gap_s: float = setting(0.1, "Longest gap that is filled, in seconds.", MOTION, metavar="SECONDS", ge=0)
-    frozen: Literal["lost", "keep"] = setting("lost", "What poses that repeat to the last digit are.", BODIES)
+    frozen: Literal["lost", "keep"] = setting("lost", "What to make of poses that repeat to the last digit.", BODIES)
     max_turn_deg_s: float = setting(
         3000.0, "Fastest rotation of a body, in degrees a second; more is a leap.", BODIES, metavar="DEG/S", gt=0
     )
@@ -89,10 +87,10 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
         15.0, "Fastest motion of a body, in meters a second; more is a leap.", BODIES, metavar="M/S", gt=0
     )
     min_tracked_percent: float = setting(
-        50.0, "Least share of frames tracked, in percent.", BODIES, metavar="PERCENT", ge=0, le=100
+        50.0, "Smallest share of tracked frames, in percent.", BODIES, metavar="PERCENT", ge=0, le=100
     )
     lowpass_hz: float | Literal["auto"] | None = setting(
-        None, "Cut-off of the filter of the poses, in hertz; auto for each body's own; none.", MOTION,
+        None, "Cut-off of the low-pass filter of the poses, in hertz; auto chooses one for each body.", MOTION,
         metavar="HZ", shown="none",
     )  # fmt: skip
     resample_hz: float | None = setting(
@@ -100,25 +98,32 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
     )
     min_rate_rad_s: float = setting(
         0.25,
-        "Least angular velocity for an instantaneous axis, in radians a second.",
+        "Smallest angular velocity that has an instantaneous axis, in radians a second.",
         MOTION,
         metavar="RAD/S",
         gt=0,
     )
-    min_angle_deg: float = setting(10.0, "Least angle for an axis, in degrees.", MOTION, metavar="DEG", gt=0, lt=180)
+    min_angle_deg: float = setting(
+        10.0,
+        "Smallest angle with an axis, in degrees.",
+        MOTION,
+        metavar="DEG",
+        gt=0,
+        lt=180,
+    )
     axis_sd_deg: Angle | None = setting(
         None, "Give an axis where its direction is known this well, in place of --min-angle: 2deg.", MOTION,
         metavar="DEG", gt=0, lt=90,
     )  # fmt: skip
     step_deg: float | None = setting(
-        None, "Axes between successive poses so many degrees apart, too: steps.csv.", MOTION,
+        None, "Also find axes between successive poses this many degrees apart (steps.csv).", MOTION,
         metavar="DEG", gt=0, lt=180,
     )  # fmt: skip
     marker_noise_mm: float | None = setting(
         None, "Noise of each coordinate of a marker, in millimeters.", MOTION,
         metavar="MM", shown="from the recording", gt=0, le=100,
     )  # fmt: skip
-    noise: Literal["auto", NoiseSource, "none"] = setting("auto", "Where the noise of the poses is known from.", MOTION)
+    noise: Literal["auto", NoiseSource, "none"] = setting("auto", "Source of the poses' noise.", MOTION)
     signed: Literal["auto", "yes", "no"] = setting(
         "auto", "Give theta a sense: where one axis dominates the motion, always, or never.", MOTION
     )
@@ -130,16 +135,16 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
         None, "How far a cluster moves as a whole on its bone with the motion: mm, or mm and degrees.", MOTION,
         metavar="MM[,DEG]", shown="not stated", min_length=1, max_length=2,
     )  # fmt: skip
-    robust: bool = setting(False, "Weigh outliers down in the joint's axis.", MOTION)
+    robust: bool = setting(False, "Downweight outliers when the joint's axis is fitted.", MOTION)
     cycle_swing_deg: float | None = setting(
-        None, "Least swing between the turns of a cycle, in degrees.", MOTION,
+        None, "Smallest swing that makes a cycle, in degrees.", MOTION,
         metavar="DEG", shown="by noise and range", gt=0, lt=360,
     )  # fmt: skip
     cycles: tuple[tuple[float, float], ...] | None = setting(
         None, "File with the columns start_time_s and end_time_s of each cycle.", MOTION,
         metavar="FILE.csv", shown="found", min_length=1,
     )  # fmt: skip
-    no_cycles: bool = setting(False, "Look for no cycles.", MOTION)
+    no_cycles: bool = setting(False, "Do not look for cycles.", MOTION)
     inversion: int | None = setting(
         None, "Frame where the motion reverses.", MODEL, metavar="FRAME", shown="largest angle"
     )
@@ -171,7 +176,7 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
     angle_unit: AngleUnit = setting("deg", "Unit of angles in tables and figures.", OUTPUT)
     length_unit: LengthUnit = setting("mm", "Unit of lengths in tables and figures.", OUTPUT)
     figure_format: tuple[FigureFormat, ...] = setting(("png",), "Formats of the figures.", OUTPUT, min_length=1)
-    export: tuple[ExportName, ...] = setting((), "Tables in the formats of other programs, too.", OUTPUT, shown="none")
+    export: tuple[ExportName, ...] = setting((), "Also write the tables in these formats.", OUTPUT, shown="none")
     units: FileUnit | None = setting(None, "Unit of length of a file that states none.", BODIES)
     rotation: RotationType | None = setting(None, "Rotation type of a file that states none.", BODIES)
 
@@ -221,7 +226,7 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
         former = {name.replace("-", "_"): now.replace("-", "_") for name, now in FORMER_NAMES.items()}
         named = {former.get(str(name), name): value for name, value in values.items()}
         if len(named) < len(values):
-            msg = f"one setting stands twice under two names; keep one of {', '.join(map(str, values))}"
+            msg = f"one setting is given twice, under two names; keep one of {', '.join(map(str, values))}"
             raise ValueError(msg)
         return named
 

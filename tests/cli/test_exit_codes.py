@@ -155,7 +155,7 @@ def test_a_folder_is_no_trial(take: Path, capsys: pytest.CaptureFixture[str]) ->
         (["--rotation", "XYZ"], 4, "the file has quaternions"),
         (["--radius", "1e308"], 2, "radius"),
         (["--min-angle", "150"], 5, "no rotation"),
-        (["--output", "take.csv"], 6, "no folder"),
+        (["--output", "take.csv"], 6, "not a folder"),
         (["--output", "/proc/elbowscrew"], 6, "cannot be written"),
     ],
 )

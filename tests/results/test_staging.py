@@ -82,7 +82,7 @@ def test_an_empty_folder_is_taken_over_and_a_file_is_not(tmp_path: Path) -> None
     assert (target / "summary.json").exists()
     file = tmp_path / "file"
     file.write_text("mine")
-    with pytest.raises(OutputError, match="no folder"), result_folder(file, force=True):
+    with pytest.raises(OutputError, match="not a folder"), result_folder(file, force=True):
         pass
     assert file.read_text() == "mine"
 
@@ -167,10 +167,10 @@ def test_files_are_replaced_on_request_only_and_only_ours(tmp_path: Path) -> Non
     write_files({one: ["synthetic 3"]}, replaceable="synthetic")
     assert one.read_text() == "synthetic 3\n"
     one.write_text("a recording")
-    with pytest.raises(OutputError, match="not ours"):
+    with pytest.raises(OutputError, match="not written by elbowscrew"):
         write_files({two: ["new"], one: ["new"]}, replaceable="synthetic")
     assert (one.read_text(), two.read_text()) == ("a recording", "synthetic 2\n")
-    with pytest.raises(OutputError, match="no file"):
+    with pytest.raises(OutputError, match="not a file"):
         write_files({tmp_path: ["x"]}, replaceable="synthetic")
     assert sorted(path.name for path in tmp_path.iterdir()) == ["one.csv", "two.json"]
 

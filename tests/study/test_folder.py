@@ -44,7 +44,7 @@ def test_a_second_batch_is_told_of_the_first_and_a_dead_one_holds_nothing(tmp_pa
     first = holder(out)
     try:
         with (
-            pytest.raises(OutputError, match=rf"another batch is at work there \(process {first.pid}\)"),
+            pytest.raises(OutputError, match=rf"another batch is running there \(process {first.pid}\)"),
             batch_folder(out),
         ):
             pass
@@ -100,7 +100,7 @@ def test_a_folder_of_something_else_is_not_touched(tmp_path: Path, monkeypatch: 
     (tmp_path / "mine").mkdir()
     (tmp_path / "mine" / "thesis.txt").touch()
     (tmp_path / "file").touch()
-    for name, says in (("mine", "holds 'thesis.txt' and is no output of a batch"), ("file", "is no folder")):
+    for name, says in (("mine", "holds 'thesis.txt' and is no output of a batch"), ("file", "is not a folder")):
         with pytest.raises(OutputError, match=says), batch_folder(tmp_path / name):
             pass
     monkeypatch.chdir(tmp_path / "mine")

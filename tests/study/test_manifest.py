@@ -85,7 +85,7 @@ def test_paths_are_relative_to_the_manifest(tmp_path: Path) -> None:
         ("path,min_angel\na.csv,5\n", ":1: column 'min_angel': did you mean the setting 'min-angle'"),
         ("path,frames\na.csv,5\n", ":1: column 'frames' is one of summary.csv already"),
         ("path,theta_max_rad\na.csv,5\n", ":1: column 'theta_max_rad' is one of summary.csv already"),
-        ("path,a,a\na.csv,5,6\n", ":1: column 'a' stands there twice"),
+        ("path,a,a\na.csv,5,6\n", ":1: column 'a' appears twice"),
         ("path,,a\na.csv,5,6\n", ":1: column 2 has no name"),
         ("path,a\na.csv\n", ":2: expected 2 cells as in the header, found 1"),
         ("path,a\n,5\n", ":2: column 'path': the cell is empty"),

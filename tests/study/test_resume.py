@@ -124,7 +124,8 @@ def test_a_result_that_is_not_whole_is_done_again(finished: Path) -> None:
 def test_a_trial_that_fails_now_is_out_of_the_table_and_its_old_result_is_told_of(finished: Path) -> None:
     break_trial(finished / "in" / "trial0.csv", "unit")
     done = batch("in", *FAST, folder=finished, code=7)
-    assert "holds results that are not of this batch, and not in summary.csv: trial0 [other-results]" in done.stderr
+    said = "holds results that do not belong to this batch and are not in summary.csv: trial0 [other-results]"
+    assert said in done.stderr
     assert "trial0," not in (finished / OUT / "summary.csv").read_text()
     assert "trial0.csv" in (finished / OUT / "failures.csv").read_text()
 

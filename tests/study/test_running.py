@@ -35,7 +35,7 @@ def test_a_worker_that_dies_is_its_trials_failure_only(tmp_path: Path, workers: 
     assert classes(found) == ["", "WorkerLost", "", "AnalysisError", "", "WorkerLost", "", "", "", ""]
     assert sorted(told) == list(range(10))
     assert found[1] is not None
-    assert found[1].message.startswith("t1: the worker died of it twice")
+    assert found[1].message.startswith("t1: the worker died twice on it")
     # Twice alone, and before that perhaps in company.
     assert all(2 <= task.traces <= 3 for task in tasks if task.kind != "" and task.kind != "fails")
     assert all(1 <= task.traces <= 2 for task in tasks if task.kind == "" or task.kind == "fails")

@@ -140,7 +140,7 @@ def test_two_batches_on_one_folder(tmp_path: Path) -> None:
     write_trials(tmp_path / "in", 1)
     with batch_folder(tmp_path / "out"):
         done = batch("in", *FAST, "-q", "-o", "out", folder=tmp_path, code=6)
-    assert "another batch is at work there" in done.stderr
+    assert "another batch is running there" in done.stderr
     assert not contents(tmp_path / "out")
 
 

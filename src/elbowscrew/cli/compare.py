@@ -75,7 +75,7 @@ def compare(
     decimation: Annotated[
         list[str] | None,
         typer.Option(
-            metavar="N1,N2,...", rich_help_panel=_MODELS, help="Take every so many-th frame.", show_default="2,4"
+            metavar="N1,N2,...", rich_help_panel=_MODELS, help="Use every N-th frame only.", show_default="2,4"
         ),
     ] = None,
     *,

@@ -230,7 +230,7 @@ def paper_table(found: Iterable[PrintedValue]) -> None:
 
 
 def emit(text: str) -> None:
-    """Write to standard output; that nobody reads on is no error."""
+    """Write to standard output; a reader that has gone is not an error."""
     try:
         sys.stdout.write(text)
         sys.stdout.flush()
@@ -340,7 +340,7 @@ def other_results(result: StudyResult) -> None:
     """Warn of results in the output folder that the tables do not tell of."""
     if result.others:
         told = ", ".join(result.others[:_SKIPPED_TOLD]) + (", ..." if len(result.others) > _SKIPPED_TOLD else "")
-        message = f"{result.folder} holds results that are not of this batch, and not in summary.csv: {told}"
+        message = f"{result.folder} holds results that do not belong to this batch and are not in summary.csv: {told}"
         sys.stderr.write(f"elbowscrew: warning: {one_line(message)} [other-results]\n")
 
 

@@ -10,7 +10,7 @@ WayRound = Literal["shortest", "longest", "as given"]
 
 
 def check_way(way: str) -> None:
-    """Raise ValueError if that is no way round."""
+    """Raise ValueError if there is no such way round."""
     if way not in get_args(WayRound):
         msg = f"way must be 'shortest', 'longest' or 'as given', found {way!r}"
         raise ValueError(msg)

@@ -79,9 +79,9 @@ class WanderSummary(TypedDict):
     """By how much it moves across itself, at its point nearest the distal body's origin at the reference."""
     size_sd_mm: float | None
     unseen_deg: float | None
-    """Up to so much an axis may turn without being told from one that stays."""
+    """How far an axis may turn without being distinguishable from a fixed one."""
     unseen_mm: float | None
-    """Up to so much it may move without being told from one that stays."""
+    """How far it may shift without being distinguishable from a fixed one."""
     significant: bool
     """Whether one of both is beyond what an axis that stays shows in 0.27 % of the trials."""
 
@@ -137,7 +137,7 @@ class JointLineSummary(TypedDict):
     angle_sd_deg: float | None
     """Median standard deviation of the rotation of a frame."""
     determined: bool
-    """Whether the motion shows it well enough to be told."""
+    """Whether the motion shows it well enough to be stated."""
 
 
 class TwoAxesSummary(TypedDict):
@@ -197,7 +197,7 @@ class JointTypeSummary(TypedDict):
     second_rotation: SecondRotationSummary | None
     decided_by: Literal["A", "B", "J"] | None
     interval_method: str | None
-    """What the intervals of two axes and of a center stand on."""
+    """What the intervals of two axes and of a center are based on."""
 
 
 class DispersionSummary(TypedDict):
@@ -298,7 +298,7 @@ class JointSummary(TypedDict):
     hinge: FitSummary | None
     screw_hinge: FitSummary | None
     wander: WanderSummary | None
-    """None where it cannot be told."""
+    """None where it is not known."""
     mean_axis: MeanAxisSummary | None
     """None where the axis does not wander."""
     weighted_mean: EstimateSummary

@@ -328,7 +328,7 @@ class AnalysisSummary(TypedDict):
     interpolation: ModelSummary
     warnings: list[WarningSummary]
     versions: dict[str, str]
-    """Versions of Python and of the libraries that results stand on."""
+    """Versions of Python and of the libraries that the results depend on."""
 
 
 class Summary(AnalysisSummary):

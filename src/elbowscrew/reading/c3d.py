@@ -49,7 +49,7 @@ class _Content(NamedTuple):
 
 
 def recognizes(head: bytes) -> bool:
-    """Tell by the second byte, which is 0x50 in every C3D file, and a first that is no printable character."""
+    """Tell by the second byte, which is 0x50 in every C3D file, and a first that is not a printable character."""
     return len(head) >= 2 and head[1] == 0x50 and head[0] < 0x20
 
 

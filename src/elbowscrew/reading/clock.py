@@ -102,6 +102,6 @@ def cut_warnings(source: TextSource, stated: str, rows: int) -> list[QualityWarn
         message = f"the file states {stated} frames and has {rows}"
         found.append(QualityWarning(code="frame-count", message=message))
     if not source.ends_with_newline:
-        message = "the last line has no line end: the file may have been cut, and with it the last number"
+        message = "the last line has no line end: the file, and with it the last number, may have been cut"
         found.append(QualityWarning(code="no-final-newline", message=message))
     return found

@@ -246,7 +246,7 @@ def _labeled(source: TextSource, columns: list[ColumnKey], field: str, body: str
         if column.field == field:
             if column.axis in by_name:
                 msg = (
-                    f"{source.path}: body {body!r} stands twice in the file with the same id (columns "
+                    f"{source.path}: body {body!r} appears twice in the file with the same id (columns "
                     f"{by_name[column.axis] + 1} and {column.index + 1}); export the take again"
                 )
                 raise RecordingError(msg)

@@ -161,7 +161,7 @@ def _parse_frame(parsed: _Parsed, row: list[str]) -> None:
         cells = row[4 + _BODY_CELLS * k : 4 + _BODY_CELLS * (k + 1)]
         identifier = _integer(cells[0])
         if identifier in poses:
-            msg = f"body {identifier} stands twice in the frame"
+            msg = f"body {identifier} appears twice in the frame"
             raise ValueError(msg)
         poses[identifier] = [_finite(cell) for cell in cells[1:8]]
         if identifier not in parsed.bodies:

@@ -155,7 +155,7 @@ def _digest(stream: BufferedReader) -> str:
 
 
 def first_bytes(path: Path, count: int) -> bytes:
-    """Read the first bytes of a file; none if it is no regular file or cannot be read, which `open_source` tells."""
+    """Read the first bytes of a file; none if it is no regular file or cannot be read, as `open_source` reports."""
     try:
         if not path.is_file():
             return b""

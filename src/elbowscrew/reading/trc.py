@@ -42,7 +42,7 @@ def read(source: TextSource, options: ReadOptions) -> Recording:
     unit = stated_unit(source.path, stated.get("Units", ""), options)
     names = {name: k for k, name in enumerate(rows[3]) if k >= 2 and name}
     if len(names) != sum(1 for name in rows[3][2:] if name):
-        msg = f"{source.path}:4: a marker's name stands twice; give the markers different names"
+        msg = f"{source.path}:4: a marker's name appears twice; give the markers different names"
         raise RecordingError(msg)
     wanted = {name: k for name, k in names.items() if options.wants(name)}
     if not wanted:

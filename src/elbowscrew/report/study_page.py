@@ -137,7 +137,7 @@ def _row(trial: StudyTrial, scale: tuple[float, float]) -> dict[str, Any]:
 
 
 def _group_factor(study: Study) -> str | None:
-    """Name what the distributions are told apart by: the condition, else the first thing that the manifest says."""
+    """Name the factor that groups the distributions: the condition, else the manifest's first column."""
     named = [name for name in study.factors if name.strip().casefold() == CONDITION]
     return next(iter([*named, *study.factors]), None)
 

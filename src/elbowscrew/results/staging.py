@@ -89,7 +89,7 @@ def check_result_folder(target: Path, *, force: bool, kind: ResultKind = ANALYSI
         if not os.path.lexists(target):
             return
         if not target.is_dir():
-            msg = f"{target}: exists and is no folder; give another --output"
+            msg = f"{target}: exists and is not a folder; give another --output"
             raise OutputError(msg)
         if target.resolve() == Path.cwd():
             msg = f"{target}: is the current folder; give --output a folder of its own"
@@ -105,7 +105,7 @@ def check_result_folder(target: Path, *, force: bool, kind: ResultKind = ANALYSI
     except OSError as error:
         raise _output_error(target, error) from error
     if not force:
-        msg = f"{target}: a result is there already; give --force to replace it, or another --output"
+        msg = f"{target}: there is a result already; give --force to replace it, or another --output"
         raise OutputError(msg)
 
 
@@ -210,14 +210,14 @@ def _check_file(target: Path, replaceable: str | None) -> None:
         if not os.path.lexists(target):
             return
         if not target.is_file():
-            msg = f"{target}: exists already and is no file; give another name"
+            msg = f"{target}: exists already and is not a file; give another name"
             raise OutputError(msg)
         if replaceable is None:
             msg = f"{target}: exists already; give --force to replace it, or another name"
             raise OutputError(msg)
         with target.open("rb") as stream:
             if replaceable.encode() not in stream.read(4096):
-                msg = f"{target}: exists already and is not ours; give another name"
+                msg = f"{target}: exists already and was not written by elbowscrew; give another name"
                 raise OutputError(msg)
     except OSError as error:
         raise _output_error(target, error) from error

@@ -98,7 +98,7 @@ def _landmark(asked: Landmark) -> LandmarkSummary:
 
 
 def library_versions() -> dict[str, str]:
-    """Versions of Python and of the libraries that results stand on."""
+    """Versions of Python and of the libraries that the results depend on."""
     return {"python": platform.python_version(), **{name: _version_of(name) for name in _LIBRARIES}}
 
 

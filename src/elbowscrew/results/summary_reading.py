@@ -109,7 +109,7 @@ def _read_object(path: Path) -> dict[str, Any]:
 def _finite(text: str) -> float:
     value = float(text)
     if not math.isfinite(value):
-        msg = f"{text} is no number that is known"
+        msg = f"{text} is not a known number"
         raise ValueError(msg)
     return value
 

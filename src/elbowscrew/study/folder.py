@@ -29,7 +29,7 @@ def batch_folder(folder: Path) -> Iterator[None]:
     Raises
     ------
     OutputError
-        If the folder is something else's, another batch is at work there, or the disk does not take it.
+        If the folder is something else's, another batch is running there, or the disk does not take it.
     """
     with ExitStack() as held:
         try:
@@ -51,7 +51,7 @@ def batch_folder(folder: Path) -> Iterator[None]:
 
 def _hold(folder: Path, mark: IO[bytes]) -> None:
     if not _lock(mark):
-        msg = f"{folder}: another batch is at work there{_who(mark)}; wait for it, or give another --output"
+        msg = f"{folder}: another batch is running there{_who(mark)}; wait for it, or give another --output"
         raise OutputError(msg)
     mark.seek(0)
     mark.truncate()
@@ -95,7 +95,7 @@ def _check_folder(folder: Path) -> None:
     if not os.path.lexists(folder):
         return
     if not folder.is_dir():
-        msg = f"{folder}: exists and is no folder; give another --output"
+        msg = f"{folder}: exists and is not a folder; give another --output"
         raise OutputError(msg)
     if folder.resolve() == Path.cwd():
         msg = f"{folder}: is the current folder; give --output a folder of its own"

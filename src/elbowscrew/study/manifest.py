@@ -145,7 +145,7 @@ def _columns(path: Path, header: list[str]) -> list[str]:
             msg = f"{path}:1: column {k} has no name; give it one, or remove it"
             raise UsageError(msg)
         if keys.count(key) > 1:
-            msg = f"{path}:1: column {name!r} stands there twice; keep one"
+            msg = f"{path}:1: column {name!r} appears twice; keep one"
             raise UsageError(msg)
         if key in _OURS or key in _SETTINGS:
             continue

@@ -137,7 +137,7 @@ def _collect(
 
 def _lost(task: object) -> Failure:
     label = getattr(task, "label", "")
-    message = f"{label}: the worker died of it twice: out of memory, or a crash in a library; look at the recording"
+    message = f"{label}: the worker died twice on it: out of memory, or a crash in a library; look at the recording"
     return Failure(error_class=LOST, message=message, exit_code=1)
 
 

@@ -331,6 +331,7 @@ def _doubts(motion: AnatomicalMotion, landmarks: Landmarks) -> tuple[QualityWarn
         return ()
     message = (
         f"{landmarks.source}: flexion is {np.degrees(flexion):.0f} deg and pronation {np.degrees(pronation):.0f} deg "
-        "in the median, which no elbow does: look whether the side is right and EL and EM, or US and RS, are exchanged"
+        "in the median, which no elbow does: check that the side is right, and that EL and EM, or US and RS, are not "
+        "exchanged"
     )
     return (QualityWarning(code="landmarks-doubtful", message=message),)

@@ -36,7 +36,7 @@ class ComparisonPlan:
     data : tuple of {"raw", "lowpass", "decimated"}
         What keyframes and laws are taken from.
     decimation : tuple of int
-        Take every so many-th frame.
+        Use every N-th frame only.
     """
 
     methods: tuple[str, ...] = METHOD_NAMES

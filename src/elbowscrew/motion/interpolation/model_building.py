@@ -150,7 +150,7 @@ def body_points(distal: RigidBody, settings: Settings) -> BodyPoints:
 def _measured_rows(measured: Measurement) -> NDArray[np.int64]:
     rows = np.flatnonzero(measured.joint.measured).astype(np.int64)
     if rows.size < 2:
-        msg = "the recording has one single frame with a pose: there is no motion to model"
+        msg = "only one frame of the recording has a pose: there is no motion to model"
         raise AnalysisError(msg)
     return rows
 

@@ -54,7 +54,7 @@ def model_phases(
     """
     known = np.flatnonzero(np.isfinite(angle))
     if known.size < 2:
-        msg = "the recording has one single frame with a pose: there is no motion to model"
+        msg = "only one frame of the recording has a pose: there is no motion to model"
         raise AnalysisError(msg)
     begin, end = movements.stroke_begin_s, movements.stroke_end_s
     middle = 0.5 * (end[:-1] + begin[1:])

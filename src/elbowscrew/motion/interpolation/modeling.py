@@ -44,7 +44,7 @@ def _dib(poses: Float, knots: Float, parameter: Float) -> Float:
     if (blend.residual > _LARGEST_STEP).any():
         msg = (
             f"--method dib: the blend still moves by {blend.residual.max():.2g} rad after {blend.iterations} "
-            "iterations; give keyframes that are nearer each other, or --method dlb"
+            "iterations; give keyframes closer together, or --method dlb"
         )
         raise SettingError(msg)
     return blend.dual_quat

@@ -1,4 +1,4 @@
-"""Which joint it is: rigid, one axis, two axes, a ball, none of them, or not to be told.
+"""Which joint it is: rigid, one axis, two axes, a ball, none of them, or undetermined.
 
 Real joints are no exact mechanisms, so that chi-square and BIC call each of them free, and held-out frames alone prefer
 the richest type. A richer type must therefore leave several times less of the *held-out* frames than the simpler one

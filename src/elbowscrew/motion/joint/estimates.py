@@ -1,4 +1,4 @@
-"""Lines of a joint as they are told: in both bodies and in the frame asked for, with their errors there."""
+"""Lines of a joint as they are reported: in both bodies and in the frame asked for, with their errors there."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def line_errors(
     *,
     express_in: ExpressIn,
 ) -> LineErrors:
-    """Errors of a line in the frame it is told in, the place at the line's point there.
+    """Errors of a line in the frame it is expressed in, the position at the line's point there.
 
     Parameters
     ----------

@@ -169,7 +169,7 @@ class _NearestWeights:
 
 
 def _place(own: Float) -> Float:
-    """Where frames are, by their angles (F, k) or rotations (F, 8), so that a whole turn is no way."""
+    """Where frames are, by their angles (F, k) or rotations (F, 8), so that a whole turn is no distance."""
     if own.shape[1] == _DUAL_QUAT:
         return rotation_matrix_from_quat(own[:, :4]).reshape(-1, 9)
     return np.concatenate([np.cos(own), np.sin(own)], axis=1)

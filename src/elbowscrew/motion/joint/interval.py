@@ -24,7 +24,7 @@ Method = Literal["A", "B", "J"]
 
 LEVEL: Final = 0.95
 SURE: Final = 0.9973
-"""Probability of three standard deviations: beyond its radius an effect is told."""
+"""Probability of three standard deviations: beyond its radius an effect is reported."""
 
 _BEYOND_NOISE: Final = 2.0
 

@@ -175,7 +175,7 @@ def _moving(measured: Measurement) -> list[tuple[Segment, RigidBody]]:
 def joint_axis_warnings(
     joint_axis: JointAxis, joint_type: JointType | None, measured: Measurement
 ) -> tuple[QualityWarning, ...]:
-    """Say where there is no single axis, and what its error bars stand on."""
+    """Say where there is no single axis, and what its error bars rest on."""
     warnings = [*_doubts_of_type(joint_axis, joint_type)]
     stated = joint_type is not None and joint_type.status == "forced"
     if not joint_axis.single and not (stated and joint_axis.unexplained <= LARGEST_UNEXPLAINED):
@@ -193,7 +193,7 @@ def joint_axis_warnings(
     elif joint_axis.best is not None and joint_axis.best.noise_ratio > _LARGE_NOISE_RATIO:
         message = (
             f"the poses leave a hinge by {joint_axis.best.noise_ratio:.1f} times what their noise explains: the joint "
-            "is no perfect hinge, or the markers move on the skin; the joint axis' interval is that of the residuals"
+            "is not a perfect hinge, or the markers move on the skin; the joint axis' interval is that of the residuals"
         )
         warnings.append(QualityWarning(code="beyond-noise", message=message, severity="note"))
     if any(
@@ -201,7 +201,7 @@ def joint_axis_warnings(
         for noise in (measured.noise.proximal, measured.noise.distal)
     ):
         message = (
-            "error bars stand on the jitter of a still stretch, which moving bodies mostly exceed many times; "
+            "error bars rest on the jitter of a still stretch, which a moving body usually exceeds many times over; "
             "--marker-noise MM states more"
         )
         warnings.append(QualityWarning(code="noise-from-jitter", message=message))

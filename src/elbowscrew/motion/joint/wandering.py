@@ -1,4 +1,4 @@
-"""An axis that wanders as it is told: how far, where it is on the mean, and where it is at each angle."""
+"""An axis that wanders, as it is reported: how far, where it is on average, and where it is at each angle."""
 
 from __future__ import annotations
 

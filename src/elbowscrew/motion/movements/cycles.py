@@ -29,7 +29,7 @@ _COMPLETE_SHARE: Final = 0.9
 
 
 class Flanks(NamedTuple):
-    """What the cycles are told from: for each top its two flanks and the samples of its valleys.
+    """What the cycles are found from: for each top its two flanks and the samples of its valleys.
 
     Attributes
     ----------

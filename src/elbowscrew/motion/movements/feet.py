@@ -109,7 +109,7 @@ def feet_of(
 
 
 def unsmoothed(kappa: float, cutoff: float) -> tuple[float, float]:
-    """Distance to the foot before the filter made the stroke longer, and how much it changes with the one told.
+    """Distance to the foot before the filter made the stroke longer, and how much it changes with the one given.
 
     Examples
     --------

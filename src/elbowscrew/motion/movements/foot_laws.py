@@ -1,4 +1,4 @@
-"""By which law a movement begins and ends, told by the shape of its flanks, and where its foot lies by that law.
+"""By which law a movement begins and ends, judged by the shape of its flanks, and where its foot lies by that law.
 
 Minimum jerk is what is expected of people. Beside it stand a cycloidal and a harmonic law, and speeds that rise evenly
 over a share of the time and are constant from there on, as those of robots and isokinetic machines: from constant speed

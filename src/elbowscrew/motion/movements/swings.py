@@ -15,7 +15,7 @@ from elbowscrew.motion.smoothing.filtering import _designed_tangent, _fast_lengt
 _THIRD_DIFFERENCE: Final = 20.0
 _SD_OF_MEDIAN: Final = 1.4826
 FEWEST_FOR_NOISE: Final = 23
-"""Poses in a row of which the noise is not told: their third differences are too few."""
+"""Fewer poses in a row than this do not tell the noise: their third differences are too few."""
 
 # The rhythm of the motion is the frequency below which so much of its energy lies; the filter keeps four times that.
 _ENERGY_SHARE: Final = 0.8

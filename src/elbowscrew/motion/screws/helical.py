@@ -39,7 +39,7 @@ class HelicalSeries(NamedTuple):
 
 
 def helical_series(displacement: Float, min_angle: float, angle: Float, sign: Float) -> HelicalSeries:
-    """Screw of every displacement, about the axis whose way round is told.
+    """Screw of every displacement, about an axis whose sense is given.
 
     Parameters
     ----------

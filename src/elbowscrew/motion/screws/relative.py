@@ -66,13 +66,13 @@ def joint_from_bodies(
     rows = np.flatnonzero(measured)
     if rows.size == 0:
         both = f"{distal.name!r} is" if proximal is None else f"{proximal.name!r} and {distal.name!r} are both"
-        msg = f"in no frame {both} tracked: nothing to analyze; see `elbowscrew info` for what the file holds"
+        msg = f"no frame has {both} tracked: nothing to analyze; see `elbowscrew info` for what the file holds"
         raise AnalysisError(msg)
     row = int(rows[0]) if reference_row is None else reference_row
     if not measured[row]:
         msg = (
-            f"--reference {frame[row]}: in that frame not all is tracked; the first frame that has both bodies is "
-            f"{frame[rows[0]]}"
+            f"--reference {frame[row]}: not everything is tracked in that frame; the first frame that has both bodies "
+            f"is {frame[rows[0]]}"
         )
         raise SettingError(msg)
     window = rows[rows >= row][:reference_window]

@@ -10,7 +10,7 @@ from elbowscrew.motion.screws.sense import DOMINANT_RATIO, LARGE_JUMP, SignedCho
 
 
 def sense_warnings(sense: Sense, frame: NDArray[np.int64], chosen: SignedChoice) -> tuple[QualityWarning, ...]:
-    """Say where the angle has no sense, where its sense hangs on little, and where it leaps.
+    """Say where the angle has no sense, where its sense depends on little, and where it leaps.
 
     Parameters
     ----------
@@ -24,15 +24,15 @@ def sense_warnings(sense: Sense, frame: NDArray[np.int64], chosen: SignedChoice)
     if chosen == "auto" and not sense.signed:
         message = (
             f"no axis dominates the motion ({ratio}; one axis leaves {DOMINANT_RATIO:.2f} at most): theta is the "
-            "rotation since the reference without a sense, and whatever carries a sense is empty; --signed yes takes "
-            "the leading direction for the axis"
+            "rotation since the reference without a sense, and everything that needs a sense is empty; --signed yes "
+            "takes the leading direction for the axis"
         )
         found.append(QualityWarning(code="unsigned", message=message))
     if chosen == "auto" and sense.doubtful:
         answer = "has a sense" if sense.signed else "has none"
         message = (
-            f"whether theta has a sense hangs on the reference pose here ({ratio}, close to {DOMINANT_RATIO:.2f}): it "
-            f"{answer}; --signed yes or no decides, or choose another --reference"
+            f"whether theta has a sense depends on the reference pose here ({ratio}, close to {DOMINANT_RATIO:.2f}): "
+            f"it {answer}; --signed yes or no decides, or choose another --reference"
         )
         found.append(QualityWarning(code="sense-doubtful", message=message))
     if sense.tied:
@@ -54,7 +54,7 @@ def sense_warnings(sense: Sense, frame: NDArray[np.int64], chosen: SignedChoice)
         gaps = "a gap" if len(sense.bridged_rows) == 1 else f"{len(sense.bridged_rows)} gaps"
         message = (
             f"the joint turns all the way round, and in {gaps} (the first after frame {first}) by more than half a "
-            "turn: the whole turns there are those of the speed beside the gap, and theta behind it hangs on them"
+            "turn: the whole turns there are those of the speed beside the gap, and theta after it depends on them"
         )
         found.append(QualityWarning(code="turns-over-gap", message=message))
     return tuple(found)

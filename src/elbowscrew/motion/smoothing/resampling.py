@@ -27,7 +27,7 @@ def resample_recording(
     """Put a recording on an even clock, by interpolation between neighboring frames.
 
     Poses go by ScLERP, positions of markers and figures of the bodies linearly; nothing is interpolated across a frame
-    that is lost, missing in the file, or reached by a leap. Take out what is no measurement (`tracked_bodies`) and
+    that is lost, missing in the file, or reached by a leap. Take out what is not a measurement (`tracked_bodies`) and
     build bodies from markers first: between a true and a false pose all poses are false, and markers interpolated on
     straight lines make a smaller cluster. Interpolation also takes noise away, unevenly over the frames.
 

@@ -47,7 +47,7 @@ class TrackedBodies(NamedTuple):
 
 
 def tracked_bodies(recording: Recording, settings: Settings) -> TrackedBodies:
-    """Choose the joint's bodies and take out what is no measurement.
+    """Choose the joint's bodies and take out what is not a measurement.
 
     Raises
     ------

@@ -70,7 +70,7 @@ class CheckedBody:
 
 
 def check_tracking(body: RigidBody, recording: Recording, elapsed: Float, settings: Settings) -> CheckedBody:
-    """Mark the frames in which the body's pose is no measurement, and say why.
+    """Mark the frames in which the body's pose is not a measurement, and say why.
 
     Parameters
     ----------
@@ -195,7 +195,7 @@ def _without_leaps(
         before = known[np.searchsorted(known, unresolved) - 1]
         message = (
             f"body {body.name!r} leaps{steps.told(before, unresolved)} at {_frames(unresolved, recording)} and goes on "
-            f"there: flipped, swapped or another body from there on or until then; look at the recording ({limits})"
+            f"there: flipped, swapped or another body from there on, or up to there; look at the recording ({limits})"
             f"{_if_it_is_real(fast)}"
         )
         warnings.append(frames_warning("leap-unresolved", message, unresolved, recording))
@@ -341,8 +341,8 @@ def check_swaps(one: RigidBody, other: RigidBody, recording: Recording, elapsed:
     if not swapped.size:
         return ()
     message = (
-        f"bodies {one.name!r} and {other.name!r} exchange their places at {_frames(swapped, recording)}: their poses "
-        "are swapped from there on or until then; relabel them in Motive"
+        f"bodies {one.name!r} and {other.name!r} swap places at {_frames(swapped, recording)}: their poses "
+        "are swapped from there on, or up to there; relabel them in Motive"
     )
     return (frames_warning("swapped-bodies", message, swapped, recording),)
 

@@ -62,7 +62,7 @@ def body_from_markers(recording: Recording, name: str, patterns: tuple[str, ...]
     shape = cluster_shape(seen)
     if shape is None:
         names = ", ".join(marker.name for marker in chosen)
-        msg = f"{name}: in no frame all of its markers are seen ({names}); leave out those that are seldom seen"
+        msg = f"{name}: its markers are never all seen in one frame ({names}); leave out those that are seldom seen"
         raise SettingError(msg)
     fitted = fit(shape, seen)
     lost = ~np.isfinite(fitted.dual_quat).all(axis=1)

@@ -41,7 +41,7 @@ class CheckedRecording(NamedTuple):
 
 
 def check_bodies(recording: Recording, bodies: tuple[RigidBody, ...], settings: Settings) -> CheckedRecording:
-    """Take out what is no measurement, and collect all there is to say about these bodies and the clock.
+    """Take out what is not a measurement, and collect all there is to say about these bodies and the clock.
 
     Raises
     ------
