@@ -148,7 +148,7 @@ def elbows() -> None:
                 # Of two poses a phase DLB is sDLB.
                 mine = (models.method == method) | ((method == "dlb") & (models.method == "sdlb"))
                 kept = models.keyframes[mine & (models.rms_displacement <= 1e-3 * limit)]
-                cells.append(_numbers(method, int(kept.min())) if kept.size else "–")
+                cells.append(_numbers(method, int(kept.min())) if kept.size else "over 20 a phase")
             print(f"| {name} | {limit:g} mm | " + " | ".join(cells) + " |")
     print("\n## fewest keyframes, constant speed between, by the largest displacement\n")
     print("| motion | within | joint | sclerp |\n| --- | --- | --- | --- |")

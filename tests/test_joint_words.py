@@ -10,12 +10,13 @@ from typing import Any
 
 import pytest
 
-from elbowscrew import Settings, __version__, analyze, save_analysis, simulate_trial
-from elbowscrew.cli import render
+from elbowscrew import Settings, __version__, analyze, save_analysis, save_simulation, simulate_trial
+from elbowscrew.cli import main, render
 from elbowscrew.errors import ResultError
 from elbowscrew.report.methods import methods_of
 from elbowscrew.results.summary_reading import read_summary
 from elbowscrew.results.trial_views import view_of_result
+from elbowscrew.view.figure_names import FIGURE_ENTRIES
 
 ANY = re.compile(
     r"(?i)\b(upper arm|forearm|arm|elbow|humer\w*|flexion|extension|pronation|thigh|shank|knee|hand"
@@ -60,6 +61,53 @@ def test_no_word_of_another_joint(case: str, motion: Any, tmp_path: Path, capsys
         assert {found.lower() for found in ANY.findall(text)} <= words, name
     assert {found.lower() for found in ANY.findall(told["page"])} >= words - {"arm", "phalanx"}
     assert len(told) > 5
+
+
+# What the formats call things of their own accord: a program's option is no word of a joint.
+_OPTIONS = re.compile(r"--(?:arm|forearm)\b")
+
+
+@pytest.mark.parametrize(("case", "kind"), [("knee", "two-axes"), ("finger", "screw-hinge")])
+def test_no_word_of_another_joint_beside_the_trials_page(
+    case: str, kind: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Study and its page, figures for publication, comparison, exports, info: each is made, and looked through."""
+    simulated, _, words = CASES[case]
+    monkeypatch.chdir(tmp_path)
+    for seed in (1, 2):
+        trial = simulate_trial(frames=90, inversion=45, joint_type=kind, side="left", seed=seed, **simulated)
+        save_simulation(trial, tmp_path / "in" / f"t{seed}.csv")
+    told: dict[str, str] = {}
+
+    def run(name: str, *arguments: str) -> None:
+        assert main(list(arguments)) == 0, name
+        shown = capsys.readouterr()
+        told[name] = shown.out + shown.err
+
+    run("simulate", "simulate", "s.csv", "--joint", case, "--frames", "20", "--inversion", "9")
+    run("info", "info", "in/t1.csv")
+    run("info as JSON", "info", "in/t1.csv", "--json")
+    run("batch", "batch", "in", "-o", "out", "--figure-format", "svg", "--export", "sto")
+    folders = sorted(path.parent for path in (tmp_path / "out").glob("*/summary.json"))
+    assert len(folders) == 2
+    names = ",".join(name for name, entry in FIGURE_ENTRIES.items() if not getattr(entry, "needs", ""))
+    run("figures", "report", str(folders[0]), "--figures", names, "--figure-format", "svg", "-o", "figures")
+    run("overlay", "report", "out", "--figures", "overlay", "--figure-format", "svg", "-o", "overlay")
+    plan = ("--methods", "joint,sclerp", "--laws", "best", "--counts", "2", "--data", "raw", "--figure-format", "svg")
+    run("compare", "compare", "in/t1.csv", "-o", "compared", *plan)
+    run("compare trials", "compare", "in", "-o", "compared trials", *plan)
+    keyframes = folders[0] / "keyframes.csv"
+    run("interpolate", "interpolate", str(keyframes), "--frames", "9")
+    kinds = {".svg", ".html", ".json", ".csv", ".sto"}
+    written = [path for path in tmp_path.rglob("*") if path.suffix in kinds and path.parent.name != "in"]
+    told |= {str(path.relative_to(tmp_path)): path.read_text(encoding="utf-8") for path in written}
+    assert {path.suffix for path in written} == kinds
+    assert sum(path.suffix == ".svg" for path in written) >= len(FIGURE_ENTRIES)
+    for name, text in told.items():
+        found = {word.lower() for word in ANY.findall(_OPTIONS.sub("", text))}
+        assert found <= words | {case}, (name, found - words)
+    for name in ("info", "out/summary.csv"):
+        assert {word.lower() for word in ANY.findall(told[name])} & words, name
 
 
 def test_a_result_says_the_joint_and_its_side(tmp_path: Path) -> None:
