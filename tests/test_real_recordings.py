@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +13,12 @@ from elbowscrew import Recording, RigidBody, Settings, analyze, read_recording
 from elbowscrew.errors import RecordingError, SettingError
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_quaternion import conjugate, transform_points
+from elbowscrew.model import JointAxis, MeanAxis
+from elbowscrew.motion.axes.measured import measured_mean_axis
+from elbowscrew.motion.joint.joint_axis import distal_line, estimate_joint_axis, fitted_frames
+from elbowscrew.motion.joint.measured import axis_of_type, markers_of
+from elbowscrew.motion.joint.typed import identify_joint
+from elbowscrew.motion.screws.measurement import Measurement, measure
 
 HINGES = [
     # file, arm, forearm, range deg, dispersion deg, median slide mm, its 5 and 95 % mm
@@ -34,6 +42,65 @@ def test_mechanical_hinges(
     slides = 1000 * analysis.screw.slide[np.isfinite(analysis.screw.slide)]
     assert np.median(slides) == pytest.approx(slide, abs=0.006)
     assert np.percentile(slides, [5, 95]) == pytest.approx(spread, abs=0.011)
+
+
+@pytest.fixture(scope="module")
+def parts_of_hinges(real_data: Path) -> list[list[tuple[JointAxis, JointAxis]]]:
+    """Neighboring halves and quarters of each hinge, analyzed each for itself."""
+    pairs = []
+    for name, proximal, distal, *_ in HINGES:
+        recording = read_recording(real_data / "real" / f"{name}.csv")
+        bodies = Settings(proximal=f"Rigid Body {proximal}", distal=f"Rigid Body {distal}", express_in="proximal")
+        measured = measure(recording, bodies)
+        mean = measured_mean_axis(measured)
+        found = []
+        for count in (2, 4):
+            cuts = np.linspace(0, len(measured.course), count + 1).astype(int)
+            axes = [axis_of_part(measured, mean, slice(*cut)) for cut in pairwise(cuts)]
+            found += list(pairwise(axes))
+        pairs.append(found)
+    return pairs
+
+
+def axis_of_part(measured: Measurement, mean: MeanAxis, rows: slice) -> JointAxis:
+    joint = measured.joint
+    part = replace(
+        joint,
+        dual_quat_proximal_distal=joint.dual_quat_proximal_distal[rows],
+        measured=joint.measured[rows],
+        filled=joint.filled[rows],
+        reference_row=0,
+    )
+    line = distal_line(np.concatenate([mean.direction, np.cross(mean.point, mean.direction)]), measured.change)
+    markers = tuple(one._replace(rms=one.rms[rows]) for one in markers_of(measured))
+    gain = measured.noise_gain[rows]
+    axis = estimate_joint_axis(
+        part, measured.course[rows], line, measured.noise, gain, express_in="proximal", robust=False, markers=markers
+    )
+    _, poses, covariance = fitted_frames(part, measured.noise, gain)
+    kind = identify_joint(poses, covariance, joint.reference, noise_known=True, one=axis.preferred)
+    return axis_of_type(axis, kind)
+
+
+def test_parts_of_a_real_hinge_agree_within_their_intervals(
+    parts_of_hinges: list[list[tuple[JointAxis, JointAxis]]],
+) -> None:
+    """Where both parts tell an axis: a part in which the joint hardly moves tells none."""
+    told = agree = places = 0
+    for first, second in (pair for pairs in parts_of_hinges for pair in pairs):
+        one, two = first.headline, second.headline
+        if one is None or two is None:
+            continue
+        told += 1
+        h, g = one.line.direction, two.line.direction
+        angle = float(np.arctan2(np.linalg.norm(np.cross(h, g)), abs(h @ g)))
+        agree += angle <= np.hypot(one.axis_cone, two.axis_cone)
+        off = two.line.point - one.line.point
+        off = off - g * (off @ g)  # the other line where it is nearest
+        places += float(np.linalg.norm(np.cross(off, h))) <= np.hypot(one.point_radius, two.point_radius)
+    assert told >= 10  # of 16
+    assert agree >= told - 2
+    assert places >= told - 2
 
 
 def test_intervals_of_a_hinge_hold_in_the_robots_other_take(real_data: Path) -> None:

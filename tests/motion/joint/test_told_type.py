@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import moving_joints as mj
 import numpy as np
 import pytest
+from trials import joint_poses
 
 from elbowscrew import Settings, analyze, read_recording, simulate_trial
 from elbowscrew.cli.render import analysis_table
+from elbowscrew.motion.joint.typed import identify_joint
 from elbowscrew.results.joint_summary import joint_summary
 from elbowscrew.results.summary import summary_from_analysis
 
@@ -93,3 +96,32 @@ def test_few_frames_of_no_clear_joint_are_no_certain_pair_of_axes(real_data: Pat
     )
     found = joint_summary(analysis)["joint_type"]
     assert (found["type"], found["status"]) != ("two_axes", "determined")
+
+
+@pytest.mark.parametrize(
+    ("name", "proximal", "distal"), [("0627_0117", 1, 2), ("0706_122504", 1, 2), ("0706_122504", 2, 3)]
+)
+def test_a_hinge_of_a_robot_is_no_ball_for_half_a_degree(
+    real_data: Path, name: str, proximal: int, distal: int
+) -> None:
+    """It leaves a half degree, well beyond what its markers' noise explains, and two axes or a ball leave less."""
+    recording = read_recording(real_data / "real" / f"v121_thomazach_2023{name}.csv")
+    bodies = Settings(proximal=f"Rigid Body {proximal}", distal=f"Rigid Body {distal}")
+    analysis = analyze(recording, bodies)
+    assert analysis.joint_type is not None
+    assert analysis.joint_type.type in ("hinge", "screw_hinge")
+    assert analysis.joint_type.status == "approximate"
+
+
+def test_a_joint_that_hardly_moves_has_no_axis() -> None:
+    """A degree to and fro, well told by its noise, is play or drift."""
+    angle = np.radians(0.5) * np.sin(np.linspace(0.0, 6.0, 200))
+    seen, covariance = mj.noisy(joint_poses(angle, 0.0 * angle), np.random.default_rng(1), 0.02, 2e-5)
+    for known in (True, False):
+        found = identify_joint(seen, covariance, seen[0], noise_known=known)
+        assert (found.type, found.status) == ("rigid", "approximate")
+    still = joint_poses(0.0 * angle, 0.0 * angle)
+    seen, covariance = mj.noisy(still, np.random.default_rng(2), 0.02, 2e-5)
+    for known in (True, False):
+        found = identify_joint(seen, covariance, seen[0], noise_known=known)
+        assert (found.type, found.status) == ("rigid", "determined")

@@ -34,6 +34,7 @@ _NEED_LARGE: Final = 2.0
 _NEED_SMALL: Final = 10.0
 _LITTLE_ROTATION: Final = np.radians(2.5)
 _LITTLE_SHIFT: Final = 0.0015
+_LEAST_MOTION: Final = np.radians(1.5)
 _LARGEST_LEFT: Final = 0.012
 _LARGEST_CENTER_SD: Final = 0.05
 _LARGEST_ANGLE_SD: Final = np.radians(8.0)
@@ -46,6 +47,7 @@ _ALL_RETRACED: Final = 0.9
 _MUCH_RETRACED: Final = 0.5
 _LARGEST_WANDER: Final = np.radians(15.0)
 _WANDERS: Final = "an axis that wanders with the angle explains as much as two axes do"
+_HARDLY: Final = "so little motion tells no axis"
 _LITTLE: Final = "a second rotation is seen, but is too small to tell its axis"
 
 LEAST_RANGE_IN_SD: Final = 12.0
@@ -98,6 +100,11 @@ class _Tried:
     def leaves_little(self) -> bool:
         """Whether what it leaves is small, however far beyond the noise: an imperfect hinge has as much."""
         return self.range_left < _LITTLE_ROTATION and self.fit.residual_translation < _LITTLE_SHIFT
+
+    @property
+    def hardly_moves(self) -> bool:
+        """Whether a rigid joint leaves less than tells an axis, whatever the noise: play, drift, a shaken camera."""
+        return self.range_left < _LEAST_MOTION and self.fit.residual_translation < _LITTLE_SHIFT
 
     @property
     def too_far(self) -> bool:
@@ -211,6 +218,9 @@ def choose_type(
     if forced is not None:
         contest[forced]
         return _chosen(contest, forced, "forced", f"{NAMES[forced]}, as stated")
+    if contest["rigid"].hardly_moves:
+        limit = _EXPLAINED if noise_known else _NEED_LARGE * contest.floor("rigid")
+        return _unless_too_far(contest, "rigid", 0.0, doubt=None if contest.heldout("rigid") <= limit else _HARDLY)
     return (_explained(contest) if noise_known else None) or _best(contest)
 
 
@@ -228,7 +238,7 @@ def _explained(contest: _Contest) -> Choice | None:
             less = contest.one if name == "two_axes" else simpler[name]
             if contest.heldout(less) < _TIMES_BETTER * contest.heldout(name):
                 continue
-            if name == "two_axes" and _doubtful(contest):
+            if contest[contest.one].leaves_little or (name == "two_axes" and _doubtful(contest)):
                 return None
         found = contest.one if name == "hinge" else name
         return _chosen(contest, found, "determined", f"{NAMES[found]}: the stated noise explains what it leaves")
@@ -239,8 +249,7 @@ def _doubtful(contest: _Contest) -> bool:
     """Whether one axis that wanders, or with a second rotation too small to tell, could have moved so."""
     single, two = contest.heldout(contest.one), contest.heldout("two_axes")
     retraced = _over(single - contest.heldout_wandering(contest.one), single - two)
-    little = contest[contest.one].leaves_little or contest.hardly_turns()
-    return little or not contest.sure_axes() or retraced > _MUCH_RETRACED
+    return contest.hardly_turns() or not contest.sure_axes() or retraced > _MUCH_RETRACED
 
 
 def _best(contest: _Contest) -> Choice:

@@ -166,7 +166,9 @@ def joint_interval(
         if found is not None:
             markers = found if markers is None else markers.plus(found)
     residuals = residual_spectrum(influence, noise_known=noise_known)
-    asked = not residuals.flat and (markers is None or residuals.variance > _BEYOND_NOISE)
+    # Twice the markers' noise, or less than half of it: then it is not theirs that the residuals are made of.
+    of_markers = markers is not None and 1.0 / _BEYOND_NOISE <= residuals.variance <= _BEYOND_NOISE
+    asked = not residuals.flat and not of_markers
     return JointInterval(
         markers=markers,
         residuals=residuals,

@@ -34,7 +34,7 @@ _LARGE_NOISE_RATIO: Final = 2.0
 _FEWEST_MARKERS: Final = 3
 _LEAST_SHIFT: Final = 1e-6
 _ONE_AXIS: Final = ("hinge", "screw_hinge")
-_OTHERS: Final = ("two_axes", "ball", "free")
+_OTHERS: Final = ("rigid", "two_axes", "ball", "free")
 _FOUND: Final = {
     "two_axes": "the joint has two axes (joint.json)",
     "ball": "the joint has a center (joint.json)",
@@ -53,7 +53,7 @@ def measured_joint_axis(measured: Measurement, mean: MeanAxis, settings: Setting
         measured.noise_gain,
         express_in=measured.express_in,
         robust=settings.robust,
-        markers=_markers(measured),
+        markers=markers_of(measured),
         skin=_skin(measured, settings),
         stated=settings.stated_joint if settings.stated_joint in ("hinge", "screw_hinge") else None,
     )
@@ -77,7 +77,7 @@ def measured_joint_type(measured: Measurement, joint_axis: JointAxis, settings: 
         one=joint_axis.preferred,
         left=side_of(measured.distal.name) == "left",
         everywhere=_everywhere(measured, settings),
-        clusters=clusters_of(_markers(measured), rows),
+        clusters=clusters_of(markers_of(measured), rows),
         skin=_skin(measured, settings),
     )
 
@@ -137,14 +137,12 @@ def measured_joint_angles(
 def axis_of_type(joint_axis: JointAxis, joint_type: JointType | None) -> JointAxis:
     """Leave out the fit of one axis where the joint was not found, or is not stated, to have one."""
     kind = None if joint_type is None else joint_type.type
-    stated = joint_type is not None and joint_type.status == "forced"
-    single = kind in _ONE_AXIS or (joint_axis.single and kind not in _OTHERS and not (stated and kind == "rigid"))
-    if single:
+    if kind in _ONE_AXIS or (joint_axis.single and kind not in _OTHERS):
         return replace(joint_axis, single=True)
     return replace(joint_axis, single=False, hinge=None, screw_hinge=None, wander=None, mean_axis=None, path=None)
 
 
-def _markers(measured: Measurement) -> tuple[BodyMarkers, ...]:
+def markers_of(measured: Measurement) -> tuple[BodyMarkers, ...]:
     """Markers of the bodies that move; none if one of them does not tell of its markers."""
     found = []
     for segment, body in _moving(measured):
