@@ -6,8 +6,9 @@ lengths millimeters; None is what is not known or not defined.
 
 from __future__ import annotations
 
-from typing import Any, Literal, NotRequired
+from typing import Annotated, Any, Literal, NotRequired
 
+from pydantic import Field
 from typing_extensions import TypedDict
 
 from elbowscrew.choices import BlendName, ExpressIn, KnotName, LawName, MethodName
@@ -97,7 +98,8 @@ class RecordingSummary(TypedDict):
     frames: int
     first_frame: int
     last_frame: int
-    rate_hz: float
+    rate_hz: Annotated[float, Field(gt=0)]
+    """Frames per second."""
     duration_s: float
     clock: ClockSummary
 

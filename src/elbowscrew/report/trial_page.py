@@ -94,6 +94,8 @@ def trial_page(trial: TrialView, folder: Path) -> str:
         "notes": [warning for warning in warnings if warning["severity"] != "warning"],
         "model_name": model_name(trial),
         "laws": " and ".join(dict.fromkeys(law["law"] for law in summary["interpolation"]["phase_laws"])),
+        "min_angle_deg": trial.settings.min_angle_deg,
+        "axis_sd_deg": trial.settings.axis_sd_deg,
         "hardly_deg": _HARDLY_DEG,
         "widest_deg": float(np.degrees(WIDEST)),
         "theta_chart": theta_chart(trial),

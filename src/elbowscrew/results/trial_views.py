@@ -33,7 +33,7 @@ _SCREW: Final = (
 )  # fmt: skip
 _MODEL: Final = ("phase", "angle", "euler_parameters", "angle_error", "rms_displacement")
 _REPETITIONS: Final = tuple(field.name for field in fields(Repetitions))
-UNREADABLE: Final = (KeyError, TypeError, ValueError, IndexError, AttributeError, OverflowError)
+UNREADABLE: Final = (KeyError, TypeError, ValueError, IndexError, AttributeError, ArithmeticError)
 """What a result that somebody edited raises where its numbers do not go together."""
 
 

@@ -1,0 +1,93 @@
+"""Every key that a template reads is one that the JSON files have, in branches that no result takes, too."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from types import NoneType, UnionType
+from typing import Any, Union, get_args, get_origin, get_type_hints
+
+import pytest
+from jinja2 import Environment, nodes
+from typing_extensions import is_typeddict
+
+from elbowscrew.model.joint_summary_types import JointSummary
+from elbowscrew.model.summary_types import (
+    AnalysisSummary,
+    ModelSummary,
+    MotionSummary,
+    PhaseLawSummary,
+    QualitySummary,
+    SourceSummary,
+    TrialSummary,
+    WarningSummary,
+)
+
+TYPES: dict[str, Any] = {
+    "summary": AnalysisSummary,
+    "source": SourceSummary,
+    "trial": TrialSummary,
+    "motion": MotionSummary,
+    "model": ModelSummary,
+    "joint": JointSummary,
+    "law": PhaseLawSummary,
+    "warning": WarningSummary,
+}
+"""What `elbowscrew.report.trial_page` and its loops call the parts of a result."""
+METHODS = {"items", "lower", "startswith"}
+
+
+def unknown(tree: nodes.Template, types: Mapping[str, Any]) -> Iterator[str]:
+    for node in tree.find_all((nodes.Getattr, nodes.Getitem)):
+        yield from unknown_in(node, types)
+
+
+def unknown_in(node: Any, types: Mapping[str, Any]) -> Iterator[str]:
+    path, inner = [], node
+    while isinstance(inner, nodes.Getattr | nodes.Getitem):
+        key = inner.attr if isinstance(inner, nodes.Getattr) else getattr(inner.arg, "value", None)
+        path.append(key)
+        inner = inner.node
+    if not isinstance(inner, nodes.Name) or inner.name not in types:
+        return
+    kind: Any = types[inner.name]
+    for key in reversed(path):
+        if key in METHODS or not isinstance(key, str):
+            return
+        if not is_typeddict(kind) or key not in get_type_hints(kind):
+            yield ".".join([inner.name, *map(str, reversed(path))])
+            return
+        kind = only(get_type_hints(kind)[key])
+
+
+def only(kind: Any) -> Any:
+    """Take a type without None."""
+    if get_origin(kind) in (Union, UnionType):
+        (kind,) = (one for one in get_args(kind) if one is not NoneType)
+    return kind
+
+
+@pytest.fixture
+def source(root: Path) -> str:
+    return (root / "src" / "elbowscrew" / "report" / "templates" / "trial.html").read_text(encoding="utf-8")
+
+
+def test_keys_of_the_template_are_keys_of_the_files(source: str) -> None:
+    assert list(unknown(Environment(autoescape=True).parse(source), TYPES)) == []
+    assert {name for name in TYPES if f"{name}." in source} == set(TYPES)
+
+
+@pytest.mark.parametrize(
+    "key", ["motion.theta_max_deg", "joint.repeatability.icc", "law.peak", "model.points.radius_of"]
+)
+def test_a_misspelled_key_is_seen(source: str, key: str) -> None:
+    assert key in source
+    assert list(unknown(Environment(autoescape=True).parse(source.replace(key, f"{key}x")), TYPES))
+
+
+def test_the_quality_of_a_body_has_the_keys_of_its_row(source: str) -> None:
+    rows = source[source.index("{% for body in bodies %}") : source.index("Residual and error are medians")]
+    row = rows[: rows.index("{% endfor %}", rows.index("noise.source"))]
+    tree = Environment(autoescape=True).parse(row + "{% endfor %}")
+    assert list(unknown(tree, {"body": QualitySummary})) == []
+    assert list(unknown(tree, {"body": WarningSummary}))
