@@ -520,6 +520,7 @@ def _phase_laws(told: Told) -> list[dict[str, Any]]:
             {
                 "law": law,
                 "peak": None if pd.isna(peak) else peak,
+                "peak_sd": None,
                 "start_frame": frame[start],
                 "end_frame": frame[end],
                 "rms_displacement_mm": np.sqrt(np.mean(square)),

@@ -36,6 +36,7 @@ if TYPE_CHECKING:
 _MARKERS_TOLD = 24
 _FRAMES_TOLD = 12
 _SKIPPED_TOLD = 5
+_PEAKS_TOLD = 6
 _FAILURES_TOLD = 10
 
 
@@ -97,6 +98,7 @@ def analysis_table(summary: AnalysisSummary, folder: Path) -> None:
             f"{model['method']} {model['blend']}, {model['law']} law, keyframes {_numbers(model['keyframes'])}"
             f"; covers {100.0 * model['covered_share']:.0f} % of the recording",
         ),
+        *_fitted_peaks(model),
         (
             "Model error",
             f"rotation {_number(model['rms_angle_error_deg'])} deg RMS, {_number(model['max_angle_error_deg'])} at "
@@ -322,6 +324,16 @@ def _one_of_two(axis: JointLineSummary, body: Literal["proximal", "distal"]) -> 
         f"axis {number} ({direction}) in the {body} body within {axis['cone95_deg']:.2g} deg, "
         f"{axis['range_deg']:.0f} deg about it"
     )
+
+
+def _fitted_peaks(model: ModelSummary) -> Iterable[tuple[str, str]]:
+    """Tell where in each phase the velocity of a fitted law is highest, and how far that is known."""
+    known = [(law["peak"], law["peak_sd"]) for law in model["phase_laws"]]
+    fitted = [(peak, sd) for peak, sd in known if peak is not None and sd is not None]
+    if fitted:
+        shown = ", ".join(f"{100.0 * peak:.1f} ± {100.0 * sd:.1f}" for peak, sd in fitted[:_PEAKS_TOLD])
+        more = f" and {len(fitted) - _PEAKS_TOLD} more" if len(fitted) > _PEAKS_TOLD else ""
+        yield "Highest velocity", f"at {shown}{more} % of the phases (± one standard deviation)"
 
 
 def _radius(model: ModelSummary) -> str:

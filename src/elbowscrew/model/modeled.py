@@ -28,10 +28,13 @@ class ModelPhases(ArrayRecord):
         Rows where the phases begin and end: start, inversions, end.
     law_rows : ndarray of int, shape (P, 2)
         Rows between which the law of motion runs in each phase; before and after it, within the phase, the model rests.
+    law_sd_s : ndarray, shape (P, 2), optional
+        Standard deviations of the times where it begins and ends; None where they are not known.
     """
 
     bound_rows: NDArray[np.int64]
     law_rows: NDArray[np.int64]
+    law_sd_s: Float | None = None
 
     @property
     def count(self) -> int:
@@ -50,11 +53,14 @@ class PhaseLaw(NamedTuple):
     rms : float
         RMS displacement (m) between the measured motion and the ScLERP from the phase's first pose to its last under
         this law.
+    peak_sd : float
+        Standard deviation of a peak that was fitted, as a share of the phase; NaN of others, and where it is not known.
     """
 
     name: str
     peak: float | None
     rms: float
+    peak_sd: float = float("nan")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)

@@ -215,6 +215,8 @@ class PhaseLawSummary(TypedDict):
     law: str
     peak: float | None
     """Share of the phase at which the velocity is highest; None for the law's own."""
+    peak_sd: float | None
+    """Its standard deviation where it was fitted; None where it was not, or is not known."""
     start_frame: int
     end_frame: int
     rms_displacement_mm: float | None

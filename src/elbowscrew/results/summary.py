@@ -236,6 +236,7 @@ def _phase_laws(analysis: Analysis) -> list[PhaseLawSummary]:
         {
             "law": law.name,
             "peak": law.peak,
+            "peak_sd": known(law.peak_sd),
             "start_frame": int(frame[first]),
             "end_frame": int(frame[last]),
             "rms_displacement_mm": known(1000.0 * law.rms),

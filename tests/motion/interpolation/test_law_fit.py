@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
+from scipy.optimize import minimize_scalar
 
 from elbowscrew import Settings, analyze, simulate_trial
 from elbowscrew.configuring import settings_from
@@ -97,3 +99,39 @@ def test_an_asymmetric_law_moves_the_highest_velocity_of_the_model() -> None:
     trial = simulate_trial(marker_noise_mm=0.05).recording
     fraction = analyze(trial, Settings(law_peak=0.3)).interpolated.fraction
     assert int(np.argmax(np.diff(fraction[:211]))) == pytest.approx(0.3 * 211, abs=2)
+
+
+@pytest.mark.parametrize("noise_deg", [0.05, 0.3])
+def test_the_sd_of_a_fitted_peak_is_its_scatter(noise_deg: float) -> None:
+    """Where the law's ends are known: white noise of the rotation, that of the two end poses in it."""
+    random = np.random.default_rng(4)
+    exact = asymmetric(LAWS["polynomial-345"], 0.55)(TAU)
+    known = replace(PHASES, law_sd_s=np.zeros((1, 2)))
+    found = [
+        law_of("best", moved(exact + random.normal(0.0, noise_deg / 130.0, COUNT)), phases=known).law for _ in range(40)
+    ]
+    off = np.array([law.peak - 0.55 for law in found if law.peak is not None and law.name == "polynomial-345"])
+    sd = np.array([law.peak_sd for law in found if law.name == "polynomial-345"])
+    assert off.size >= 30
+    assert np.sqrt(np.mean((off / sd) ** 2)) == pytest.approx(1.0, abs=0.35)
+
+
+def test_a_peak_is_as_uncertain_as_the_ends_of_its_law() -> None:
+    pose = moved(asymmetric(LAWS["polynomial-345"], 0.5)(TAU))
+    sure, early = (replace(PHASES, law_sd_s=np.array([[sd, 0.0]])) for sd in (1e-6, 0.02))
+    assert law_of("best", pose, phases=sure).law.peak_sd < 1e-3
+    told = law_of("best", pose, phases=early).law.peak_sd
+    # The same, by the fit to a share of the turn that begins so much later than it is taken to.
+    late = asymmetric(LAWS["polynomial-345"], 0.5)(np.clip((TAU - 0.02) / 0.98, 0.0, 1.0))
+    fitted = minimize_scalar(
+        lambda peak: float(np.sum((asymmetric(LAWS["polynomial-345"], peak)(TAU) - late) ** 2)),
+        bounds=(0.4, 0.6),
+        method="bounded",
+    ).x
+    assert told == pytest.approx(abs(fitted - 0.5), rel=0.15)
+
+
+def test_without_limits_of_the_ends_or_a_fit_there_is_no_sd() -> None:
+    pose = moved(asymmetric(LAWS["cycloidal"], 0.4)(TAU))
+    assert np.isnan(law_of("best", pose).law.peak_sd)
+    assert np.isnan(law_of("cycloidal", pose, 0.4, replace(PHASES, law_sd_s=np.zeros((1, 2)))).law.peak_sd)

@@ -23,6 +23,10 @@ _PEAKS: Final = (0.1, 0.9)
 _COARSE: Final = 17
 _PEAK_TOLERANCE: Final = 1e-4
 _LEAST_TURN: Final = 1e-3
+_STEP: Final = 1e-4
+_FEWEST_FOR_SD: Final = 6
+# Second differences of white noise have the variance 1 + 4 + 1.
+_SECOND_DIFFERENCE: Final = 6.0
 _GOLDEN: Final = 0.5 * (np.sqrt(5.0) - 1.0)
 
 
@@ -80,7 +84,10 @@ def laws_of(
             function = phase.own_law(f"frames {frame[first]} to {frame[last]}")
             found.append(FittedLaw(PhaseLaw(name, None, phase.rms(function)), function))
         elif name == "best":
-            found.append(phase.best_law())
+            best = phase.best_law()
+            span = float(elapsed[last] - elapsed[first])
+            ends_sd = None if phases.law_sd_s is None else phases.law_sd_s[p] / span
+            found.append(best._replace(law=best.law._replace(peak_sd=phase.peak_sd(best.law, ends_sd))))
         else:
             found.append(phase.named(name, peak))
     return tuple(found)
@@ -118,6 +125,41 @@ class _Phase(NamedTuple):
         peak = _least(lambda peak: self.rms(asymmetric(law, peak).position), float(low), float(high))
         return self.named(name, round(float(peak), 4))
 
+    def peak_sd(self, law: PhaseLaw, ends_sd: Float | None) -> float:
+        """Standard deviation of a fitted time of highest velocity, to first order, as a share of the phase.
+
+        It has three parts: the residual of the phase's own law (with its autocorrelation), the noise of the two poses
+        that the model runs between, and the times where the law begins and ends.
+
+        Parameters
+        ----------
+        law : PhaseLaw
+        ends_sd : ndarray, shape (2,), or None
+            Standard deviations of those two times, as shares of the phase.
+        """
+        if law.peak is None or ends_sd is None or self.tau.size < _FEWEST_FOR_SD:
+            return np.nan
+        tau = self.tau
+        fitted = named_law(law.name, law.peak).position
+        by_peak, by_time = (
+            (after - before) / (2.0 * _STEP)
+            for before, after in (
+                [named_law(law.name, law.peak + way * _STEP).position(tau) for way in (-1.0, 1.0)],
+                [fitted(np.clip(tau + way * _STEP, 0.0, 1.0)) for way in (-1.0, 1.0)],
+            )
+        )
+        weight = by_peak / float(by_peak @ by_peak)
+        residual = self.own_law("")(tau) - fitted(tau)
+        noise = float(np.sqrt(np.mean(np.diff(residual, 2) ** 2) / _SECOND_DIFFERENCE))
+        parts = (
+            np.sqrt(_autocorrelated(weight * residual)),
+            noise * float(weight @ (1.0 - fitted(tau))),
+            noise * float(weight @ fitted(tau)),
+            ends_sd[0] * float(weight @ (by_time * (1.0 - tau))),
+            ends_sd[1] * float(weight @ (by_time * tau)),
+        )
+        return float(np.sqrt(np.sum(np.square(parts))))
+
     def own_law(self, place: str) -> LawFunction:
         """Share of the phase's turn that the joint has made, about the axis of the whole turn."""
         whole = dq.log(dq.multiply(dq.conjugate(self.ends[0]), self.ends[1]))[:3]
@@ -132,6 +174,17 @@ class _Phase(NamedTuple):
         tau = np.concatenate([[0.0], self.tau[inner], [1.0]])
         share = np.concatenate([[0.0], half[inner] / turn, [1.0]])
         return lambda x: np.interp(x, tau, share)
+
+
+def _autocorrelated(parts: Float) -> float:
+    """Variance of a sum of parts (N,) that go on for some time: their covariances up to the first that is negative."""
+    total = own = float(parts @ parts)
+    for lag in range(1, parts.size):
+        common = float(parts[lag:] @ parts[:-lag])
+        if common <= 0.0:
+            break
+        total += 2.0 * common
+    return max(total, own)
 
 
 def _least(function: Callable[[float], float], low: float, high: float) -> float:

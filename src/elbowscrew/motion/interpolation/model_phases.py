@@ -77,10 +77,18 @@ def model_phases(
         first = begin[before].min() if before.any() else 0.0, max(begin[after].min(), turn_s) if after.any() else turn_s
         last = min(end[before].max(), turn_s) if before.any() else turn_s, end[after].max() if after.any() else np.inf
         begin, end = np.array(first), np.array(last)
-    return _phases_between(begin, middle, end, elapsed, known)
+    sd = None if given is not None else (movements.stroke_begin_sd_s, movements.stroke_end_sd_s)
+    return _phases_between(begin, middle, end, sd, elapsed, known)
 
 
-def _phases_between(begin: Float, middle: Float, end: Float, elapsed: Float, known: NDArray[np.intp]) -> ModelPhases:
+def _phases_between(
+    begin: Float,
+    middle: Float,
+    end: Float,
+    sd: tuple[Float, Float] | None,
+    elapsed: Float,
+    known: NDArray[np.intp],
+) -> ModelPhases:
     """Phases of strokes (K,) with the times between them (K - 1,): laws run while the joint moves.
 
     The model begins and ends with the movement, at a pose that is known.
@@ -105,7 +113,8 @@ def _phases_between(begin: Float, middle: Float, end: Float, elapsed: Float, kno
     laws = np.where(eases, rows.clip(laws[:, :1], laws[:, 1:]), laws)
     empty = laws[:, 0] >= laws[:, 1]
     laws[empty] = np.column_stack([bounds[:-1], bounds[1:]])[empty]
-    return ModelPhases(bound_rows=bounds.astype(np.int64), law_rows=laws.astype(np.int64))
+    law_sd = None if sd is None else np.column_stack([sd[0][places[:-1]], sd[1][places[1:] - 1]])
+    return ModelPhases(bound_rows=bounds.astype(np.int64), law_rows=laws.astype(np.int64), law_sd_s=law_sd)
 
 
 def _known_rows(seconds: Float, elapsed: Float, known: NDArray[np.intp]) -> Index:

@@ -77,6 +77,8 @@ class Movements:
         Why they are uncertain, codes of `REASONS`.
     stroke_begin_s, stroke_end_s : ndarray, shape (K,)
         The strokes that the movements consist of: motion in one sense.
+    stroke_begin_sd_s, stroke_end_sd_s : ndarray, shape (K,)
+        Their standard deviations.
     outward : ndarray of bool, shape (K,)
         Whether a stroke is outward.
     reverses : ndarray of bool, shape (K - 1,)
@@ -91,6 +93,8 @@ class Movements:
     offset_reasons: tuple[Reasons, ...]
     stroke_begin_s: Float
     stroke_end_s: Float
+    stroke_begin_sd_s: Float
+    stroke_end_sd_s: Float
     outward: Bool
     reverses: Bool
 
@@ -144,7 +148,8 @@ def no_movements() -> Movements:
     none, flags = np.empty(0), np.empty(0, dtype=np.bool_)
     return Movements(
         onset_s=none, offset_s=none, onset_sd_s=none, offset_sd_s=none, onset_reasons=(), offset_reasons=(),
-        stroke_begin_s=none, stroke_end_s=none, outward=flags, reverses=flags,
+        stroke_begin_s=none, stroke_end_s=none,
+        stroke_begin_sd_s=none, stroke_end_sd_s=none, outward=flags, reverses=flags,
     )  # fmt: skip
 
 

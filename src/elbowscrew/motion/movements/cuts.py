@@ -117,6 +117,8 @@ def _movements(strokes: Strokes, rate_hz: float, gaps: Float, *, fast: bool) -> 
         offset_reasons=reasons[1],
         stroke_begin_s=begin,
         stroke_end_s=end,
+        stroke_begin_sd_s=strokes.begin_sd / rate_hz,
+        stroke_end_sd_s=strokes.end_sd / rate_hz,
         outward=strokes.outward,
         reverses=strokes.reverses,
     )
