@@ -157,6 +157,15 @@ JOINT_ANGLE_COLUMNS: Final = {
 }
 """Columns of ``joint_angles.csv``, by how many angles the joint has."""
 
+AXIS_PATH_COLUMNS: Final = (
+    _column("angle", "angle", Quantity.ANGLE),
+    *_components(("axis_x", "axis_y", "axis_z"), "direction", Quantity.NUMBER),
+    *_components(("point_x", "point_y", "point_z"), "point", Quantity.LENGTH),
+    _column("axis_sd", "axis_sd", Quantity.ANGLE),
+    _column("point_sd", "point_sd", Quantity.LENGTH),
+    _column("frames", "frames", Quantity.INTEGER),
+)
+
 MOTION_COLUMNS: Final = (
     _column("frame", "frame", Quantity.INTEGER),
     _column("time_s", "time_s", Quantity.NUMBER),
@@ -272,6 +281,7 @@ TABLES: Final = {
     "repetition_curve": CURVE_COLUMNS,
     "anatomy": ANATOMY_COLUMNS,
     "joint_angles": JOINT_ANGLE_COLUMNS[2],
+    "axis_path": AXIS_PATH_COLUMNS,
 }
 """The tables of a result, each a file of its name, and their columns: those of the joint's angles with two axes."""
 

@@ -371,6 +371,7 @@ def test_terminal(told: Told) -> None:
         "Inversion": listed(motion["inversion_frames"]),
         "Slide": [dec(motion[f"slide_{kind}_mm"]) for kind in ("median", "min", "max")],
         "Mean axis": [*vec(motion["mean_axis"]["direction"], 4), *vec(motion["mean_axis"]["point_mm"], 1)],
+        "Joint": numbers(told.joint["joint_type"]["reason"]),
         "Joint axis": joint_axis_numbers(told),
         "Dispersion": [
             dec(motion["axis_dispersion_deg"]),
@@ -401,7 +402,14 @@ def test_terminal(told: Told) -> None:
 def joint_axis_numbers(told: Told) -> list[str]:
     axis, found = told.summary["motion"]["joint_axis"], told.joint["joint_type"]
     if axis is not None:
-        fit = told.joint[told.joint["preferred"]]
+        fit = told.joint[told.joint["preferred"]] | (told.joint["mean_axis"] or {})
+        wander, second = told.joint["wander"], told.joint["second_rotation"]
+        beside: list[str] = []
+        if wander is not None:
+            names = ("size_deg", "size_mm") if wander["significant"] else ("unseen_deg",)
+            beside += [f"{wander[name]:.2g}" for name in names]
+        if second is not None:
+            beside += [f"{second['range_deg']:.2g}", *(vec(second["axis"]["direction"], 4) if second["axis"] else [])]
         return [
             *vec(fit["direction"], 4),
             f"{fit['axis_cone95_deg']:.2g}",
@@ -409,14 +417,16 @@ def joint_axis_numbers(told: Told) -> list[str]:
             f"{fit['point_radius95_mm']:.2g}",
             "95",
             f"{fit['sensitivity_deg_per_deg']:.2g}",
+            *beside,
         ]
     if found["type"] == "two_axes":
-        axes = found["two_axes"]
+        axes = told.joint["two_axes"]
         told_axes = []
         for k, body in ((1, "proximal"), (2, "distal")):
             axis = axes[f"axis{k}"]
             told_axes += [str(k), *vec(axis[f"direction_in_{body}"], 4), f"{axis['cone95_deg']:.2g}"]
             told_axes += [dec(axis["range_deg"], 0)]
         return [*told_axes, dec(axes["angle_between_deg"], 1), dec(abs(axes["distance_mm"]), 1), "95"]
-    ball = found["ball"]
-    return [*vec(ball["center_in_proximal_mm"], 1), f"{ball['radius95_mm']:.2g}", "95"]
+    ball = told.joint["ball"]
+    within = [] if ball["radius95_mm"] is None else [f"{ball['radius95_mm']:.2g}"]
+    return [*vec(ball["center_in_proximal_mm"], 1), *within, "95"]

@@ -35,13 +35,14 @@ NOT_IN_TABLES_OF_JOINT = {
     r"(screw_)?hinge\.(noise_ratio|frames_that_count_as_one)": "tests/motion/joint/test_joint_axis.py",
     r"screw_hinge\.pitch_sd_mm_per_rad": "tests/motion/joint/test_interval.py",
     # Fits of other joints than hinges: recovered from motions that were made so.
-    r"joint_type\.(type|status|reason|candidates.*|second_rotation|two_axes|ball|decided_by|interval_method)": (
+    r"joint_type\.(type|status|reason|candidates.*)|two_axes|ball|second_rotation.*": (
         "tests/motion/joint/test_joint_type.py"
     ),
-    r"joint_type\.two_axes\.axis.*": f"{HERE}::test_two_axes_are_those_of_the_motion",
-    r"joint_type\.two_axes\..*_(low|high)": f"{HERE}::test_two_axes_are_those_of_the_motion",
-    r"joint_type\.two_axes\.parallel_offset_mm": "tests/motion/joint/test_joint_type.py",
-    r"joint_type\.ball\..*": f"{HERE}::test_the_center_of_a_ball",
+    r"joint_type\.(decided_by|interval_method)": f"{HERE}::test_intervals_name_their_source",
+    r"two_axes\.axis.*": f"{HERE}::test_two_axes_are_those_of_the_motion",
+    r"two_axes\..*_(low|high)": f"{HERE}::test_two_axes_are_those_of_the_motion",
+    r"two_axes\.parallel_offset_mm": "tests/motion/joint/test_joint_type.py",
+    r"ball\..*": f"{HERE}::test_the_center_of_a_ball",
     # Of bodies without markers.
     r"noise\.(proximal|distal)(\..*)?": (
         "tests/motion/screws/test_uncertainty.py::test_each_source_finds_the_noise_there_is"
@@ -56,7 +57,7 @@ CLOSE = {
     r"(screw_)?hinge\.residual_rotation_deg": 1e-5,
     r"(screw_)?hinge\.(residual_translation_mm|sensitivity_deg_per_deg|pitch_mm_per_rad)|unexplained_share": 1e-2,
     # Each axis is told in the other body by the reference pose, noise and all.
-    r"joint_type\.two_axes\.(angle_between_deg|distance_mm)": 1e-2,
+    r"two_axes\.(angle_between_deg|distance_mm)": 1e-2,
 }
 NAMES = {
     "paper": ("elbow", "upper arm", "forearm", None),
@@ -183,6 +184,13 @@ def test_intervals_name_their_source(told: Told) -> None:
             # 95 % of a normal error in two directions lies within 1.73 (alike) to 1.96 (one alone) standard deviations.
             for cone, sd in (("axis_cone95_deg", "axis_sd_deg"), ("point_radius95_mm", "point_sd_mm")):
                 assert 1.73 <= fit[cone] / fit[sd] <= 1.961
+    kind, head = told.joint["joint_type"], told.joint["mean_axis"]
+    if told.joint["preferred"] is not None:
+        head = head or told.joint[told.joint["preferred"]]
+        assert (kind["decided_by"], kind["interval_method"]) == (head["decided_by"], head["interval_method"])
+    else:
+        words = {"A": "markers' motion", "B": "residuals of the joint's model", "J": "blocks"}[kind["decided_by"]]
+        assert words in kind["interval_method"]
 
 
 def test_the_curve_of_a_selection(told: Told) -> None:
@@ -205,7 +213,7 @@ def test_the_curve_of_a_selection(told: Told) -> None:
 
 def test_two_axes_are_those_of_the_motion(told: Told) -> None:
     """Directions, places and ranges that the motion was made with; twice the radius that holds 95 %."""
-    axes = told.joint["joint_type"]["two_axes"]
+    axes = told.joint["two_axes"]
     if axes is None:
         return
     time = np.linspace(0.0, 1.0, 240)
@@ -241,7 +249,7 @@ def test_two_axes_are_those_of_the_motion(told: Told) -> None:
 
 
 def test_the_center_of_a_ball(told: Told) -> None:
-    ball = told.joint["joint_type"]["ball"]
+    ball = told.joint["ball"]
     if ball is not None:
         assert ball["center_in_proximal_mm"] == pytest.approx([30.0, 1200.0, 80.0], abs=1e-3)
         assert ball["center_in_distal_mm"] == pytest.approx([0.0, 250.0, 0.0], abs=1e-3)

@@ -331,7 +331,7 @@ def of_joint_angles(told: Told) -> set[str]:
     if kind == "ball":
         assert np.allclose(angles[valid], np.degrees(turned.as_rotvec()), atol=1e-3)
     elif kind == "two_axes":
-        axes = told.joint["joint_type"]["two_axes"]
+        axes = told.joint["two_axes"]
         directions = [np.array(axes[f"axis{k}"]["direction_in_proximal"]) for k in (1, 2)]
         about = [Rotation.from_rotvec(np.outer(np.radians(angles[:, k]), directions[k])) for k in (0, 1)]
         left = (about[0] * about[1])[valid].inv() * turned

@@ -376,12 +376,14 @@ def _motion(told: Told) -> dict[str, Any]:
         "axis_distance_rms_mm": rms(distance),
         "single_axis": joint["single_axis"],
         "joint_type": joint["joint_type"],
+        "joint_numbers": {name: joint[name] for name in ("two_axes", "ball", "second_rotation", "wander")},
         "joint_axis": None
         if best is None
         else {
             "model": joint["preferred"],
+            "is_mean": joint["mean_axis"] is not None,
             **{
-                name: best[name]
+                name: (best if joint["mean_axis"] is None else best | joint["mean_axis"])[name]
                 for name in (
                     "direction",
                     "point_mm",
@@ -586,9 +588,15 @@ def joint_of(told: Told) -> dict[str, Any]:
             }
     else:
         found |= {"hinge": None, "screw_hinge": None, "preferred": None, "single_axis": False}
-    axes = joint["joint_type"]["two_axes"]
+    axes = joint["two_axes"]
     if axes is not None:
-        found["joint_type"] = {"type": "two_axes", "two_axes": _two_axes(axes)}
+        found["joint_type"] = {"type": "two_axes"}
+        found["two_axes"] = _two_axes(axes) | {
+            f"axis{k}": as_shown(told, axes[f"axis{k}"], nearest=False) for k in (1, 2)
+        }
+    best = None if joint["preferred"] is None else joint[joint["preferred"]]
+    found["sensitivity_deg_per_deg"] = None if best is None else best["sensitivity_deg_per_deg"]
+    found["skin_motion"] = None
     found["anatomy"] = None if joint["anatomy"] is None else _anatomy(told)
     return found
 
@@ -621,14 +629,14 @@ def in_all_frames(told: Told, direction: Float, point: Float) -> dict[str, Any]:
     return found
 
 
-def as_shown(told: Told, line: Any) -> dict[str, Any]:
+def as_shown(told: Told, line: Any, *, nearest: bool = True) -> dict[str, Any]:
     """Direction and point of a line in the frame of the screws: as in that body, or carried by the proximal one."""
     body = "distal" if told.frame_of_screws == "distal" else "proximal"
     n, p = np.array(line[f"direction_in_{body}"]), np.array(line[f"point_in_{body}_mm"])
     if told.frame_of_screws == "lab":
         R, t = pose_of(told.joint["bodies"]["proximal_in_lab"])
         n, p = R @ n, R @ p + t
-    return {"direction": n, "point_mm": p - (p @ n) * n}
+    return {"direction": n, "point_mm": p - (p @ n) * n if nearest else p}
 
 
 def _sara(told: Told) -> dict[str, Any]:

@@ -16,7 +16,12 @@ from elbowscrew.cli.text import NobodyReads, one_line, printable
 
 if TYPE_CHECKING:
     from elbowscrew.model.comparison_summary_types import ComparisonSummary, ModelChoice, TrialsSummary
-    from elbowscrew.model.joint_summary_types import JointLineSummary, JointTypeSummary
+    from elbowscrew.model.joint_summary_types import (
+        JointLineSummary,
+        JointTypeSummary,
+        SecondRotationSummary,
+        WanderSummary,
+    )
     from elbowscrew.model.summary_types import (
         AnalysisSummary,
         FileSummary,
@@ -87,6 +92,7 @@ def analysis_table(summary: AnalysisSummary, folder: Path) -> None:
             f"direction ({_vector(motion['mean_axis']['direction'], 4)}), "
             f"point ({_vector(motion['mean_axis']['point_mm'], 1)}) mm, in the {motion['expressed_in']} frame",
         ),
+        ("Joint", _joint(motion["joint_type"])),
         ("Joint axis", _joint_axis(motion)),
         (
             "Dispersion",
@@ -279,36 +285,63 @@ def _vector(values: Iterable[float], decimals: int) -> str:
     return ", ".join(f"{value:z.{decimals}f}" for value in values)
 
 
+def _joint(found: JointTypeSummary) -> str:
+    status = {"forced": " (as stated)", None: ""}.get(found["status"], f" ({found['status']})")
+    return f"{found['type'].replace('_', '-' if 'hinge' in found['type'] else ' ')}{status}: {found['reason']}"
+
+
 def _joint_axis(motion: MotionSummary) -> str:
-    axis = motion["joint_axis"]
+    axis, numbers = motion["joint_axis"], motion["joint_numbers"]
     if axis is None:
-        return _joint_type(motion["joint_type"])
+        return _axes_or_center(motion)
     model = axis["model"].replace("_", "-")
     direction, point = _vector(axis["direction"], 4), _vector(axis["point_mm"], 1)
+    beside = _wander(numbers["wander"]) + _second_rotation(numbers["second_rotation"])
     if axis["axis_cone95_deg"] is None:
-        return f"direction ({direction}), point ({point}) mm ({model}; undetermined: no interval can be given)"
+        return f"direction ({direction}), point ({point}) mm ({model}; undetermined: no interval can be given){beside}"
+    which = f"mean axis of a {model} whose axis wanders" if axis["is_mean"] else model
     return (
         f"direction ({direction}) within {axis['axis_cone95_deg']:.2g} deg, point ({point}) within "
-        f"{axis['point_radius95_mm']:.2g} mm ({model}, 95 %, for the clusters' frames, {axis['interval_method']}; "
+        f"{axis['point_radius95_mm']:.2g} mm ({which}, 95 %, for the clusters' frames, {axis['interval_method']}; "
         f"each degree that a cluster turns on its bone with the motion turns this axis by up to "
-        f"{axis['sensitivity_deg_per_deg']:.2g} deg)"
+        f"{axis['sensitivity_deg_per_deg']:.2g} deg){beside}"
     )
 
 
-def _joint_type(found: JointTypeSummary) -> str:
-    axes, ball = found["two_axes"], found["ball"]
+def _wander(found: WanderSummary | None) -> str:
+    """How far the axis goes with the angle, or what would not be seen."""
+    if found is None or found["size_deg"] is None or found["unseen_deg"] is None:
+        return ""
+    if not found["significant"]:
+        return f"; the axis stays: a wander below {found['unseen_deg']:.2g} deg would not be seen"
+    return f"; it wanders by {found['size_deg']:.2g} deg and {found['size_mm']:.2g} mm over the range (axis_path.csv)"
+
+
+def _second_rotation(found: SecondRotationSummary | None) -> str:
+    if found is None or found["range_deg"] is None:
+        return ""
+    axis = found["axis"]
+    which = "its axis undetermined" if axis is None else f"about ({_vector(axis['direction'], 4)})"
+    return f"; second rotation {found['range_deg']:.2g} deg, {which}"
+
+
+def _axes_or_center(motion: MotionSummary) -> str:
+    found, axes, ball = motion["joint_type"], motion["joint_numbers"]["two_axes"], motion["joint_numbers"]["ball"]
     if axes is not None:
         told = f"{_one_of_two(axes['axis1'], 'proximal')}; {_one_of_two(axes['axis2'], 'distal')}"
         apart = f"{axes['angle_between_deg']:.1f} deg"
         if axes["distance_mm"] is not None:
             apart += f" and {abs(axes['distance_mm']):.1f} mm"
-        return f"two axes ({found['status']}): {told}; {apart} apart ({_stands_on(found)})"
+        elif axes["parallel_offset_mm"] is not None:
+            apart = f"parallel, {axes['parallel_offset_mm']:.1f} mm"
+        return f"{told}; {apart} apart ({_stands_on(found)})"
     if ball is not None:
+        within = "" if ball["radius95_mm"] is None else f" within {ball['radius95_mm']:.2g} mm"
         return (
-            f"ball ({found['status']}): center ({_vector(ball['center_in_proximal_mm'], 1)}) mm in the proximal body "
-            f"within {ball['radius95_mm']:.2g} mm ({_stands_on(found)})"
+            f"center ({_vector(ball['center_in_proximal_mm'], 1)}) mm in the proximal body{within} "
+            f"({_stands_on(found)})"
         )
-    return f"none: the motion has no single axis ({found['type'].replace('_', ' ')}: {found['reason']})"
+    return "none"
 
 
 def _stands_on(found: JointTypeSummary) -> str:

@@ -68,6 +68,8 @@ class FittedJoint(ArrayRecord):
         Half-angle (rad) and radius (m) that hold 95 % for the clusters' frames, the radius about the line's point
         nearest the origin; as the standard deviations, NaN where they are not known: the frames are too few to tell,
         or leave the direction more than a right angle undetermined.
+    skin_cone, skin_radius : float
+        Part that the stated motion of the clusters as a whole has in cone (rad) and radius (m), in quadrature.
     decided_by : {"A", "B", "J"} or None
         What the cone stands on: the markers' own motion, the residuals' spectrum, or blocks of the motion.
     pitch, pitch_sd : float
@@ -94,6 +96,8 @@ class FittedJoint(ArrayRecord):
     point_sd: float
     axis_cone: float
     point_radius: float
+    skin_cone: float
+    skin_radius: float
     decided_by: Literal["A", "B", "J"] | None
     pitch: float
     pitch_sd: float
@@ -140,7 +144,7 @@ class MeanLine(ArrayRecord):
     ----------
     line : LineEstimate
         As expressed it is the mean of `AxisPath`; in each body, the mean of the places the axis takes in that body.
-    axis_sd, point_sd, axis_cone, point_radius : float
+    axis_sd, point_sd, axis_cone, point_radius, skin_cone, skin_radius : float
         As those of `FittedJoint`.
     decided_by : {"A", "B", "J"} or None
     """
@@ -150,6 +154,8 @@ class MeanLine(ArrayRecord):
     point_sd: float
     axis_cone: float
     point_radius: float
+    skin_cone: float
+    skin_radius: float
     decided_by: Literal["A", "B", "J"] | None
 
 

@@ -121,13 +121,9 @@ class CandidateSummary(TypedDict):
     """Whether the frames determine it."""
 
 
-class JointLineSummary(TypedDict):
-    """One of two axes, in the frames of the bodies with the joint in its reference pose."""
+class JointLineSummary(EstimateSummary):
+    """One of two axes, with the joint in its reference pose; the point is where the radius holds."""
 
-    direction_in_proximal: Vector
-    point_in_proximal_mm: Vector
-    direction_in_distal: Vector
-    point_in_distal_mm: Vector
     cone95_deg: float | None
     """Half-angle of the cone that holds the direction with 95 %."""
     radius95_mm: float | None
@@ -174,6 +170,8 @@ class BallSummary(TypedDict):
     center_in_distal_mm: Vector
     radius95_mm: float | None
     """Radius that holds the center in the proximal body with 95 %."""
+    semi_axes95_mm: list[Vector] | None
+    """Semi-axes of the ellipsoid that holds it with 95 %, in the proximal body."""
 
 
 class SecondRotationSummary(TypedDict):
@@ -192,12 +190,32 @@ class JointTypeSummary(TypedDict):
     reason: str
     candidates: list[CandidateSummary]
     """The types that were tried, simplest first."""
+    decided_by: Literal["A", "B", "J"] | None
+    """What the intervals of the joint stand on, in a letter: markers, residuals or blocks."""
+    interval_method: str | None
+    """What the intervals of the joint stand on, in words."""
+
+
+class SkinMotionSummary(TypedDict):
+    """How far each cluster is stated to move as a whole on its bone, and its part in the axis' interval."""
+
+    mm: float
+    deg: float
+    part_deg: float | None
+    """In the cone; it adds in quadrature."""
+    part_mm: float | None
+    """In the radius."""
+
+
+class NumbersOfType(TypedDict):
+    """The numbers of a joint's type; None where they do not apply."""
+
     two_axes: TwoAxesSummary | None
     ball: BallSummary | None
     second_rotation: SecondRotationSummary | None
-    decided_by: Literal["A", "B", "J"] | None
-    interval_method: str | None
-    """What the intervals of two axes and of a center are based on."""
+    """What rotates beside a hinge; None also where it was not looked for."""
+    wander: WanderSummary | None
+    """None where it is not known."""
 
 
 class DispersionSummary(TypedDict):
@@ -283,7 +301,7 @@ class BodiesSummary(TypedDict):
     distal_markers_mm: list[Vector] | None
 
 
-class JointSummary(TypedDict):
+class JointSummary(NumbersOfType):
     """What ``joint.json`` holds: the joint as a whole, by all estimators."""
 
     expressed_in: ExpressIn
@@ -297,10 +315,12 @@ class JointSummary(TypedDict):
     """RMS rotation that a hinge leaves over the RMS rotation about it."""
     hinge: FitSummary | None
     screw_hinge: FitSummary | None
-    wander: WanderSummary | None
-    """None where it is not known."""
     mean_axis: MeanAxisSummary | None
-    """None where the axis does not wander."""
+    """The headline where the axis wanders; None where it does not."""
+    sensitivity_deg_per_deg: float | None
+    """Degrees that the preferred fit's axis turns for each degree that a cluster turns on its bone with the motion."""
+    skin_motion: SkinMotionSummary | None
+    """None where none is stated."""
     weighted_mean: EstimateSummary
     """Mean of the finite helical axes with weights sin^2(theta/2)."""
     sara: EstimateSummary

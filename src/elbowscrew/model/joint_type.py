@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Final, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,11 +11,15 @@ from numpy.typing import NDArray
 from elbowscrew import choices, tables
 from elbowscrew.choices import StatedJoint
 from elbowscrew.geometry.arrays import Float
+from elbowscrew.geometry.sensitivity import NORMAL_95
 from elbowscrew.model.array_record import ArrayRecord
 from elbowscrew.model.joint_coordinates import JointCoordinates
 
 if TYPE_CHECKING:
     import pandas as pd
+
+BALL_95: Final = 2.795483
+"""Radius that holds 95 % of three normal errors alike: root of the quantile of chi-square with 3 degrees of freedom."""
 
 JointTypeName = Literal[StatedJoint, "undetermined"]
 
@@ -139,6 +143,22 @@ class BallJoint(ArrayRecord):
     center_distal: Float
     covariance: Float
     radius: float
+
+    @property
+    def semi_axes(self) -> Float:
+        """Semi-axes (3, 3), a row each, m, of the ellipsoid that holds 95 % of the center in the proximal body.
+
+        The covariance gives its shape, the radius its size.
+        """
+        block = self.covariance[:3, :3]
+        if not (np.isfinite(block).all() and np.trace(block) > 0.0):
+            return np.full((3, 3), np.nan)
+        values, vectors = np.linalg.eigh(block / np.trace(block))
+        # A radius holds 95 % at 1.96 standard deviations of one direction alone, at 2.795/sqrt(3) of three alike.
+        roundness = (1.0 / values[-1] - 1.0) / 2.0
+        factor = NORMAL_95 + (BALL_95 / np.sqrt(3.0) - NORMAL_95) * roundness
+        found: Float = BALL_95 * self.radius / factor * np.sqrt(np.maximum(values, 0.0))[:, None] * vectors.T
+        return found
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)

@@ -13,7 +13,7 @@ from typing_extensions import TypedDict
 
 from elbowscrew.choices import BlendName, ExpressIn, KnotName, LawName, MethodName
 from elbowscrew.model.anatomy import LandmarkFrame, Side
-from elbowscrew.model.joint_summary_types import FitName, JointTypeSummary, LineSummary, Vector
+from elbowscrew.model.joint_summary_types import FitName, JointTypeSummary, LineSummary, NumbersOfType, Vector
 
 
 class SourceSummary(TypedDict):
@@ -153,9 +153,11 @@ class MovementSummary(TypedDict):
 
 
 class JointAxisSummary(LineSummary):
-    """The preferred fit of the joint's axis; all of it stands in ``joint.json``."""
+    """The joint's axis, of one that wanders its mean; all of it stands in ``joint.json``."""
 
     model: FitName
+    is_mean: bool
+    """Whether the axis wanders, so that this is its mean over the range."""
     axis_cone95_deg: float | None
     """Half-angle of the cone that holds the direction with 95 %."""
     point_radius95_mm: float | None
@@ -205,6 +207,8 @@ class MotionSummary(TypedDict):
     single_axis: bool
     """Whether the motion has one axis at all."""
     joint_type: JointTypeSummary
+    joint_numbers: NumbersOfType
+    """Those of `joint_type`."""
     joint_axis: JointAxisSummary | None
     """None where the motion has no single axis."""
 

@@ -17,7 +17,7 @@ from PIL import Image
 from elbowscrew._process import has_spare_cores
 from elbowscrew.model import Analysis
 from elbowscrew.plots.figures import WIDTH_MM
-from elbowscrew.plots.registry import figure_function
+from elbowscrew.plots.registry import figure_function, has_figure
 from elbowscrew.plots.style import publication_style, settle
 from elbowscrew.results.trial_views import view_of
 from elbowscrew.view.trial_view import TrialView
@@ -47,10 +47,11 @@ def figure_files(
     Returns
     -------
     dict of str to bytes
-        Files by name, as in ``theta.png``.
+        Files by name, as in ``theta.png``; of figures that the trial has nothing for, none.
     """
     view = view_of(trial)
-    return files_of({name: partial(figure_function(name), view, width_mm=width_mm) for name in names}, formats)
+    drawn = [name for name in names if has_figure(name, view)]
+    return files_of({name: partial(figure_function(name), view, width_mm=width_mm) for name in drawn}, formats)
 
 
 def files_of(drawings: Mapping[str, Callable[[], Figure]], formats: Sequence[str]) -> dict[str, bytes]:

@@ -43,6 +43,7 @@ _FILES: Final = (
     ("anatomy.csv", "anatomical angles"),
     ("summary.json", "results, quality, settings, provenance"),
     ("joint_angles.csv", "the joint's own angles, frame by frame"),
+    ("axis_path.csv", "the joint's axis against its angle"),
     ("joint.json", "joint axis by all estimators"),
 )
 

@@ -11,7 +11,6 @@ from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat
 from elbowscrew.model import (
     Analysis,
     AnatomicalMotion,
-    AxisWander,
     FittedJoint,
     LineEstimate,
     MeanLine,
@@ -29,11 +28,11 @@ from elbowscrew.model.joint_summary_types import (
     NoiseSummary,
     PoseSummary,
     RepeatabilitySummary,
+    SkinMotionSummary,
     Vector,
-    WanderSummary,
 )
 from elbowscrew.motion.screws.frames import frame_called
-from elbowscrew.results.joint_type_summary import INTERVAL_METHODS, joint_type_summary
+from elbowscrew.results.joint_type_summary import INTERVAL_METHODS, joint_type_summary, numbers_of_type
 from elbowscrew.results.statistics import known, rms, statistic
 
 
@@ -48,8 +47,10 @@ def joint_summary(analysis: Analysis) -> JointSummary:
         "unexplained_share": known(axis.unexplained) if axis.unexplained <= 1.0 else None,
         "hinge": _fitted(axis.hinge),
         "screw_hinge": _fitted(axis.screw_hinge),
-        "wander": _wander(axis.wander),
+        **numbers_of_type(analysis),
         "mean_axis": _mean_axis(axis.mean_axis),
+        "sensitivity_deg_per_deg": None if axis.best is None else known(axis.best.sensitivity),
+        "skin_motion": _skin_motion(analysis),
         "weighted_mean": _line(axis.weighted_mean),
         "sara": _line(axis.sara),
         "dispersion": dispersion_summary(analysis),
@@ -106,17 +107,16 @@ def _fitted(fit: FittedJoint | None) -> FitSummary | None:
     }
 
 
-def _wander(wander: AxisWander | None) -> WanderSummary | None:
-    if wander is None:
+def _skin_motion(analysis: Analysis) -> SkinMotionSummary | None:
+    """What is stated of the clusters' motion as a whole, and its part in the interval of the headline's axis."""
+    stated, axis = analysis.settings.skin_motion, analysis.joint_axis.headline
+    if stated is None:
         return None
     return {
-        "size_deg": known(np.degrees(wander.turn)),
-        "size_sd_deg": known(np.degrees(wander.turn_sd)),
-        "size_mm": known(1000.0 * wander.shift),
-        "size_sd_mm": known(1000.0 * wander.shift_sd),
-        "unseen_deg": known(np.degrees(wander.unseen_turn)),
-        "unseen_mm": known(1000.0 * wander.unseen_shift),
-        "significant": wander.significant,
+        "mm": stated[0],
+        "deg": stated[1] if len(stated) > 1 else 0.0,
+        "part_deg": None if axis is None else known(np.degrees(axis.skin_cone)),
+        "part_mm": None if axis is None else known(1000.0 * axis.skin_radius),
     }
 
 

@@ -6,17 +6,24 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
+from elbowscrew.choices import ExpressIn
+from elbowscrew.geometry.arrays import Float
+from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat, transform_points
+from elbowscrew.geometry.quaternion import rotate
 from elbowscrew.geometry.sensitivity import NORMAL_95
-from elbowscrew.model import Analysis
+from elbowscrew.model import Analysis, AxisWander
 from elbowscrew.model.joint_summary_types import (
     BallSummary,
     CandidateSummary,
     JointLineSummary,
     JointTypeSummary,
+    NumbersOfType,
     SecondRotationSummary,
     TwoAxesSummary,
+    WanderSummary,
 )
-from elbowscrew.model.joint_type import BallJoint, JointLine, JointTypeName, Measure, SecondRotation, TwoAxes
+from elbowscrew.model.joint_type import BallJoint, JointLine, Measure, SecondRotation, TwoAxes
+from elbowscrew.motion.screws.frames import frame_called
 from elbowscrew.results.statistics import known
 
 _MILLIMETERS: Final = 1000.0
@@ -27,26 +34,21 @@ INTERVAL_METHODS: Final = {
     "J": "from blocks of the motion",
 }
 """What an interval stands on."""
+_NO_REASON: Final = "the positions tell nothing of where the joint is"
 
 
 def joint_type_summary(analysis: Analysis) -> JointTypeSummary:
-    """Type, status and reason; of two axes and of a center their numbers."""
-    found, axis = analysis.joint_type, analysis.joint_axis
+    """Type, status, reason, and what the joint's intervals stand on."""
+    found, axis = analysis.joint_type, analysis.joint_axis.headline
+    decided = axis.decided_by if axis is not None else None if found is None else found.decided_by
     if found is None:
-        kind: JointTypeName = axis.preferred or "undetermined"
-        reason = f"one axis leaves {100.0 * axis.unexplained:.2g} % of the rotation; richer types were not tried"
-        if axis.preferred is None:
-            reason = "the positions tell nothing of where the joint is"
         return {
-            "type": kind,
-            "status": None if axis.preferred is None else "approximate",
-            "reason": reason,
+            "type": "undetermined",
+            "status": None,
+            "reason": _NO_REASON,
             "candidates": [],
-            "two_axes": None,
-            "ball": None,
-            "second_rotation": None,
-            "decided_by": None,
-            "interval_method": None,
+            "decided_by": decided,
+            "interval_method": None if decided is None else INTERVAL_METHODS[decided],
         }
     candidates: list[CandidateSummary] = [
         {
@@ -65,11 +67,55 @@ def joint_type_summary(analysis: Analysis) -> JointTypeSummary:
         "status": found.status,
         "reason": found.reason,
         "candidates": candidates,
-        "two_axes": None if found.two_axes is None else _two_axes(found.two_axes),
-        "ball": None if found.ball is None else _ball(found.ball),
-        "second_rotation": None if found.second_rotation is None else _second_rotation(found.second_rotation),
-        "decided_by": found.decided_by,
-        "interval_method": None if found.decided_by is None else INTERVAL_METHODS[found.decided_by],
+        "decided_by": decided,
+        "interval_method": None if decided is None else INTERVAL_METHODS[decided],
+    }
+
+
+def numbers_of_type(analysis: Analysis) -> NumbersOfType:
+    """Give the numbers of the joint's type, those that do not apply as None."""
+    found, frame = analysis.joint_type, _Frame.of(analysis)
+    two, ball, second = (None,) * 3 if found is None else (found.two_axes, found.ball, found.second_rotation)
+    return {
+        "two_axes": None if two is None else _two_axes(two, frame),
+        "ball": None if ball is None else _ball(ball),
+        "second_rotation": None if second is None else _second_rotation(second, frame),
+        "wander": _wander(analysis.joint_axis.wander),
+    }
+
+
+class _Frame(NamedTuple):
+    """The frame that lines are expressed in, and the proximal body's pose in the laboratory."""
+
+    name: ExpressIn
+    proximal_in_lab: Float
+
+    @classmethod
+    def of(cls, analysis: Analysis) -> _Frame:
+        name = frame_called(analysis.settings.express_in, analysis.named_joint)[0]
+        return cls(name, analysis.joint.dual_quat_lab_proximal)
+
+    def line(self, line: JointLine) -> tuple[Float, Float]:
+        """Direction and point of a line."""
+        if self.name == "distal":
+            return line.direction_distal, line.point_distal
+        if self.name == "proximal":
+            return line.direction_proximal, line.point_proximal
+        quat = pose_from_dual_quat(self.proximal_in_lab)[0]
+        return rotate(quat, line.direction_proximal), transform_points(self.proximal_in_lab, line.point_proximal)
+
+
+def _wander(wander: AxisWander | None) -> WanderSummary | None:
+    if wander is None:
+        return None
+    return {
+        "size_deg": known(_DEGREES * wander.turn),
+        "size_sd_deg": known(_DEGREES * wander.turn_sd),
+        "size_mm": known(_MILLIMETERS * wander.shift),
+        "size_sd_mm": known(_MILLIMETERS * wander.shift_sd),
+        "unseen_deg": known(_DEGREES * wander.unseen_turn),
+        "unseen_mm": known(_MILLIMETERS * wander.unseen_shift),
+        "significant": wander.significant,
     }
 
 
@@ -78,20 +124,24 @@ def _ball(found: BallJoint) -> BallSummary:
         "center_in_proximal_mm": (_MILLIMETERS * found.center_proximal).tolist(),
         "center_in_distal_mm": (_MILLIMETERS * found.center_distal).tolist(),
         "radius95_mm": known(_MILLIMETERS * found.radius),
+        "semi_axes95_mm": (_MILLIMETERS * found.semi_axes).tolist() if np.isfinite(found.semi_axes).all() else None,
     }
 
 
-def _second_rotation(found: SecondRotation) -> SecondRotationSummary:
-    return {"range_deg": known(_DEGREES * found.range), "axis": None if found.axis is None else _line(found.axis)}
+def _second_rotation(found: SecondRotation, frame: _Frame) -> SecondRotationSummary:
+    return {
+        "range_deg": known(_DEGREES * found.range),
+        "axis": None if found.axis is None else _line(found.axis, frame),
+    }
 
 
-def _two_axes(found: TwoAxes) -> TwoAxesSummary:
+def _two_axes(found: TwoAxes, frame: _Frame) -> TwoAxesSummary:
     angle, distance = _measure(found.angle_between, _DEGREES), _measure(found.distance, _MILLIMETERS)
     offset = _measure(found.offset, _MILLIMETERS)
     foot1, foot2 = _measure(found.foot1, _MILLIMETERS), _measure(found.foot2, _MILLIMETERS)
     return {
-        "axis1": _line(found.axis1),
-        "axis2": _line(found.axis2),
+        "axis1": _line(found.axis1, frame),
+        "axis2": _line(found.axis2, frame),
         "angle_between_deg": angle.value,
         "angle_between_deg_low": angle.low,
         "angle_between_deg_high": angle.high,
@@ -110,9 +160,12 @@ def _two_axes(found: TwoAxes) -> TwoAxesSummary:
     }
 
 
-def _line(line: JointLine) -> JointLineSummary:
+def _line(line: JointLine, frame: _Frame) -> JointLineSummary:
+    direction, point = frame.line(line)
     determined = line.determined and line.axis_cone < 0.5 * np.pi
     return {
+        "direction": direction.tolist(),
+        "point_mm": (_MILLIMETERS * point).tolist(),
         "direction_in_proximal": line.direction_proximal.tolist(),
         "point_in_proximal_mm": (_MILLIMETERS * line.point_proximal).tolist(),
         "direction_in_distal": line.direction_distal.tolist(),

@@ -29,7 +29,7 @@ from elbowscrew.model.summary_types import (
     TrialSummary,
 )
 from elbowscrew.motion.screws.frames import frame_called
-from elbowscrew.results.joint_type_summary import INTERVAL_METHODS, joint_type_summary
+from elbowscrew.results.joint_type_summary import INTERVAL_METHODS, joint_type_summary, numbers_of_type
 from elbowscrew.results.recording_summary import quality_summary, recording_summary, source_summary, warnings_summary
 from elbowscrew.results.statistics import known, rms, statistic
 from elbowscrew.settings import Settings
@@ -167,23 +167,26 @@ def _motion(analysis: Analysis) -> MotionSummary:
         "axis_distance_rms_mm": statistic(rms, 1000.0 * axis.distance),
         "single_axis": analysis.joint_axis.single,
         "joint_type": joint_type_summary(analysis),
+        "joint_numbers": numbers_of_type(analysis),
         "joint_axis": _joint_axis(analysis.joint_axis),
     }
 
 
 def _joint_axis(axis: JointAxis) -> JointAxisSummary | None:
-    """Say the preferred fit with its interval; the rest stands in ``joint.json``."""
-    if axis.best is None or axis.preferred is None:
+    """Say the axis with its interval, of one that wanders its mean; the rest stands in ``joint.json``."""
+    told, best = axis.headline, axis.best
+    if told is None or best is None or axis.preferred is None:
         return None
     return {
         "model": axis.preferred,
-        "direction": axis.best.line.direction.tolist(),
-        "point_mm": (1000.0 * axis.best.line.point).tolist(),
-        "axis_cone95_deg": known(np.degrees(axis.best.axis_cone)),
-        "point_radius95_mm": known(1000.0 * axis.best.point_radius),
-        "pitch_mm_per_rad": 1000.0 * axis.best.pitch,
-        "interval_method": None if axis.best.decided_by is None else INTERVAL_METHODS[axis.best.decided_by],
-        "sensitivity_deg_per_deg": known(axis.best.sensitivity),
+        "is_mean": axis.mean_axis is not None,
+        "direction": told.line.direction.tolist(),
+        "point_mm": (1000.0 * told.line.point).tolist(),
+        "axis_cone95_deg": known(np.degrees(told.axis_cone)),
+        "point_radius95_mm": known(1000.0 * told.point_radius),
+        "pitch_mm_per_rad": 1000.0 * best.pitch,
+        "interval_method": None if told.decided_by is None else INTERVAL_METHODS[told.decided_by],
+        "sensitivity_deg_per_deg": known(best.sensitivity),
     }
 
 

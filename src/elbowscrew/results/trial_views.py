@@ -18,7 +18,9 @@ from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_quaternion import dual_quat_from_pose
 from elbowscrew.joints import joint_called
 from elbowscrew.model import Analysis, Keyframes, ModelPhases, MovementPhases, Repetitions
+from elbowscrew.model.joint_axis import AxisPath
 from elbowscrew.model.joint_summary_types import JointSummary, PoseSummary, Vector
+from elbowscrew.model.joint_type import JointAngles
 from elbowscrew.model.summary_types import AnalysisSummary, ModelSummary, MovementSummary
 from elbowscrew.results.joint_summary import joint_summary, preferred_fit
 from elbowscrew.results.summary import summary_from_analysis
@@ -32,6 +34,9 @@ _SCREW: Final = (
     "point_radius", "euler_parameters", "translation",
 )  # fmt: skip
 _MODEL: Final = ("phase", "angle", "euler_parameters", "angle_error", "rms_displacement")
+_ANGLES: Final = tuple(field.name for field in fields(JointAngles))
+_PATH: Final = tuple(field.name for field in fields(AxisPath))
+_ANGLES_OF: Final[dict[str, int]] = {"hinge": 1, "screw_hinge": 1, "two_axes": 2, "ball": 3}
 _REPETITIONS: Final = tuple(field.name for field in fields(Repetitions))
 UNREADABLE: Final = (KeyError, TypeError, ValueError, IndexError, AttributeError, ArithmeticError)
 """What a result that somebody edited raises where its numbers do not go together."""
@@ -70,13 +75,15 @@ def view_of_result(folder: Path) -> TrialView:
     joint = read_joint_summary(folder)
     settings = settings_in(summary, folder)
     units = settings.angle_unit, settings.length_unit
-    curve = folder / "repetition_curve.csv"
+    curve, angles, path = (folder / f"{name}.csv" for name in ("repetition_curve", "joint_angles", "axis_path"))
     try:
         read = _Tables(
             screw=read_attributes(folder / "screw.csv", tables.SCREW_COLUMNS, _SCREW, *units),
             model=read_attributes(folder / "interpolation.csv", tables.INTERPOLATION_COLUMNS, _MODEL, *units),
             repetitions=read_attributes(folder / "repetitions.csv", tables.REPETITION_COLUMNS, _REPETITIONS, *units),
             curve=read_columns(curve, tables.CURVE_COLUMNS, *units) if curve.exists() else None,
+            angles=read_attributes(angles, _angle_table(joint), _ANGLES, *units) if angles.exists() else None,
+            path=read_attributes(path, tables.AXIS_PATH_COLUMNS, _PATH, *units) if path.exists() else None,
         )
         return _view(summary, joint, settings, read)
     except UNREADABLE as error:
@@ -97,6 +104,7 @@ def view_of_analysis(analysis: Analysis, summary: AnalysisSummary, joint: JointS
     joint : JointSummary
     """
     units = analysis.settings.angle_unit, analysis.settings.length_unit
+    angles, path = analysis.joint_angles, analysis.joint_axis.path
     curve = None
     if analysis.repetitions.number.size > 1:
         names = [column.attribute for column in tables.CURVE_COLUMNS]
@@ -107,6 +115,8 @@ def view_of_analysis(analysis: Analysis, summary: AnalysisSummary, joint: JointS
         model=as_read(analysis.interpolated, tables.INTERPOLATION_COLUMNS, _MODEL, *units),
         repetitions=as_read(analysis.repetitions, tables.REPETITION_COLUMNS, _REPETITIONS, *units),
         curve=curve,
+        angles=None if angles is None else as_read(angles, angles.table, _ANGLES, *units),
+        path=None if path is None else as_read(path, tables.AXIS_PATH_COLUMNS, _PATH, *units),
     )
     resolved = {"method": analysis.settings.model_method, "law": analysis.settings.model_law}
     return _view(summary, joint, analysis.settings.model_copy(update=resolved), written)
@@ -119,12 +129,14 @@ class _Tables(NamedTuple):
     model: Attributes
     repetitions: Attributes
     curve: dict[str, NDArray[Any]] | None
+    angles: Attributes | None
+    path: Attributes | None
 
 
 def _view(summary: AnalysisSummary, joint: JointSummary, settings: Settings, read: _Tables) -> TrialView:
     trial, motion, bodies, words = summary["trial"], summary["motion"], joint["bodies"], summary["trial"]["joint"]
     screw, model, dispersion = read.screw, read.model, joint["dispersion"]
-    frame, fit = _Frames(screw["frame"]), preferred_fit(joint)
+    frame, fit = _Frames(screw["frame"]), joint["mean_axis"] or preferred_fit(joint)
     line = joint["weighted_mean"] if fit is None else fit
     return TrialView(
         summary=summary,
@@ -165,7 +177,13 @@ def _view(summary: AnalysisSummary, joint: JointSummary, settings: Settings, rea
         joint_direction=np.array(line["direction"], dtype=np.float64),
         joint_point=_millimeters(line["point_mm"]),
         confidence95=None if fit is None else _region(fit["axis_cone95_deg"], fit["point_radius95_mm"]),
+        joint_angles=None if read.angles is None else JointAngles(**read.angles),
+        axis_path=None if read.path is None else AxisPath(**read.path),
     )
+
+
+def _angle_table(joint: JointSummary) -> tuple[tables.Column, ...]:
+    return tables.JOINT_ANGLE_COLUMNS[_ANGLES_OF[joint["joint_type"]["type"]]]
 
 
 def _pose(pose: PoseSummary) -> Float:

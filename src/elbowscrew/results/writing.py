@@ -47,6 +47,7 @@ def _results(analysis: Analysis) -> list[tuple[str, object, tuple[tables.Column,
         "repetition_curve": analysis.repeatability if several else None,
         "steps": analysis.steps,
         "anatomy": analysis.anatomy,
+        "axis_path": analysis.joint_axis.path,
     }
     keyframes = keyframes_of(analysis)
     given = [(name, result, tables.TABLES[name]) for name, result in found.items() if result is not None]

@@ -14,10 +14,13 @@ class FigureEntry(NamedTuple):
         Module and name of the function that makes it, inside `elbowscrew.plots`.
     saved : bool
         Whether it is part of every result, as ``figures/<name>``; else it is made on request.
+    needs : str
+        What a result must have for it, as a field of `elbowscrew.view.trial_view.TrialView`; empty if it needs nothing.
     """
 
     home: str
     saved: bool
+    needs: str = ""
 
 
 FIGURE_ENTRIES: Final = {
@@ -25,6 +28,9 @@ FIGURE_ENTRIES: Final = {
     "euler_parameters": FigureEntry("figures.euler_parameters_figure", saved=True),
     "axis": FigureEntry("figures.axis_figure", saved=True),
     "joint_axis": FigureEntry("figures.joint_axis_figure", saved=True),
+    "joint": FigureEntry("joint_type.joint_figure", saved=True),
+    "joint_angles": FigureEntry("joint_type.joint_angles_figure", saved=True, needs="joint_angles"),
+    "axis_path": FigureEntry("joint_type.axis_path_figure", saved=True, needs="axis_path"),
     "error": FigureEntry("figures.error_figure", saved=True),
     "fig7": FigureEntry("paper_figures.figure_7", saved=False),
     "fig8": FigureEntry("paper_figures.figure_8", saved=False),

@@ -12,7 +12,9 @@ from numpy.typing import NDArray
 from elbowscrew.geometry.arrays import Bool, Float
 from elbowscrew.joints import Joint
 from elbowscrew.model.array_record import ArrayRecord
+from elbowscrew.model.joint_axis import AxisPath
 from elbowscrew.model.joint_summary_types import JointSummary
+from elbowscrew.model.joint_type import JointAngles
 from elbowscrew.model.modeled import Keyframes
 from elbowscrew.model.repetitions import MovementPhases, Repetitions
 from elbowscrew.model.summary_types import AnalysisSummary
@@ -61,7 +63,12 @@ class TrialView(ArrayRecord):
     spread95 : tuple of float
         Deviation (rad) from the mean axis and distance (m) that 95 % of the frames' axes keep within.
     joint_direction, joint_point : ndarray, shape (3,)
-        The joint's axis by the preferred fit; the weighted mean where the motion has no single axis.
+        The joint's axis by the preferred fit, of one that wanders its mean; the weighted mean where the motion has no
+        single axis.
+    joint_angles : JointAngles or None
+        The joint's own angles; None of a joint that has none.
+    axis_path : AxisPath or None
+        The joint's axis against its angle, where it wanders.
     confidence95 : tuple of float, or None
         Half-angle (rad) and radius (m) that hold the joint's axis with 95 %, NaN where they are not known; None where
         the motion has no single axis.
@@ -105,6 +112,8 @@ class TrialView(ArrayRecord):
     joint_direction: Float
     joint_point: Float
     confidence95: tuple[float, float] | None
+    joint_angles: JointAngles | None
+    axis_path: AxisPath | None
 
     @property
     def axis_known(self) -> Bool:

@@ -135,11 +135,12 @@ def test_a_type_can_be_stated(name: str, real_data: Path, tmp_path: Path) -> Non
 def test_two_axes_that_the_motion_does_not_show_are_told() -> None:
     angle = np.radians(90.0) * np.sin(np.linspace(0.0, np.pi, 201)) ** 2
     analysis = analyze(hinged(angle, noise=5e-4), Settings(joint_type="two_axes"))
-    found = joint_summary(analysis)["joint_type"]
-    assert (found["type"], found["status"]) == ("two_axes", "forced")
-    assert found["two_axes"] is not None
-    assert found["two_axes"]["axis2"]["determined"] is False
-    assert found["two_axes"]["axis2"]["cone95_deg"] is None
+    told = joint_summary(analysis)
+    assert (told["joint_type"]["type"], told["joint_type"]["status"]) == ("two_axes", "forced")
+    axes = told["two_axes"]
+    assert axes is not None
+    assert axes["axis2"]["determined"] is False
+    assert axes["axis2"]["cone95_deg"] is None
     warned = {warning.code for warning in analysis.warnings}
     assert "stated-joint" in warned
     assert "no-single-axis" not in warned  # it has one

@@ -26,8 +26,8 @@ def test_an_elbow_that_flexes_and_pronates_has_two_axes(
     real_data: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
     analysis = analyze(read_recording(real_data / "cases" / "two_axis_elbow.csv"), Settings(proximal="none"))
-    found = joint_summary(analysis)["joint_type"]
-    axes = found["two_axes"]
+    told = joint_summary(analysis)
+    found, axes = told["joint_type"], told["two_axes"]
     assert axes is not None
     assert (found["type"], found["status"]) == ("two_axes", "determined")
     assert degrees_off(axes["axis1"]["direction_in_proximal"], (0.98, 0.1, 0.17)) < 0.1
@@ -45,8 +45,8 @@ def test_an_elbow_that_flexes_and_pronates_has_two_axes(
 
 
 def test_a_hip_has_a_center(real_data: Path) -> None:
-    found = joint_summary(analyze(read_recording(real_data / "cases" / "hip_ball.csv")))["joint_type"]
-    assert found["type"] == "ball"
+    found = joint_summary(analyze(read_recording(real_data / "cases" / "hip_ball.csv")))
+    assert found["joint_type"]["type"] == "ball"
     assert found["ball"] is not None
     assert found["ball"]["center_in_proximal_mm"] == pytest.approx([30.0, -50.0, 80.0], abs=0.2)
     assert found["ball"]["center_in_distal_mm"] == pytest.approx([0.0, 250.0, 0.0], abs=0.2)
@@ -57,8 +57,8 @@ def test_pronation_while_flexing_is_no_single_axis(real_data: Path) -> None:
     markers = ("UA0", "UA1", "UA2", "UA3", "FA0", "FA1", "FA2", "FA3")
     recording = read_recording(real_data / "cases" / "pronation60.csv", markers=markers)
     analysis = analyze(recording, Settings(proximal_markers=markers[:4], distal_markers=markers[4:]))
-    found = joint_summary(analysis)["joint_type"]
-    assert found["type"] == "two_axes"
+    found = joint_summary(analysis)
+    assert found["joint_type"]["type"] == "two_axes"
     assert found["two_axes"] is not None
     assert found["two_axes"]["axis1"]["range_deg"] == pytest.approx(140.0, abs=5.0)
     assert found["two_axes"]["axis2"]["range_deg"] == pytest.approx(60.0, abs=5.0)
@@ -69,13 +69,15 @@ def test_pronation_while_flexing_is_no_single_axis(real_data: Path) -> None:
 def test_a_hinge_keeps_its_axis_and_no_richer_type_is_tried() -> None:
     """What the hinge leaves is white in time: no joint could leave less."""
     analysis = analyze(simulate_trial(frames=120, inversion=60, seed=2).recording)
-    found = joint_summary(analysis)["joint_type"]
+    told = joint_summary(analysis)
+    found = told["joint_type"]
     assert found["type"] in ("hinge", "screw_hinge")
     assert found["type"] == analysis.joint_axis.preferred
     assert found["status"] == "determined"
     assert {one["type"] for one in found["candidates"]} <= {"rigid", "hinge", "screw_hinge"}
-    assert found["two_axes"] is None
-    assert found["ball"] is None
+    assert told["two_axes"] is None
+    assert told["ball"] is None
+    assert (found["decided_by"], found["interval_method"]) != (None, None)
 
 
 def test_a_knee_that_screws_home_is_a_hinge_that_wanders(real_data: Path) -> None:

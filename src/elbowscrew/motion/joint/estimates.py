@@ -21,12 +21,17 @@ UNDETERMINED = 0.5 * np.pi
 
 
 class LineErrors(NamedTuple):
-    """How far a line may be off: half-angle (rad) and radius (m) that hold 95 %, and both components' deviations."""
+    """How far a line may be off: half-angle (rad) and radius (m) that hold 95 %, and both components' deviations.
+
+    The part of a stated skin motion in cone and radius adds in quadrature.
+    """
 
     axis_cone: float
     point_radius: float
     axis_sd: float
     point_sd: float
+    skin_cone: float
+    skin_radius: float
 
 
 def line_estimate(proximal: Float, distal: Float, joint: JointMotion, express_in: ExpressIn) -> LineEstimate:
@@ -93,6 +98,8 @@ def line_errors(
         point_radius=radius,
         axis_sd=cone * _sd_of_radius(tilt @ covariance @ tilt.T),
         point_sd=radius * _sd_of_radius(place @ covariance @ place.T),
+        skin_cone=interval.skin_radius(tilt),
+        skin_radius=interval.skin_radius(place),
     )
 
 
