@@ -159,7 +159,12 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
         None, "Fewest keyframes that keep the RMS displacement below this length: 2mm.", MODEL,
         metavar="LENGTH", ge=1e-3, le=1e5,
     )  # fmt: skip
-    method: MethodName | None = setting(None, "Interpolation of poses.", MODEL, shown="dlb, with a tolerance sclerp")
+    method: MethodName | None = setting(
+        None,
+        "Interpolation of poses, or of the joint's own angles (joint).",
+        MODEL,
+        shown="dlb, with a tolerance sclerp",
+    )
     blend: BlendName = setting("piecewise", "Phase by phase, or all poses at once.", MODEL)
     law: LawName | None = setting(
         None, "Law of motion in each phase.", MODEL, shown="cycloidal, with a tolerance linear"

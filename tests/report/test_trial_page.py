@@ -256,6 +256,9 @@ METHODS: dict[str, tuple[dict[str, Any], list[str], list[str]]] = {
                   "the linear one"], ["turns and rests", "DLB", "cycloidal"]),
     "best": ({"law": "best"}, ["each phase follows the one nearest the measurement", "turns and rests"], ["cycloidal"]),
     "empirical": ({"law": "empirical"}, ["the recording's own"], ["cycloidal"]),
+    "joint": ({"method": "joint"}, ["interpolation of the screw-hinge's angle of 3 keyframe"], ["DLB"]),
+    "stated": ({"method": "joint", "joint_type": "hinge"}, ["interpolation of the hinge's angle of"], ["DLB"]),
+    "ball": ({"method": "joint", "joint_type": "ball"}, ["interpolation of the ball joint's rotation of"], ["axes of"]),
     "no noise": ({"noise": "none"}, ["screw-hinge"], ["Standard deviations"]),
 }  # fmt: skip
 

@@ -30,7 +30,9 @@ def interpolate(
     ] = None,
     method: Annotated[
         MethodName | None,
-        typer.Option(help="Interpolation of poses.", show_default="the file's, else dlb"),
+        typer.Option(
+            help="Interpolation of poses, or of the file's joint (joint).", show_default="the file's, else dlb"
+        ),
     ] = None,
     law: Annotated[
         ClosedLaw | None, typer.Option(help="Law of motion.", show_default="the file's, else cycloidal")

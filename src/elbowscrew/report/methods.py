@@ -16,7 +16,13 @@ _METHODS: Final = {
     "sdlb": "dual quaternion linear blending of neighboring poses (sDLB)",
     "dib": "dual quaternion iterative blending (DIB)",
     "catmull-rom": "a Catmull-Rom spline of dual quaternions",
-    "joint": "interpolation of the joint's own angles",
+    "joint": "interpolation of {angles}",
+}
+_ANGLES: Final = {
+    "hinge": "the hinge's angle",
+    "screw_hinge": "the screw-hinge's angle",
+    "two_axes": "the angles about the joint's two axes",
+    "ball": "the ball joint's rotation",
 }
 _KNOTS: Final = {
     "law": "the law's value at its time",
@@ -174,7 +180,9 @@ def _joint_axis(trial: TrialView) -> Iterator[str]:
 
 def _model(trial: TrialView) -> Iterator[str]:
     settings, model = trial.settings, trial.summary["interpolation"]
-    method = _METHODS.get(settings.model_method, settings.model_method)
+    kind = trial.summary["motion"]["joint_type"]
+    angles = "the joint's own angles" if kind is None else _ANGLES.get(kind["type"], "the joint's own angles")
+    method = _METHODS.get(settings.model_method, settings.model_method).format(angles=angles)
     keyframes = model["keyframes"]
     listed = f"frames {', '.join(map(str, keyframes))}" if len(keyframes) <= _KEYFRAMES_TOLD else "keyframes.csv"
     pieces = "phase by phase" if settings.blend == "piecewise" else "all poses at once"

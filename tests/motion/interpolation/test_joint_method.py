@@ -115,6 +115,13 @@ def test_a_joint_without_angles_is_refused_in_one_line(stated: str) -> None:
         assert f"is {stated} here" in str(caught.value)
 
 
+def test_a_stated_type_that_the_motion_does_not_determine_is_refused() -> None:
+    """Two axes on the motion of one: how they share the rotation is not told by it."""
+    recording = simulate_trial(frames=150, inversion=60, proximal="moving", seed=1).recording
+    with pytest.raises(SettingError, match="does not determine the angles of a joint of type two-axes"):
+        analyze(recording, Settings(method="joint", joint_type="two-axes"))
+
+
 def test_a_stated_type_is_taken() -> None:
     recording = simulate_trial(**EXACT, joint_type="two-axes").recording
     analysis = analyze(recording, Settings(method="joint", joint_type="ball"))
@@ -156,7 +163,7 @@ def test_the_commands(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: p
     save_simulation(simulate_trial(frames=160, inversion=70, joint_type="two-axes"), tmp_path / "study" / "a.csv")
     assert main(["batch", "study", "-o", "out", "--method", "joint", "--figure-format", "none"]) == 0
     folder = next((tmp_path / "out").glob("*/keyframes.csv")).parent
-    assert "interpolation of the joint's own angles" in methods_of(view_of_result(folder))
+    assert "interpolation of the angles about the joint's two axes" in methods_of(view_of_result(folder))
     assert main(["report", str(folder)]) == 0
     assert main(["interpolate", str(folder / "keyframes.csv"), "--frames", "50"]) == 0
     plain = tmp_path / "r"

@@ -9,7 +9,7 @@ import numpy as np
 
 from elbowscrew.errors import SettingError
 from elbowscrew.geometry.arrays import Float, Index
-from elbowscrew.model.joint_coordinates import JointCoordinates
+from elbowscrew.model.joint_coordinates import MOVING_JOINTS, JointCoordinates
 from elbowscrew.model.joint_type import JointType
 from elbowscrew.motion.axes.measured import measured_mean_axis
 from elbowscrew.motion.interpolation.modeling import METHODS, Method, joint_method
@@ -74,12 +74,7 @@ class ModelJoint(NamedTuple):
             found = measured_joint_type(measured, axis, settings)
         coordinates = None if found is None or not found.has_angles else found.coordinates
         if found is None or coordinates is None:
-            kind = "undetermined" if found is None else found.type
-            msg = (
-                f"--method joint: the joint is {kind} here, which has no angles of its own to interpolate; "
-                "give --method sclerp, or state the type with --joint-type"
-            )
-            raise SettingError(msg)
+            raise _without_angles("undetermined" if found is None else found.type)
         if len(coordinates.axis) == 1 and np.nansum(found.angle[:, 0] * measured.course) < 0.0:
             coordinates = replace(coordinates, axis=-coordinates.axis)  # the sense of theta
         return cls(coordinates, measured)
@@ -93,3 +88,11 @@ class ModelJoint(NamedTuple):
             return joint_covariance(poses, *assumed_noise(measured.noise))
 
         return joint_angles_of(self.coordinates, pose, covariance, measured.joint.reference_row)
+
+
+def _without_angles(kind: str) -> SettingError:
+    if kind in MOVING_JOINTS:
+        why = f"the motion does not determine the angles of a joint of type {kind.replace('_', '-')}"
+    else:
+        why = f"the joint is {kind} here, which has no angles of its own to interpolate"
+    return SettingError(f"--method joint: {why}; give --method sclerp, or state the type with --joint-type")
