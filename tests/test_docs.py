@@ -15,6 +15,7 @@ from elbowscrew import __version__
 from elbowscrew.cli.app import app
 from elbowscrew.study_columns import FAILURE_COLUMNS, study_header
 from elbowscrew.tables import INTERPOLATION_COLUMNS, SCREW_COLUMNS
+from elbowscrew.view.figure_names import SAVED_FIGURES
 
 LINK = re.compile(r"!?\[[^\]]*\]\(([^)#]*)(?:#([^)]+))?\)")
 HEADING = re.compile(r"^#+ (.+)$", re.M)
@@ -108,9 +109,13 @@ def test_lower_bounds_are_the_versions_tested(root: Path) -> None:
         assert version == bound[1] or version.removesuffix(".0") == bound[1], name
 
 
-@pytest.mark.parametrize("name", ["theta.png", "axis.png"])
-def test_the_readmes_pictures_are_there(root: Path, name: str) -> None:
-    assert (root / "docs" / "images" / name).read_bytes().startswith(b"\x89PNG")
+def test_the_readmes_pictures_are_figures_of_a_result(root: Path) -> None:
+    readme = (root / "README.md").read_text(encoding="utf-8")
+    pictures = re.findall(r"!\[[^\]]+\]\(docs/images/(\w+)\.png\)", readme)
+    assert len(pictures) == 2
+    assert set(pictures) <= set(SAVED_FIGURES)
+    for name in pictures:
+        assert (root / "docs" / "images" / f"{name}.png").read_bytes().startswith(b"\x89PNG")
 
 
 def test_the_table_of_settings_is_current(root: Path) -> None:

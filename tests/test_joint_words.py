@@ -90,7 +90,7 @@ def test_no_word_of_another_joint_beside_the_trials_page(
     run("batch", "batch", "in", "-o", "out", "--figure-format", "svg", "--export", "sto")
     folders = sorted(path.parent for path in (tmp_path / "out").glob("*/summary.json"))
     assert len(folders) == 2
-    names = ",".join(name for name, entry in FIGURE_ENTRIES.items() if not getattr(entry, "needs", ""))
+    names = ",".join(name for name, entry in FIGURE_ENTRIES.items() if not entry.needs)
     run("figures", "report", str(folders[0]), "--figures", names, "--figure-format", "svg", "-o", "figures")
     run("overlay", "report", "out", "--figures", "overlay", "--figure-format", "svg", "-o", "overlay")
     plan = ("--methods", "joint,sclerp", "--laws", "best", "--counts", "2", "--data", "raw", "--figure-format", "svg")
