@@ -80,7 +80,7 @@ def batch(
 
     A result folder for each, summary.csv and failures.csv; what is up to date stays. Exit code 7: some failed.
     """
-    from elbowscrew.cli import render
+    from elbowscrew.cli import render, render_study
     from elbowscrew.cli.progress import shown_progress
     from elbowscrew.study.executors import LOCAL_CLUSTER, available_cores, open_executor
     from elbowscrew.study.study import run_study
@@ -90,7 +90,7 @@ def batch(
     count = workers or (_HANDED_TO_CLUSTER if of_cluster else available_cores())
     executor = open_executor(scheduler, count)
     study = find_trials(paths, recursive=recursive, follow_symlinks=follow_symlinks, exclude=output)
-    render.skipped_files(study.skipped, verbose=verbose)
+    render_study.skipped_files(study.skipped, verbose=verbose)
     with shown_progress(quiet=quiet, verbose=verbose) as report:
         result = run_study(
             study.trials,
@@ -103,10 +103,10 @@ def batch(
             restart=restart,
             report=report,
         )
-    render.other_results(result)
+    render_study.other_results(result)
     if json_output:
-        render.json_object(render.study_statement(result, study.skipped))
+        render.json_object(render_study.study_statement(result, study.skipped))
     elif not quiet:
-        render.study_table(result)
+        render_study.study_table(result)
     if result.failed:
         raise typer.Exit(SOME_FAILED)

@@ -6,7 +6,7 @@ import json
 import sys
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 from rich.console import Console, RenderableType
 from rich.table import Table
@@ -35,8 +35,6 @@ if TYPE_CHECKING:
         WarningSummary,
     )
     from elbowscrew.paper import PrintedValue
-    from elbowscrew.study.study import StudyResult
-    from elbowscrew.study.trials import Skipped
 
 _MARKERS_TOLD = 24
 _FRAMES_TOLD = 12
@@ -114,7 +112,7 @@ def analysis_table(summary: AnalysisSummary, folder: Path) -> None:
         ),
         ("Results", str(folder)),
     ]
-    _print_rows(printable(summary["source"]["name"] or ""), rows)
+    print_rows(printable(summary["source"]["name"] or ""), rows)
 
 
 def info_table(summary: FileSummary) -> None:
@@ -133,11 +131,11 @@ def info_table(summary: FileSummary) -> None:
         ),
         ("Roles", summary["roles"]["text"]),
     ]
-    _print_rows(printable(source["name"] or ""), rows)
+    print_rows(printable(source["name"] or ""), rows)
     if summary["markers"]:
         shares = [f"{marker['name']} {100.0 * marker['seen_share']:.0f} %" for marker in summary["markers"]]
         told = ", ".join(shares[:_MARKERS_TOLD]) + (", ..." if len(shares) > _MARKERS_TOLD else "")
-        _print_rows("", [(f"{len(shares)} markers", told)])
+        print_rows("", [(f"{len(shares)} markers", told)])
     if trial["bodies"]:
         _bodies_table(trial["bodies"])
     notes = [warning for warning in summary["warnings"] if warning["severity"] == "note"]
@@ -170,7 +168,7 @@ def comparison_table(summary: ComparisonSummary | TrialsSummary, folder: Path) -
         rows += [(f"Fewest, {method}", _fewest(found)) for method, found in summary["selections"].items()]
     rows.append(("Results", str(folder)))
     _print(Text("RMS displacement of the distal body's points, for N keyframes in each phase", style="bold"), table)
-    _print_rows("", rows)
+    print_rows("", rows)
 
 
 def _fewest(found: SelectionSummary) -> str:
@@ -254,7 +252,8 @@ def _print(*parts: RenderableType) -> None:
     emit(captured.get())
 
 
-def _print_rows(title: str, rows: Iterable[tuple[str, str]]) -> None:
+def print_rows(title: str, rows: Iterable[tuple[str, str]]) -> None:
+    """Write a table of names and values, under a title if there is one."""
     table = Table(box=None, show_header=False, pad_edge=False)
     table.add_column(style="bold", no_wrap=True)
     table.add_column(overflow="fold")
@@ -371,58 +370,3 @@ def _fitted_peaks(model: ModelSummary) -> Iterable[tuple[str, str]]:
 
 def _radius(model: ModelSummary) -> str:
     return f"radius of gyration {model['points']['radius_of_gyration_mm']:g} mm"
-
-
-def skipped_files(skipped: Sequence[Skipped], *, verbose: bool) -> None:
-    """Tell what was passed over: of many the first few, unless all are asked for."""
-    for one in skipped if verbose else skipped[:_SKIPPED_TOLD]:
-        sys.stderr.write(f"elbowscrew: passed over: {one_line(f'{one.path}: {one.reason}')}\n")
-    if len(skipped) > _SKIPPED_TOLD and not verbose:
-        sys.stderr.write(f"elbowscrew: passed over: {len(skipped) - _SKIPPED_TOLD} more; --verbose names them\n")
-
-
-def other_results(result: StudyResult) -> None:
-    """Warn of results in the output folder that the tables do not tell of."""
-    if result.others:
-        told = ", ".join(result.others[:_SKIPPED_TOLD]) + (", ..." if len(result.others) > _SKIPPED_TOLD else "")
-        message = f"{result.folder} holds results that do not belong to this batch and are not in summary.csv: {told}"
-        sys.stderr.write(f"elbowscrew: warning: {one_line(message)} [other-results]\n")
-
-
-def study_statement(result: StudyResult, skipped: Sequence[Skipped]) -> dict[str, Any]:
-    """What a batch has done, ready for JSON."""
-    return {
-        "output": str(result.folder),
-        "trials": len(result.names),
-        "analyzed": len(result.names) - result.kept - len(result.failed),
-        "up_to_date": result.kept,
-        "with_warnings": result.warned,
-        "failed": len(result.failed),
-        "failures": [
-            {
-                "path": one.path,
-                "error_class": one.failure.error_class,
-                "message": one.failure.message,
-                "exit_code": one.failure.exit_code,
-            }
-            for one in result.failed
-        ],
-        "skipped": [{"path": one.path, "reason": one.reason} for one in skipped],
-        "other_results": list(result.others),
-    }
-
-
-def study_table(result: StudyResult) -> None:
-    """Write what a batch has done, and the first of its failures."""
-    good = len(result.names) - len(result.failed)
-    kept = f", {result.kept} of them up to date already" if result.kept else ""
-    warned = f"; {result.warned} with warnings, see summary.csv" if result.warned else ""
-    rows = [
-        ("Trials", f"{len(result.names)}"),
-        ("Results", f"{good}{kept}{warned}"),
-        ("Failed", f"{len(result.failed)}"),
-    ]
-    rows += [("", one_line(one.failure.message)) for one in result.failed[:_FAILURES_TOLD]]
-    if len(result.failed) > _FAILURES_TOLD:
-        rows.append(("", f"and {len(result.failed) - _FAILURES_TOLD} more in failures.csv"))
-    _print_rows("", [*rows, ("Tables", f"{result.folder / 'summary.csv'}, {result.folder / 'failures.csv'}")])

@@ -1,0 +1,72 @@
+"""What a person reads on the terminal of a batch."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from elbowscrew.cli.render import print_rows
+from elbowscrew.cli.text import one_line
+
+if TYPE_CHECKING:
+    from elbowscrew.study.study import StudyResult
+    from elbowscrew.study.trials import Skipped
+
+_SKIPPED_TOLD = 5
+_FAILURES_TOLD = 10
+
+
+def skipped_files(skipped: Sequence[Skipped], *, verbose: bool) -> None:
+    """Tell what was passed over: of many the first few, unless all are asked for."""
+    for one in skipped if verbose else skipped[:_SKIPPED_TOLD]:
+        sys.stderr.write(f"elbowscrew: passed over: {one_line(f'{one.path}: {one.reason}')}\n")
+    if len(skipped) > _SKIPPED_TOLD and not verbose:
+        sys.stderr.write(f"elbowscrew: passed over: {len(skipped) - _SKIPPED_TOLD} more; --verbose names them\n")
+
+
+def other_results(result: StudyResult) -> None:
+    """Warn of results in the output folder that the tables do not tell of."""
+    if result.others:
+        told = ", ".join(result.others[:_SKIPPED_TOLD]) + (", ..." if len(result.others) > _SKIPPED_TOLD else "")
+        message = f"{result.folder} holds results that do not belong to this batch and are not in summary.csv: {told}"
+        sys.stderr.write(f"elbowscrew: warning: {one_line(message)} [other-results]\n")
+
+
+def study_statement(result: StudyResult, skipped: Sequence[Skipped]) -> dict[str, Any]:
+    """What a batch has done, ready for JSON."""
+    return {
+        "output": str(result.folder),
+        "trials": len(result.names),
+        "analyzed": len(result.names) - result.kept - len(result.failed),
+        "up_to_date": result.kept,
+        "with_warnings": result.warned,
+        "failed": len(result.failed),
+        "failures": [
+            {
+                "path": one.path,
+                "error_class": one.failure.error_class,
+                "message": one.failure.message,
+                "exit_code": one.failure.exit_code,
+            }
+            for one in result.failed
+        ],
+        "skipped": [{"path": one.path, "reason": one.reason} for one in skipped],
+        "other_results": list(result.others),
+    }
+
+
+def study_table(result: StudyResult) -> None:
+    """Write what a batch has done, and the first of its failures."""
+    good = len(result.names) - len(result.failed)
+    kept = f", {result.kept} of them up to date already" if result.kept else ""
+    warned = f"; {result.warned} with warnings, see summary.csv" if result.warned else ""
+    rows = [
+        ("Trials", f"{len(result.names)}"),
+        ("Results", f"{good}{kept}{warned}"),
+        ("Failed", f"{len(result.failed)}"),
+    ]
+    rows += [("", one_line(one.failure.message)) for one in result.failed[:_FAILURES_TOLD]]
+    if len(result.failed) > _FAILURES_TOLD:
+        rows.append(("", f"and {len(result.failed) - _FAILURES_TOLD} more in failures.csv"))
+    print_rows("", [*rows, ("Tables", f"{result.folder / 'summary.csv'}, {result.folder / 'failures.csv'}")])
