@@ -79,12 +79,16 @@ def analyze(recording: Recording, settings: Settings | None = None, *, landmarks
     joint_axis = measured_joint_axis(measured, mean, wanted)
     joint_type = measured_joint_type(measured, joint_axis, wanted)
     joint_axis = axis_of_type(joint_axis, joint_type)
-    instantaneous = measured_instantaneous_motion(measured, wanted)
+    instantaneous, axes_doubts = measured_instantaneous_motion(measured, wanted)
     velocity, near = instantaneous.angular_velocity, pose_from_dual_quat(measured.change)[1]
     cuts = measured_cuts(measured, wanted)
     model = build_model(measured, cuts.movements, wanted, joint_type)
     warnings = (
-        measured.warnings + cut_warnings(cuts) + model.warnings + joint_axis_warnings(joint_axis, joint_type, measured)
+        measured.warnings
+        + axes_doubts
+        + cut_warnings(cuts)
+        + model.warnings
+        + joint_axis_warnings(joint_axis, joint_type, measured)
     )
     listed_velocity = velocity if sense.signed else np.full_like(velocity, np.nan)
     repetitions = repetitions_of(cuts.cycles, screw, lines_one_way(measured), listed_velocity, elapsed)

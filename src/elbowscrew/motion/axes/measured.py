@@ -8,19 +8,24 @@ from typing import Final
 import numpy as np
 
 from elbowscrew.errors import SettingError
+from elbowscrew.geometry import quaternion
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_quaternion import conjugate, multiply, pose_from_dual_quat
-from elbowscrew.model import HelicalSteps, InstantaneousMotion, MeanAxis
+from elbowscrew.model import HelicalSteps, InstantaneousMotion, MeanAxis, QualityWarning
 from elbowscrew.motion.axes.helical_steps import helical_steps
 from elbowscrew.motion.axes.instantaneous import instantaneous_motion
 from elbowscrew.motion.axes.mean_axis import mean_axis_of
 from elbowscrew.motion.screws.measurement import Measurement
 from elbowscrew.motion.screws.relative import IDENTITY, expressed
+from elbowscrew.motion.screws.sense import rotation_noise
 from elbowscrew.motion.smoothing.smoothing import Smoothing
 from elbowscrew.settings import Settings
 
 # What the field filters at: the cut-off of recordings too short for residual analysis, lower where the rate asks it.
 _TWIST_HZ: Final = 6.0
+# A filter leaves motion out if it takes away so many times the noise, and so much (rad).
+_LEFT_OUT_NOISE: Final = 2.0
+_LEAST_LEFT_OUT: Final = float(np.radians(0.1))
 _POSSIBLE_SHARES: Final = (1e-3, 0.4)
 
 
@@ -50,17 +55,22 @@ def measured_mean_axis(measured: Measurement) -> MeanAxis:
     return mean_axis_of(measured.screw.angle, lines, pose_from_dual_quat(measured.change)[1])
 
 
-def measured_instantaneous_motion(measured: Measurement, settings: Settings) -> InstantaneousMotion:
+def measured_instantaneous_motion(
+    measured: Measurement, settings: Settings
+) -> tuple[InstantaneousMotion, tuple[QualityWarning, ...]]:
     """Take the twist of filtered poses: of those at hand if they are, else of poses filtered for this alone.
 
     Its sense is that of the dominant axis or, where theta has none, of the leading direction; `without_sense` takes
-    that away from what is told.
+    that away from what is told. Warnings say what a filter for this alone left out beside the noise, and why no frame
+    has an axis where none has.
     """
     D, smoothing = measured.displacement, measured.smoothing
+    warnings: tuple[QualityWarning, ...] = ()
     if smoothing.cutoff_hz is None:
         smoothing = twist_smoothing(measured, settings)
         D = smoothed_displacement(measured, smoothing)
-    return instantaneous_motion(
+        warnings = _left_out(measured, D, smoothing.cutoff_hz or np.inf)
+    motion = instantaneous_motion(
         expressed(D, measured.joint, measured.express_in),
         measured.joint.measured,
         measured.screw.frame,
@@ -72,6 +82,41 @@ def measured_instantaneous_motion(measured: Measurement, settings: Settings) -> 
         margin=smoothing.margin,
         lowpass_hz=smoothing.cutoff_hz or np.inf,
     )
+    return motion, warnings + _without_axes(motion, settings.min_rate_rad_s)
+
+
+def _left_out(measured: Measurement, filtered: Float, cutoff_hz: float) -> tuple[QualityWarning, ...]:
+    """Warn where the filter took more out of the rotation than its noise."""
+    raw = measured.displacement[measured.joint.measured, :4]
+    off = quaternion.multiply(quaternion.conjugate(filtered[measured.joint.measured, :4]), raw)
+    square = 4.0 * np.sum(off[:, 1:] ** 2, axis=1)  # a small rotation
+    square = square[np.isfinite(square)]
+    if not square.size:
+        return ()
+    rms, noise = float(np.sqrt(square.mean())), np.sqrt(3.0) * rotation_noise(raw)
+    if rms <= max(_LEFT_OUT_NOISE * noise, _LEAST_LEFT_OUT):
+        return ()
+    message = (
+        f"speeds and instantaneous axes are of motion up to {cutoff_hz:.3g} Hz, which residual analysis finds; that "
+        f"leaves out {np.degrees(rms):.2g} deg RMS of rotation, where the noise is {np.degrees(noise):.2g} deg: what "
+        "is faster is not in them (--lowpass HZ sets the cut-off)"
+    )
+    return (QualityWarning(code="fast-motion-left-out", message=message),)
+
+
+def _without_axes(motion: InstantaneousMotion, least: float) -> tuple[QualityWarning, ...]:
+    """Say why no frame has an instantaneous axis, where none has."""
+    if np.isfinite(motion.axis_direction).any():
+        return ()
+    speed = np.abs(motion.angular_velocity[np.isfinite(motion.angular_velocity)])
+    if speed.size:
+        reason = (
+            f"the distal body turns at {speed.max():.3g} rad/s at most, and an axis needs "
+            f"{least:.3g} rad/s (--min-rate)"
+        )
+    else:
+        reason = "no stretch of poses is long enough beside the filter's half a period at its two ends"
+    return (QualityWarning(code="no-instantaneous-axis", message=f"no frame has an instantaneous axis: {reason}"),)
 
 
 def twist_smoothing(measured: Measurement, settings: Settings) -> Smoothing:
