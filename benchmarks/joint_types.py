@@ -170,14 +170,10 @@ def pronation(trials: int, seed: int) -> None:
                         second.append(float(np.degrees(found.second_rotation.range)))
                     if found.two_axes is not None:
                         off.append(np.degrees(mj.angle_between(found.two_axes.axis1.direction_proximal, axis)))
-                print(
-                    f"| {size} | {'moves' if skin else 'sits'} | {'stated' if stated else 'not stated'} | "
-                    + ", ".join(f"{n} {k}" for k, n in told.items())
-                    + f" | {np.median(second):.1f} |" * bool(second)
-                    + " |" * (not second)
-                    + (f" {np.median(off):.2f} |" if off else " |"),
-                    flush=True,
-                )
+                kinds = ", ".join(f"{count} {name}" for name, count in told.items())
+                cells = [f"{np.median(values):.2f}" if values else "" for values in (second, off)]
+                where, noise = "moves" if skin else "sits", "stated" if stated else "not stated"
+                print(f"| {size} | {where} | {noise} | {kinds} | {cells[0]} | {cells[1]} |", flush=True)
 
 
 def pronating(size_deg: float, rng: np.random.Generator) -> tuple[Float, Float]:

@@ -68,7 +68,8 @@ class JointLine(ArrayRecord):
     angle_sd : float
         Median standard deviation of the angle of a frame, rad.
     determined : bool
-        Whether the range is 12 times that and the direction known to 15 deg.
+        Whether the range is 12 times that, times the root of how many frames count as one, and the direction known to
+        15 deg.
     """
 
     direction_proximal: Float

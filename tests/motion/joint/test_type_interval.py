@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from cluster_noise import Hinge, Noise, seen, skin, white
+from cluster_noise import Hinge, Noise, seen, skin, turning, wander, white, with_rms_alone
 from trials import START
 from typed_noise import AXIS2, Kind, fitted_type, joint_of, skin_of_both, typed_coverage
 
@@ -16,6 +16,7 @@ from elbowscrew.motion.joint.likelihood import Poses, fit_mechanism
 from elbowscrew.motion.joint.lines import Z_LINE
 from elbowscrew.motion.joint.simple_types import OneAxis
 from elbowscrew.motion.joint.type_interval import Evidence, interval_of_type
+from elbowscrew.motion.joint.typed import identify_joint
 from elbowscrew.motion.screws.uncertainty import joint_covariance
 
 
@@ -56,6 +57,22 @@ def test_the_truth_is_within_the_interval(kind: Kind, noise: Noise, least: float
     slack = 3.0 * np.sqrt(least * (1.0 - least) / trials)
     assert found.held.mean() > least - slack
     assert (found.sharpness < 6.0).all()
+
+
+@pytest.mark.parametrize("noise", [wander(2e-3), turning(np.radians(2.0))], ids=["wander", "turning"])
+def test_slow_noise_and_little_pronation_determine_no_axis(noise: Noise) -> None:
+    """30 deg of pronation in one cycle, and errors of 2 deg that last as long: the axis is tens of degrees off."""
+    joint, rng = joint_of("two_axes", 60.0), np.random.default_rng(4)
+    for _ in range(3):
+        case = with_rms_alone(seen(joint, noise(joint, rng)))
+        covariance = joint_covariance(case.joint, *case.noise)
+        found = identify_joint(
+            case.joint, covariance, case.joint[0], noise_known=True, forced="two_axes", clusters=case.clusters
+        )
+        assert found.two_axes is not None
+        assert not all(line.determined for line in found.two_axes.lines)
+        free = identify_joint(case.joint, covariance, case.joint[0], noise_known=True, clusters=case.clusters)
+        assert free.status != "determined"
 
 
 def test_skin_taken_for_white_noise_would_not_hold() -> None:

@@ -55,5 +55,9 @@ def shared_covariance(fit: Fit[Mechanism], *, noise_known: bool) -> Float:
     if values[0] < _LEAST_INFORMATION:
         return unknown
     inverse: Float = (vectors / values) @ vectors.T / np.outer(scale, scale)
-    correlation = _integrated_autocorrelation(fit.whitened * np.sqrt(fit.weight)[:, None])
-    return inverse * max(fit.variance, 1.0 if noise_known else 0.0) * correlation
+    return inverse * max(fit.variance, 1.0 if noise_known else 0.0) * frames_that_count_as_one(fit)
+
+
+def frames_that_count_as_one(fit: Fit[Mechanism]) -> float:
+    """Integrated autocorrelation of the residuals: 1 for white noise."""
+    return _integrated_autocorrelation(fit.whitened * np.sqrt(fit.weight)[:, None])

@@ -20,8 +20,9 @@ from elbowscrew.motion.screws.pose_noise import covariance_from_markers
 
 Segment = Literal["proximal", "distal"]
 
-# Degrees of freedom that the stationary model may be worth beside the nu that are measured.
-_WORTH: Final = np.array([2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0, 1e3, 1e4, 1e5])
+# Degrees of freedom that the stationary model may be worth beside the nu that are measured: nearly none where the
+# noise goes with the angle, which the evidence tells.
+_WORTH: Final = np.array([0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0, 1e3, 1e4, 1e5])
 _WORTH_IF_COLORED: Final = 2.0
 _LEAST_KNOWN: Final = 0.5
 _ANGLE_BINS: Final = 15

@@ -15,7 +15,7 @@ from elbowscrew.model.joint_type import BallJoint, JointLine, JointType, Measure
 from elbowscrew.motion.joint.choice import LEAST_RANGE_IN_SD, RMS_TO_RANGE, Choice, choose_type, middle_range
 from elbowscrew.motion.joint.coordinates import coordinates_of
 from elbowscrew.motion.joint.every_frame import Everywhere, FrameNumbers, numbers_everywhere, reference_numbers
-from elbowscrew.motion.joint.fitting import Fitted, shared_covariance
+from elbowscrew.motion.joint.fitting import Fitted, frames_that_count_as_one, shared_covariance
 from elbowscrew.motion.joint.interval import ClusterMotion, JointInterval, Method, SkinMotion
 from elbowscrew.motion.joint.likelihood import Fit, Mechanism, Poses, fit_mechanism, fit_robustly
 from elbowscrew.motion.joint.lines import Z_LINE
@@ -104,6 +104,9 @@ def identify_joint(
         interval = interval_of_type(written, most, evidence.at(rows), np.zeros(2))
         two = _two_axes(written, reference, interval, noise_known=noise_known)
         method = interval.decided_by(_TILTS[0])
+        if choice.status == "determined" and not all(line.determined for line in two.lines):
+            reason = f"{choice.reason}; errors that go together leave too few frames to tell both directions"
+            choice = choice._replace(status="approximate", reason=reason)
         return _result(choice, every, scale, coordinates=allowed, two_axes=two, decided_by=method)
     start = reference_numbers(mechanism, everywhere, reference)
     allowed = coordinates_of(replace(mechanism, frames=start.own), reference)
@@ -211,6 +214,8 @@ def _lines(
     at: TwoAxesMechanism, fit: Fit[Mechanism], reference: Float, interval: JointInterval
 ) -> tuple[JointLine, JointLine]:
     deviation = angle_sd(fit)
+    # Frames whose errors go together tell an axis no better than the few that count.
+    least = LEAST_RANGE_IN_SD * np.sqrt(frames_that_count_as_one(fit))
     poses = [
         (at.proximal, dq.multiply(dq.conjugate(reference), at.proximal)),
         (dq.multiply(reference, at.distal), at.distal),
@@ -230,7 +235,7 @@ def _lines(
                 axis_sd=tilt_sd,
                 range=reach,
                 angle_sd=float(deviation[k]),
-                determined=bool(reach >= LEAST_RANGE_IN_SD * deviation[k] and tilt_sd <= _LARGEST_AXIS_SD),
+                determined=bool(reach >= least * deviation[k] and tilt_sd <= _LARGEST_AXIS_SD),
             )
         )
     return lines[0], lines[1]
