@@ -33,6 +33,7 @@ def _study_vector(stem: str, quantity: Quantity, *keys: str) -> tuple[StudyColum
 
 _MEAN: Final = ("motion", "mean_axis")
 _JOINT: Final = ("motion", "joint_axis")
+_TWO: Final = ("motion", "joint_numbers", "two_axes")
 _MODEL: Final = "interpolation"
 
 STUDY_COLUMNS: Final = (
@@ -68,6 +69,16 @@ STUDY_COLUMNS: Final = (
     _study(Quantity.ANGLE, "motion", "axis_dispersion_rms_deg"),
     _study(Quantity.ANGLE, "motion", "axis_dispersion_max_deg"),
     _study(Quantity.LENGTH, "motion", "axis_distance_rms_mm"),
+    _study(Quantity.LABEL, "motion", "joint_type", "type", name="joint_type"),
+    _study(Quantity.LABEL, "motion", "joint_type", "status", name="joint_type_status"),
+    _study(Quantity.ANGLE, *_TWO, "angle_between_deg", name="axes_angle"),
+    _study(Quantity.LENGTH, *_TWO, "distance_mm", name="axes_distance"),
+    _study(Quantity.ANGLE, *_TWO, "axis1", "range_deg", name="axis1_range"),
+    _study(Quantity.ANGLE, *_TWO, "axis1", "cone95_deg", name="axis1_cone95"),
+    _study(Quantity.ANGLE, *_TWO, "axis2", "range_deg", name="axis2_range"),
+    _study(Quantity.ANGLE, *_TWO, "axis2", "cone95_deg", name="axis2_cone95"),
+    _study(Quantity.LENGTH, "motion", "joint_numbers", "ball", "radius95_mm", name="center_radius95"),
+    _study(Quantity.ANGLE, "motion", "joint_numbers", "wander", "size_deg", name="axis_wander"),
     _study(Quantity.INTEGER, "motion", "single_axis"),
     _study(Quantity.LABEL, *_JOINT, "model", name="joint_model"),
     *_study_vector("joint_axis", Quantity.NUMBER, *_JOINT, "direction"),

@@ -121,7 +121,7 @@ def rows_after(told: Told, first: str) -> list[list[str]]:
     """Rows of the table whose head begins with a word."""
     rows = told.page.rows
     (start,) = (k for k, row in enumerate(rows) if row and row[0] == first)
-    heads = {"Estimate", "Frame", "No.", "Phase", "Error of the model", "Body", "Option"}
+    heads = {"Estimate", "Type tried", "Axis", "Frame", "No.", "Phase", "Error of the model", "Body", "Option"}
     found = []
     for row in rows[start + 1 :]:
         if row[0] in heads:
@@ -152,6 +152,38 @@ def test_table_of_the_joints_axis(told: Told) -> None:
     assert [row[1:7] for row in rows][: len(expected)] == expected
     marked = [row[0] for row in rows if "preferred" in row[0]]
     assert len(marked) == (joint["preferred"] is not None)
+
+
+def test_tables_of_the_joints_type(told: Told) -> None:
+    kind, two = told.joint["joint_type"], told.joint["two_axes"]
+    assert f"Reason: {kind['reason']}." in told.page.texts
+    if kind["candidates"]:
+        assert [row[1:] for row in rows_after(told, "Type tried")][: len(kind["candidates"])] == [
+            [
+                *(dec(one[name], 3) for name in ("residual_deg", "residual_mm")),
+                dec(one["heldout_variance"]),
+                *(str(one[name]) for name in ("shared", "per_frame")),
+                "yes" if one["valid"] else "no",
+            ]
+            for one in kind["candidates"]
+        ]
+    if two is not None:
+        words = told.summary["trial"]["joint"]
+        assert rows_after(told, "Axis")[:2] == [
+            [
+                f"{k}, fixed in the {words[end]}",
+                *(
+                    ", ".join(vec(two[f"axis{k}"][f"{what}"], decimals))
+                    for body in ("proximal", "distal")
+                    for what, decimals in ((f"direction_in_{body}", 4), (f"point_in_{body}_mm", 1))
+                ),
+                dec(two[f"axis{k}"]["cone95_deg"], 3),
+                dec(two[f"axis{k}"]["radius95_mm"], 3),
+                dec(two[f"axis{k}"]["range_deg"], 1),
+                dec(two[f"axis{k}"]["angle_sd_deg"], 3),
+            ]
+            for k, end in ((1, "proximal"), (2, "distal"))
+        ]
 
 
 def test_table_of_single_axes(told: Told) -> None:
@@ -295,6 +327,34 @@ def texts_with_numbers(told: Told) -> Iterator[tuple[str, list[str]]]:
             *(dec(spread[f"place_{kind}_mm"]) for kind in ("95", "max")),
         ],
     )
+    kind, two, ball = joint["joint_type"], joint["two_axes"], joint["ball"]
+    yield "Reason: ", numbers(kind["reason"])
+    if two is not None:
+        names = [f"{name}{end}" for name in ("angle_between_deg", "distance_mm") for end in ("", "_low", "_high")]
+        yield "The axes are", [dec(two[name], 1) for name in names]
+    if ball is not None:
+        within = [] if ball["radius95_mm"] is None else [dec(ball["radius95_mm"])]
+        yield (
+            "The center is at",
+            [*vec(ball["center_in_proximal_mm"], 1), *within, *vec(ball["center_in_distal_mm"], 1)],
+        )
+    if joint["second_rotation"] is not None:
+        second = joint["second_rotation"]
+        axis = second["axis"]
+        yield (
+            "Beside the hinge there is",
+            [dec(second["range_deg"]), *([] if axis is None else vec(axis["direction_in_distal"], 4))],
+        )
+    if joint["wander"] is not None:
+        size = "size" if joint["wander"]["significant"] else "unseen"
+        sizes = [dec(joint["wander"][f"{size}_{unit}"]) for unit in ("deg", "mm")]
+        yield ("The axis wanders by" if size == "size" else "The axis is not seen to wander"), sizes
+    yield "The 95 % intervals are those of", ["95"]
+    if joint["sensitivity_deg_per_deg"] is not None:
+        yield "Each degree that a cluster turns", [dec(joint["sensitivity_deg_per_deg"])]
+    if joint["skin_motion"] is not None:
+        stated = joint["skin_motion"]
+        yield "Stated and included is", [dec(stated[name]) for name in ("mm", "deg", "part_deg", "part_mm")]
     yield r"\d+ of \d+ frames; all stand in screw.csv", [str(min(axis_frames, 24)), str(axis_frames)]
     count, again = str(len(told.repetitions)), joint["repeatability"]
     yield r"± standard deviation mean of", [count]

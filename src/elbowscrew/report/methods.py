@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Final
 
-from elbowscrew.model.joint_summary_types import NoiseOfBodies
+from elbowscrew.model.joint_summary_types import JointSummary, NoiseOfBodies
 from elbowscrew.model.summary_types import ModelSummary, TrialSummary
 from elbowscrew.results.joint_summary import preferred_fit
 from elbowscrew.view.trial_view import TrialView
@@ -150,6 +150,7 @@ def _joint_axis(trial: TrialView) -> Iterator[str]:
             f"The motion has no single axis (a hinge leaves {left} unexplained); the mean of the helical axes, "
             "weighted by sin²(θ/2), is given (Woltring 1994)."
         )
+        yield from _other_joint(joint)
     else:
         robust = ", frames weighted by Tukey's biweight" if trial.settings.robust else ""
         if screw_hinge["pitch_sd_mm_per_rad"] is None:
@@ -157,14 +158,22 @@ def _joint_axis(trial: TrialView) -> Iterator[str]:
         else:
             exceeds = "exceeds" if preferred == "screw_hinge" else "does not exceed"
             why = f"the pitch of the screw-hinge {exceeds} what a hinge shows by chance (99.73 %)"
+        if joint["joint_type"]["status"] == "forced":
+            why = "stated"
         yield (
             f"The joint axis was fitted to the relative poses of {fit['frames']} frames by maximum likelihood as a "
             f"hinge and as a screw-hinge{robust}; the {preferred.replace('_', '-')} is reported, as {why}."
         )
-        if fit["axis_cone95_deg"] is not None:
+        wander, told = joint["wander"], joint["mean_axis"] or fit
+        if joint["mean_axis"] is not None and wander is not None and wander["size_deg"] is not None:
             yield (
-                f"Its 95 % cone and radius, {fit['axis_cone95_deg']:.2g}° and {fit['point_radius95_mm']:.2g} mm, are "
-                f"those of the marker clusters' frames, {fit['interval_method']}. They hold if the clusters move on "
+                f"As the axis turns by {wander['size_deg']:.2g}° over the range of the angle, its mean over the "
+                "range is reported."
+            )
+        if told["axis_cone95_deg"] is not None:
+            yield (
+                f"Its 95 % cone and radius, {told['axis_cone95_deg']:.2g}° and {told['point_radius95_mm']:.2g} mm, are "
+                f"those of the marker clusters' frames, {told['interval_method']}. They hold if the clusters move on "
                 "the bone no more as a whole than their markers among themselves; each degree that a cluster turns "
                 f"with the motion turns the axis by up to {fit['sensitivity_deg_per_deg']:.2g}°."
             )
@@ -176,6 +185,21 @@ def _joint_axis(trial: TrialView) -> Iterator[str]:
         "The dispersion of the helical axes is their angle to the plain mean of their directions "
         f"(median {joint['dispersion']['direction_median_deg']:.2g}°)."
     )
+
+
+def _other_joint(joint: JointSummary) -> Iterator[str]:
+    """Tell of two axes or a center, where the motion has them."""
+    two, ball, kind = joint["two_axes"], joint["ball"], joint["joint_type"]
+    if two is None and ball is None:
+        return
+    status = "stated" if kind["status"] == "forced" else kind["status"]
+    found = "two axes, one fixed in each segment" if two is not None else "a ball joint"
+    yield (
+        f"By maximum likelihood of all relative poses the joint is {found} ({status}), θ mixing its rotations; its own "
+        "angles are given for each frame."
+    )
+    if kind["interval_method"] is not None:
+        yield f"The 95 % intervals are those of the marker clusters' frames, {kind['interval_method']}."
 
 
 def _model(trial: TrialView) -> Iterator[str]:

@@ -11,7 +11,7 @@ import numpy as np
 from markupsafe import Markup
 
 from elbowscrew.geometry.arrays import Float
-from elbowscrew.model.summary_types import Summary
+from elbowscrew.model.summary_types import MotionSummary, Summary
 from elbowscrew.report.charts import path_of
 from elbowscrew.report.distributions import LEAST, LIMIT, modified_z, strip_chart
 from elbowscrew.report.pages import UNSHOWABLE, render, unshowable, write_page
@@ -34,9 +34,16 @@ class Measure(NamedTuple):
     decimals: int
 
 
+def _second_range(motion: MotionSummary) -> float | None:
+    """Range about the second of two axes; None of other joints."""
+    two = motion["joint_numbers"]["two_axes"]
+    return None if two is None else two["axis2"]["range_deg"]
+
+
 MEASURES: Final = (
     Measure("top", "Largest angle", "deg", lambda one: one["motion"]["theta_max_deg"], 1),
     Measure("dispersion", "Dispersion of the axes", "deg", lambda one: one["motion"]["axis_dispersion_deg"], 2),
+    Measure("second", "Range about the second axis", "deg", lambda one: _second_range(one["motion"]), 1),
     Measure("error", "Model error, RMS rotation", "deg", lambda one: one["interpolation"]["rms_angle_error_deg"], 2),
 )
 

@@ -1,0 +1,100 @@
+"""The joint's type in sentences: what was found, what its intervals include, and what they do not."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from elbowscrew.model.joint_summary_types import JointSummary, TwoAxesSummary
+from elbowscrew.report.pages import number, vector
+from elbowscrew.view.trial_view import TrialView
+
+TYPE_WORDS = {
+    "rigid": "a rigid joint",
+    "hinge": "a hinge",
+    "screw_hinge": "a screw-hinge",
+    "two_axes": "two axes",
+    "ball": "a ball",
+    "free": "free",
+    "undetermined": "undetermined",
+}
+"""What types are called in a sentence."""
+
+
+def joint_sentences(view: TrialView) -> tuple[str, ...]:
+    """Say what the joint is, in sentences for the page."""
+    return tuple(_sentences(view))
+
+
+def _sentences(view: TrialView) -> Iterator[str]:
+    joint = view.joint_summary
+    two, ball = joint["two_axes"], joint["ball"]
+    if two is not None:
+        yield _apart(two)
+    if ball is not None:
+        within = "" if ball["radius95_mm"] is None else f", within {number(ball['radius95_mm'])} mm"
+        yield (
+            f"The center is at ({vector(ball['center_in_proximal_mm'], 1)}) mm in the proximal body{within}, and at "
+            f"({vector(ball['center_in_distal_mm'], 1)}) mm in the distal one."
+        )
+    yield from _beside_a_hinge(joint)
+    yield from _intervals(joint)
+    if two is not None or ball is not None:
+        mixed = "both axes" if two is not None else "all directions"
+        yield (
+            f"The angle θ mixes rotations about {mixed}; the joint’s own angles stand in joint_angles.csv and in the "
+            "figure joint_angles."
+        )
+    side = view.summary["trial"]["joint"]["side"]
+    if two is not None and side is not None and view.named_joint.name == "elbow":
+        yield f"On this {side} side a positive second angle is pronation, as far as the second axis is the forearm’s."
+
+
+def _apart(two: TwoAxesSummary) -> str:
+    limits = f"({number(two['angle_between_deg_low'], 1)} to {number(two['angle_between_deg_high'], 1)})"
+    if two["distance_mm"] is None:
+        off = f"({number(two['parallel_offset_mm_low'], 1)} to {number(two['parallel_offset_mm_high'], 1)})"
+        return f"The axes are parallel, {number(two['parallel_offset_mm'], 1)} mm {off} apart."
+    far = f"({number(two['distance_mm_low'], 1)} to {number(two['distance_mm_high'], 1)})"
+    return (
+        f"The axes are {number(two['angle_between_deg'], 1)} deg {limits} apart in direction, and "
+        f"{number(two['distance_mm'], 1)} mm {far} along their common normal."
+    )
+
+
+def _beside_a_hinge(joint: JointSummary) -> Iterator[str]:
+    second, wander = joint["second_rotation"], joint["wander"]
+    if second is not None:
+        axis = second["axis"]
+        which = (
+            "its axis is undetermined"
+            if axis is None
+            else f"its axis in the distal body is ({vector(axis['direction_in_distal'], 4)})"
+        )
+        yield f"Beside the hinge there is a second rotation of {number(second['range_deg'])} deg; {which}."
+    if wander is not None and wander["significant"]:
+        yield (
+            f"The axis wanders by {number(wander['size_deg'])} deg and {number(wander['size_mm'])} mm over the range "
+            "of the angle: what is told first is its mean, and axis_path.csv has it against the angle."
+        )
+    elif wander is not None:
+        yield (
+            f"The axis is not seen to wander; less than {number(wander['unseen_deg'])} deg and "
+            f"{number(wander['unseen_mm'])} mm over the range would not be seen."
+        )
+
+
+def _intervals(joint: JointSummary) -> Iterator[str]:
+    method, skin, kappa = joint["joint_type"]["interval_method"], joint["skin_motion"], joint["sensitivity_deg_per_deg"]
+    if method is None:
+        return
+    yield (
+        f"The 95 % intervals are those of the clusters’ frames, {method}. They hold if the clusters move on the bone "
+        "no more as a whole than their markers among themselves; skin often moves more: --skin-motion states it."
+    )
+    if kappa is not None:
+        yield f"Each degree that a cluster turns on its bone with the motion turns it by up to {number(kappa)} deg."
+    if skin is not None:
+        yield (
+            f"Stated and included is motion of each cluster as a whole of {number(skin['mm'])} mm and "
+            f"{number(skin['deg'])} deg: its part is {number(skin['part_deg'])} deg and {number(skin['part_mm'])} mm."
+        )
