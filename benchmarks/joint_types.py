@@ -1,6 +1,7 @@
 """Whether the search for two axes fails, which joint is told for which, and what the intervals cover.
 
     python benchmarks/joint_types.py [--quick] [--seed N] [--trials N] [starts] [types] [pronation] [coverage]
+        [intervals]
 
 Synthetic joints with both bodies' noise. Types: by noise, range and what real joints add, an axis that wanders by 5 deg
 and a cluster that moves on the bone by 4 deg and 5 mm; the noise's size is not told to the choice. Apart from these
@@ -21,6 +22,8 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "support"))
 
 import moving_joints as mj
+from cluster_noise import skin, smooth_skin, turning, wander, white
+from typed_noise import Kind, joint_of, skin_of_both, typed_coverage
 
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry import quaternion as qn
@@ -42,7 +45,7 @@ TYPES = ("rigid", "hinge", "two_axes", "ball", "free")
 def main() -> None:
     """Print the tables in Markdown."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("parts", nargs="*", default=["starts", "types", "pronation", "coverage"])
+    parser.add_argument("parts", nargs="*", default=["starts", "types", "pronation", "coverage", "intervals"])
     parser.add_argument("--quick", action="store_true")
     parser.add_argument("--seed", type=int, default=15)
     parser.add_argument(
@@ -58,6 +61,34 @@ def main() -> None:
         pronation(trials or (3 if options.quick else 20), options.seed)
     if "coverage" in options.parts:
         coverage(trials or (30 if options.quick else 300), options.seed)
+    if "intervals" in options.parts:
+        intervals(trials or (10 if options.quick else 60), options.seed)
+
+
+def intervals(trials: int, seed: int) -> None:
+    """Print how often the truth is within the intervals that stand on markers' RMS, residuals and blocks."""
+    noises = {
+        "white 0.2 mm": white(),
+        "skin with the flexion, 5 mm": skin(5e-3),
+        "skin with both angles, 5 mm": skin_of_both(5e-3),
+        "skin, smooth, 5 mm": smooth_skin(5e-3),
+        "markers wander, 2 mm": wander(2e-3),
+        "clusters turn, 2 deg": turning(np.radians(2.0)),
+    }
+    joints: tuple[tuple[Kind, float, int], ...] = (
+        ("two_axes", 140.0, 1),
+        ("two_axes", 60.0, 1),
+        ("two_axes", 140.0, 8),
+        ("two_axes", 60.0, 8),
+        ("ball", 60.0, 1),
+    )
+    print("\n| joint | deg | cycles | noise | held | sharpness |\n| --- | --- | --- | --- | --- | --- |")
+    for kind, top_deg, cycles in joints:
+        for name, noise in noises.items():
+            found = typed_coverage(kind, joint_of(kind, top_deg, cycles), noise, trials, seed=seed)
+            held = ", ".join(f"{what} {share:.2f}" for what, share in zip(found.names, found.held, strict=True))
+            sharp = f"{found.sharpness.min():.1f} to {found.sharpness.max():.1f}"
+            print(f"| {kind} | {top_deg:g} | {cycles} | {name} | {held} | {sharp} |", flush=True)
 
 
 def starts(share: int, seed: int) -> None:
@@ -155,14 +186,14 @@ def pronation(trials: int, seed: int) -> None:
     rng = np.random.default_rng(seed)
     print("\n| pronation, deg | cluster | noise | told | second rotation, deg | flexion axis off, deg |")
     print("| --- | --- | --- | --- | --- | --- |")
-    for skin in (False, True):
+    for moves in (False, True):
         for size in PRONATIONS_DEG:
             for stated in (True, False):
                 told: Counter[str] = Counter()
                 second, off = [], []
                 for _ in range(trials):
                     poses, axis = pronating(size, rng)
-                    poses = mj.with_skin(poses, rng, 4.0, 0.005) if skin else poses
+                    poses = mj.with_skin(poses, rng, 4.0, 0.005) if moves else poses
                     seen, covariance = mj.noisy(poses, rng, *NOISES[0])
                     found = identify_joint(seen, covariance, seen[0], noise_known=stated)
                     told[f"{found.type} {found.status or ''}".strip()] += 1
@@ -172,7 +203,7 @@ def pronation(trials: int, seed: int) -> None:
                         off.append(np.degrees(mj.angle_between(found.two_axes.axis1.direction_proximal, axis)))
                 kinds = ", ".join(f"{count} {name}" for name, count in told.items())
                 cells = [f"{np.median(values):.2f}" if values else "" for values in (second, off)]
-                where, noise = "moves" if skin else "sits", "stated" if stated else "not stated"
+                where, noise = "moves" if moves else "sits", "stated" if stated else "not stated"
                 print(f"| {size} | {where} | {noise} | {kinds} | {cells[0]} | {cells[1]} |", flush=True)
 
 
