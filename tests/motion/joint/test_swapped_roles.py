@@ -1,0 +1,46 @@
+"""Which body is called proximal changes no axis and no cone."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from elbowscrew import Analysis, Recording, Settings, analyze, simulate_trial
+from elbowscrew.geometry.arrays import Float
+
+
+def analyzed(recording: Recording, proximal: str, distal: str, express_in: str) -> Analysis:
+    return analyze(recording, Settings(proximal=proximal, distal=distal, express_in=express_in, joint="elbow"))
+
+
+def off(one: Float, other: Float) -> float:
+    """Angle between two lines without a sense, rad."""
+    return float(np.arcsin(min(1.0, float(np.linalg.norm(np.cross(one, other))))))
+
+
+def test_swapped_roles_give_the_same_hinge_and_cone() -> None:
+    recording = simulate_trial(joint_type="hinge", proximal="moving", frames=200, inversion=95, seed=3).recording
+    arm, forearm = (body.name for body in recording.bodies)
+    one = analyzed(recording, arm, forearm, "distal").joint_axis.headline
+    two = analyzed(recording, forearm, arm, "proximal").joint_axis.headline
+    assert one is not None
+    assert two is not None
+    assert off(one.line.direction, two.line.direction) < 1e-5
+    assert two.axis_cone == pytest.approx(one.axis_cone, rel=0.02)
+    assert two.line.point == pytest.approx(one.line.point, abs=1e-5)
+    assert two.point_radius == pytest.approx(one.point_radius, rel=0.02)
+
+
+def test_swapped_roles_exchange_the_two_axes() -> None:
+    recording = simulate_trial(joint_type="two-axes", proximal="moving", frames=200, inversion=95, seed=3).recording
+    arm, forearm = (body.name for body in recording.bodies)
+    one = analyzed(recording, arm, forearm, "distal").joint_type
+    two = analyzed(recording, forearm, arm, "distal").joint_type
+    assert one is not None
+    assert two is not None
+    assert one.two_axes is not None
+    assert two.two_axes is not None
+    for mine, theirs in ((one.two_axes.axis1, two.two_axes.axis2), (one.two_axes.axis2, two.two_axes.axis1)):
+        assert off(mine.direction_distal, theirs.direction_proximal) < 1e-3
+        assert theirs.axis_cone == pytest.approx(mine.axis_cone, rel=0.1)
+    assert two.two_axes.angle_between.value == pytest.approx(one.two_axes.angle_between.value, abs=1e-3)
