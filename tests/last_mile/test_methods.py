@@ -53,6 +53,15 @@ def two_axes_moving() -> Recording:
     return Recording.from_bodies([body], rate_hz=100.0)
 
 
+def ball_joint() -> Recording:
+    """Rotations about one point, no axis before another."""
+    turn = np.linspace(0.0, 2.0 * np.pi, 150)
+    R = Rotation.from_rotvec(np.stack([np.sin(turn), np.sin(2.0 * turn), 0.3 * np.cos(turn)], axis=1))
+    place = np.array([0.03, 1.2, 0.08]) + R.apply([0.0, -0.25, 0.0])
+    body = RigidBody.from_quaternions("Forearm", R.as_quat()[:, [3, 0, 1, 2]], place)
+    return Recording.from_bodies([body], rate_hz=100.0)
+
+
 def from_file() -> Recording:
     return read_recording(Path(__file__).parent.parent.parent / "sample_data" / "elbow_moving_arm_mm.csv")
 
@@ -73,6 +82,10 @@ CASES: dict[str, tuple[Callable[[], Recording], dict[str, Any]]] = {
     "unsigned": (USUAL, {"signed": "no"}),
     "ball": (ball, {}),
     "two axes": (two_axes_moving, {}),
+    "ball joint": (ball_joint, {}),
+    "own angles": (USUAL, {"method": "joint"}),
+    "own two angles": (two_axes_moving, {"method": "joint"}),
+    "stated hinge": (USUAL, {"joint_type": "hinge"}),
     "ball, signed": (ball, {"signed": "yes"}),
     "filtered": (USUAL, {"lowpass_hz": 6.0}),
     "automatic": (USUAL, {"lowpass_hz": "auto"}),
@@ -164,6 +177,8 @@ def single_axis(case: Case) -> str:
     fit = case.told.joint["screw_hinge"]
     if fit is None:
         return "none"
+    if case.settings.joint_type != "auto":
+        return f"{case.settings.joint_type.replace('_', '-')}, stated"
     if fit["pitch_sd_mm_per_rad"] is None:
         return "hinge, unsure"
     return "screw-hinge" if abs(fit["pitch_mm_per_rad"]) > 3.5 * fit["pitch_sd_mm_per_rad"] else "hinge"
@@ -175,7 +190,7 @@ def unexplained(case: Case) -> str:
 
 
 def interval(case: Case) -> str:
-    fit = reported(case)
+    fit = case.told.joint["mean_axis"] or reported(case)
     return "none" if fit is None or fit["decided_by"] is None else str(fit["decided_by"])
 
 
@@ -185,7 +200,7 @@ def reported(case: Case) -> Any:
 
 
 def interval_texts(case: Case) -> dict[str, str]:
-    fit = reported(case)
+    fit = case.told.joint["mean_axis"] or reported(case)
     if fit is None or fit["axis_cone95_deg"] is None:
         radii = "no radii"
     else:
@@ -227,6 +242,12 @@ MODEL_WORDS = {
     "sdlb": "dual quaternion linear blending of neighboring poses (sDLB)",
     "dib": "dual quaternion iterative blending (DIB)",
     "catmull-rom": "a Catmull-Rom spline of dual quaternions",
+}
+OWN_ANGLES = {
+    "hinge": "the hinge's angle",
+    "screw_hinge": "the screw-hinge's angle",
+    "two_axes": "the angles about the joint's two axes",
+    "ball": "the ball joint's rotation",
 }
 
 DECISIONS: dict[str, tuple[Outcome, Sentences]] = {
@@ -323,7 +344,23 @@ DECISIONS: dict[str, tuple[Outcome, Sentences]] = {
             "hinge": "; the hinge is reported, as the pitch of the screw-hinge does not exceed what a hinge shows "
             "by chance (99.73 %).",
             "hinge, unsure": "; the hinge is reported, as no error can be given for the pitch of the screw-hinge.",
+            "hinge, stated": "; the hinge is reported, as stated.",
             "none": f"The motion has no single axis (a hinge leaves {unexplained(case)} unexplained)",
+        },
+    ),
+    "wander": (
+        lambda case: "wanders" if (case.told.folder / "axis_path.csv").exists() else "none",
+        lambda case: {
+            "wanders": f"As the axis turns by {(case.told.joint['wander'] or {}).get('size_deg') or 0.0:.2g}° over the "
+            "range of the angle, its mean over the range is reported."
+        },
+    ),
+    "other joint": (
+        lambda case: next((kind for kind in ("two_axes", "ball") if case.told.joint[kind] is not None), "none"),
+        lambda case: {
+            "two_axes": "the joint is two axes, one fixed in each segment "
+            f"({case.told.joint['joint_type']['status']}), θ mixing its rotations",
+            "ball": f"the joint is a ball joint ({case.told.joint['joint_type']['status']}), θ mixing its rotations",
         },
     ),
     "robust": (
@@ -353,7 +390,10 @@ DECISIONS: dict[str, tuple[Outcome, Sentences]] = {
         lambda case: str(case.told.keyframes["method"].iloc[0]),
         lambda case: {
             name: f"The motion was modeled by {words} of {len(case.told.keyframes)} keyframe poses ("
-            for name, words in MODEL_WORDS.items()
+            for name, words in {
+                **MODEL_WORDS,
+                "joint": f"interpolation of {OWN_ANGLES.get(case.told.joint['joint_type']['type'], '?')}",
+            }.items()
         },
     ),
     "listed": (

@@ -29,6 +29,17 @@ NAMED: dict[str, tuple[str | int, ...]] = {
     "radius_of_gyration": ("interpolation", "points", "radius_of_gyration_mm"),
     "radius_from": ("interpolation", "points", "from"),
     "source_sha256": ("source", "sha256"),
+    "joint_type": ("motion", "joint_type", "type"),
+    "joint_type_status": ("motion", "joint_type", "status"),
+    "axes_angle": ("motion", "joint_numbers", "two_axes", "angle_between_deg"),
+    "axes_distance": ("motion", "joint_numbers", "two_axes", "distance_mm"),
+    **{
+        f"axis{k}_{name}": ("motion", "joint_numbers", "two_axes", f"axis{k}", f"{name}_deg")
+        for k in (1, 2)
+        for name in ("range", "cone95")
+    },
+    "center_radius95": ("motion", "joint_numbers", "ball", "radius95_mm"),
+    "axis_wander": ("motion", "joint_numbers", "wander", "size_deg"),
     "elbowscrew": ("elbowscrew",),
     **{f"axis_{x}": ("motion", "mean_axis", "direction", k) for k, x in enumerate("xyz")},
     **{f"point_{x}": ("motion", "mean_axis", "point_mm", k) for k, x in enumerate("xyz")},
