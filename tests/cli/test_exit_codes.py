@@ -17,7 +17,7 @@ from oracles import known_trial
 
 from elbowscrew.cli import main
 
-TRIAL = known_trial(120.0, frames=60, inversion=30, seed=1)
+TRIAL = known_trial(120.0, frames=120, inversion=60, seed=1, gentle=True)
 
 
 @pytest.fixture
@@ -146,10 +146,10 @@ def test_a_folder_is_no_trial(take: Path, capsys: pytest.CaptureFixture[str]) ->
         (["--max-gap", "inf"], 2, "max-gap"),
         (["--units", "mm"], 4, "contradicts"),
         (["--config", "none.toml"], 2, "none.toml"),
-        (["--inversion", "30", "--keyframes", "0,59"], 2, "inversion"),
+        (["--inversion", "60", "--keyframes", "0,119"], 2, "inversion"),
         (["--arm", "Leg"], 4, "no such body; the file has 'Upper Arm'"),
         (["--arm", "Forearm", "--forearm", "Forearm"], 4, "both as proximal and as distal"),
-        (["--reference", "60"], 4, "frames 0 to 59"),
+        (["--reference", "120"], 4, "frames 0 to 119"),
         (["--inversion", "-3"], 4, "no such frame"),
         (["--keyframes", "0,30,1000"], 4, "no such frame"),
         (["--rotation", "XYZ"], 4, "the file has quaternions"),
@@ -175,7 +175,7 @@ def test_all_frames_blank_cannot_be_analyzed(tmp_path: Path, capsys: pytest.Capt
     path = write_columns(tmp_path / "blank.csv", bodies)
     code, _, err = run(capsys, "analyze", path, "-o", tmp_path / "out")
     assert code == 5
-    assert "0.0 % of 60 frames (60 blank)" in err
+    assert "0.0 % of 120 frames (120 blank)" in err
     assert_one_line(err)
 
 

@@ -89,13 +89,19 @@ class KnownTrial:
 
 
 def known_trial(
-    top_deg: float, *, frames: int = 450, inversion: int = 211, slide: float = 0.004, seed: int = 0
+    top_deg: float,
+    *,
+    frames: int = 450,
+    inversion: int = 211,
+    slide: float = 0.004,
+    seed: int = 0,
+    gentle: bool = False,
 ) -> KnownTrial:
-    """Flex to the top at the inversion and back, by smoothstep; the first pose is the reference."""
+    """Flex to the top at the inversion and back, by smoothstep or as gently as by minimum jerk, from the reference."""
     rng = np.random.default_rng(seed)
     i = np.arange(frames)
     tau = np.where(i <= inversion, i / inversion, (frames - 1 - i) / (frames - 1 - inversion))
-    progress = tau**2 * (3.0 - 2.0 * tau)
+    progress = tau**3 * (10.0 - 15.0 * tau + 6.0 * tau**2) if gentle else tau**2 * (3.0 - 2.0 * tau)
     angle, s = np.radians(top_deg) * progress, slide * progress
     direction = rng.normal(size=3)
     direction /= np.linalg.norm(direction)
