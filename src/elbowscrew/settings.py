@@ -331,17 +331,16 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
 
     @model_validator(mode="after")
     def _check_keyframes(self) -> Settings:
-        frames = self.keyframes
-        if frames is not None:
-            if any(later <= earlier for earlier, later in itertools.pairwise(frames)):
-                msg = "keyframes must increase"
-                raise ValueError(msg)
-            if self.inversion is not None and self.inversion not in frames[1:-1]:
-                msg = (
-                    f"the inversion ({self.inversion}) must be one of the keyframes between the first and the last: "
-                    "add it to --keyframes or leave --inversion out"
-                )
-                raise ValueError(msg)
+        frames = self.keyframes or ()
+        if any(later <= earlier for earlier, later in itertools.pairwise(frames)):
+            msg = "keyframes must increase"
+            raise ValueError(msg)
+        if frames and self.inversion is not None and self.inversion not in frames[1:-1]:
+            msg = (
+                f"the inversion ({self.inversion}) must be one of the keyframes between the first and the last: "
+                "add it to --keyframes or leave --inversion out"
+            )
+            raise ValueError(msg)
         return self
 
 

@@ -151,7 +151,7 @@ def test_angles_over_time_and_against_each_other(elbow: Analysis) -> None:
         (name,) = (name for name in drawn if name.startswith(f"Angle {k + 1}"))
         assert drawn[name] == pytest.approx(np.degrees(found.angle[:, k]))
         assert f"±{np.nanmedian(np.degrees(1.959964 * found.angle_sd[:, k])):.2g} deg" in name
-    assert labels(left)["rotation left"] == pytest.approx(np.degrees(found.residual_rotation))
+    assert labels(left)["residual rotation"] == pytest.approx(np.degrees(found.residual_rotation))
     beside = figure.axes[3]
     assert np.asarray(beside.get_lines()[0].get_ydata()) == pytest.approx(1000.0 * found.residual_translation)
     line = together.get_lines()[0]
