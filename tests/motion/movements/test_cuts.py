@@ -274,6 +274,13 @@ def test_a_motion_that_ends_by_no_law_is_in_doubt(decay_s: float) -> None:
     assert moves.offset_sd_s[0] > 0.25 * decay_s
 
 
+@pytest.mark.parametrize("frames", [50, 200, 500])
+def test_a_record_that_begins_and_ends_amid_the_motion_is_moving_all_along(frames: int) -> None:
+    angle = np.linspace(0.0, 2.0, frames) + still().normal(0.0, 0.002, frames)
+    moves = cut(angle, np.arange(frames) / RATE, RATE).movements
+    assert (moves.onset_s.tolist(), moves.offset_s.tolist()) == ([0.0], [pytest.approx((frames - 1) / RATE)])
+
+
 @pytest.mark.parametrize("share", [0.02, 0.037, 0.1])
 def test_laws_by_their_closed_forms(share: float) -> None:
     special = pytest.importorskip("scipy.special")

@@ -15,6 +15,7 @@ from elbowscrew.motion.movements.feet import (
     crossing,
     feet_of,
     foot_scale,
+    moves_at_end,
     pooled,
     pooled_feet,
     slope_at,
@@ -261,7 +262,13 @@ def _cycle_samples(swings: Swings, flanks: Flanks) -> tuple[Float, Float]:
         start_var = float(flanks.out_var[k]) if before is None else before.start_var
         end_var = float(flanks.back_var[k]) if after is None else after.end_var
         top, top_var = _inversion(swings, flanks, k)
-        samples[k] = max(start, 0.0), top, min(end, swings.smooth.size - 1.0)
+        final = swings.smooth.size - 1
+        low, turn, high = flanks.reversals[flanks.tops[k] - 1 : flanks.tops[k] + 2].tolist()
+        if low == 0 and moves_at_end(swings.smooth, 0, turn, swings.cutoff):
+            start = 0.0
+        if high == final and moves_at_end(swings.smooth, final, turn, swings.cutoff):
+            end = final
+        samples[k] = max(start, 0.0), top, min(end, final)
         variances[k] = start_var, top_var, end_var
     return samples, np.sqrt(variances)
 

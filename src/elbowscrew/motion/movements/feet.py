@@ -12,6 +12,8 @@ from elbowscrew.geometry.arrays import Float, Index
 LOW_SHARE: Final = 0.1
 _HIGHEST_SHARE: Final = 0.3
 _OVER_NOISE: Final = 5.0
+# The filter stills the ends of the record: whether the joint moves there is seen over so many periods of its cut-off.
+_PERIODS_AT_AN_END: Final = 0.75
 
 _LAW_TIME: Final = np.linspace(0.0, 1.0, 2001)
 _LAW: Final = 10.0 * _LAW_TIME**3 - 15.0 * _LAW_TIME**4 + 6.0 * _LAW_TIME**5
@@ -143,6 +145,16 @@ def crossing(series: Float, start: int, stop: int, level: float, *, rising: bool
     if k == 0:
         return float(start)
     return float(start + step * (k - 1 + (part[k - 1] - level) / (part[k - 1] - part[k])))
+
+
+def moves_at_end(smooth: Float, end: int, inner: int, cutoff: float) -> bool:
+    """Whether the joint moves at an end of the record, at half of the highest speed from there to a reversal.
+
+    The cut-off of the filter is in cycles a sample.
+    """
+    series = smooth[end : inner + 1] if inner > end else smooth[inner : end + 1][::-1]
+    speed, span = np.abs(np.diff(series)), int(np.ceil(_PERIODS_AT_AN_END / cutoff))
+    return bool(speed.size > span and speed[:span].mean() >= 0.5 * speed.max() > 0.0)
 
 
 def slope_at(series: Float, sample: float) -> float:

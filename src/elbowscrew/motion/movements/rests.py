@@ -7,7 +7,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from elbowscrew.geometry.arrays import Bool, Float, Index
-from elbowscrew.motion.movements.feet import LOW_SHARE, Feet, feet_of, pooled, pooled_feet
+from elbowscrew.motion.movements.feet import LOW_SHARE, Feet, feet_of, moves_at_end, pooled, pooled_feet
 from elbowscrew.motion.movements.foot_laws import Distances, Shapes, Sharp, by_shape, shapes_of, sharp_of
 from elbowscrew.motion.movements.phases import runs_of
 from elbowscrew.motion.movements.swings import Swings
@@ -104,6 +104,11 @@ def strokes_of(swings: Swings) -> Strokes:
     gap, need = np.diff(feet.half), after[:-1] + before[1:]
     middle = feet.half[:-1] + gap * after[:-1] / np.maximum(need, 1e-12)
     end[:-1][over] = begin[1:][over] = middle[over]
+    final = swings.smooth.size - 1
+    if count and moves_at_end(swings.smooth, 0, int(bounds[1]), swings.cutoff):
+        begin[0] = 0.0
+    if count and moves_at_end(swings.smooth, final, int(bounds[-2]), swings.cutoff):
+        end[-1] = final
     return Strokes(
         bounds=bounds,
         begin=np.clip(begin, 0.0, swings.smooth.size - 1.0),
