@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from elbowscrew import Settings, Simulation, analyze, read_recording, simulate_trial
 from elbowscrew.errors import OutputError, UsageError
@@ -42,6 +43,19 @@ def test_the_truth_is_found_again_without_noise(express_in: Any, proximal: Any) 
     assert analysis.mean_axis.direction == pytest.approx(truth["direction"], abs=1e-9)
     assert 1000 * analysis.mean_axis.point == pytest.approx(truth["point_mm"], abs=1e-6)
     assert trial.truth["inversion_frames"] == [211, 211 + 449]
+
+
+def test_the_angles_of_a_row_tagged_file_are_those_of_its_quaternions(tmp_path: Path) -> None:
+    """R = Rx(roll) Rz(pitch) Ry(yaw): turns about axes that go along, written as yaw, pitch, roll."""
+    trial = simulate_trial(proximal="moving", frames=120, inversion=60, seed=2)
+    export, _ = save_simulation(trial, tmp_path / "t.csv", layout="row-tagged")
+    rows = [line.split(",") for line in export.read_text("utf-8").splitlines()]
+    bodies = [row[first + 1 : first + 11] for row in rows if row[0] == "frame" for first in (4, 15) if row[3] == "2"]
+    found = np.array(bodies, dtype=float)
+    assert len(found) == 240
+    angles = Rotation.from_quat(found[:, 3:7]).as_euler("XZY", degrees=True)
+    assert np.ptp(angles[:, 2]) > 40.0
+    assert found[:, [9, 8, 7]] == pytest.approx(angles, abs=1e-4)
 
 
 @pytest.mark.parametrize("layout", ["motive", "row-tagged"])

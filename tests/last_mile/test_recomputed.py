@@ -127,6 +127,20 @@ def test_names(told: Told, root: Path) -> None:
     assert f'"{told.summary["elbowscrew"]}"' in version
 
 
+def test_markers_of_a_simulated_file_are_where_its_poses_put_them(told: Told) -> None:
+    """The solved ones to a rounding, the seen ones within the noise, and the error column is their mean distance."""
+    for body in told.recording.bodies:
+        if not body.solved.size:
+            continue
+        rows = body.tracked
+        put = (np.einsum("nij,mj->nmi", body.R, body.offsets) + body.p[:, None])[rows]
+        assert np.abs(body.solved[rows] - put).max() < 0.01
+        away = np.linalg.norm(body.seen[rows] - put, axis=2)
+        assert 0.1 < np.median(away) < 0.6
+        assert away.max() < 2.0
+        assert body.error[rows] == pytest.approx(away.mean(axis=1), abs=0.01)
+
+
 def test_cuts(told: Told) -> None:
     """Movements follow one another; inversions are where theta turns back, and cycles have theirs among them."""
     motion, frame = told.summary["motion"], told.screw["frame"].tolist()
