@@ -68,6 +68,7 @@ NOISE_SOURCES: Final[tuple[NoiseSource, ...]] = get_args(NoiseSource)
 STATED_JOINTS: Final[tuple[StatedJoint, ...]] = get_args(StatedJoint)
 FRAMES: Final[tuple[ExpressIn, ...]] = get_args(ExpressIn)
 FIGURE_FORMATS: Final[tuple[FigureFormat, ...]] = get_args(FigureFormat)
+DRAWN_FORMATS: Final = tuple(kind for kind in FIGURE_FORMATS if kind != "none")
 
 
 def functions_named(names: tuple[str, ...], module: Mapping[str, Any]) -> dict[str, Any]:

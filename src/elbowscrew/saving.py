@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from elbowscrew import tables
+from elbowscrew.choices import DRAWN_FORMATS
 from elbowscrew.errors import ElbowscrewError, UsageError
 from elbowscrew.model import Analysis, Comparison, Landmarks, RebuiltMotion, TrialsComparison
 from elbowscrew.model.comparison_summary_types import ComparisonSummary, TrialsSummary
@@ -22,7 +23,6 @@ from elbowscrew.results.exporting import check_exports, write_exports
 from elbowscrew.results.joint_summary import joint_summary
 from elbowscrew.results.staging import (
     COMPARISON,
-    FIGURE_FORMATS,
     RESULT_FILES,
     result_folder,
     write_files,
@@ -141,9 +141,9 @@ def write_result(
 
 
 def _known_formats(formats: tuple[str, ...]) -> tuple[str, ...]:
-    unknown = sorted(set(formats) - set(FIGURE_FORMATS))
+    unknown = sorted(set(formats) - set(DRAWN_FORMATS))
     if unknown:
-        msg = f"figure formats: expected {', '.join(FIGURE_FORMATS)}, found {', '.join(unknown)}"
+        msg = f"figure formats: expected {', '.join(DRAWN_FORMATS)}, found {', '.join(unknown)}"
         raise UsageError(msg)
     return formats
 

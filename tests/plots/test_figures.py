@@ -14,7 +14,8 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from elbowscrew import Analysis, Settings, analyze, plots, simulate_trial
-from elbowscrew.plots import style
+from elbowscrew.choices import METHOD_LABELS, METHOD_NAMES
+from elbowscrew.plots import comparison, style
 
 
 @pytest.fixture(scope="module")
@@ -128,3 +129,7 @@ def test_every_axes_of_every_figure_has_labels_with_units(name: str, express_in:
     ]
     assert labels
     assert all("(" in label and label.endswith(")") for label in labels)
+
+
+def test_every_method_has_its_label_and_its_kind_between_two_poses() -> None:
+    assert set(METHOD_LABELS) == set(METHOD_NAMES) == set(comparison._BETWEEN_TWO)

@@ -72,6 +72,28 @@ def test_the_outlier_is_flagged_within_its_condition(study: Path) -> None:
     assert f"over {LIMIT}" in page
 
 
+def test_each_column_holds_what_its_heading_says(study: Path) -> None:
+    page = text_of(study)
+    above = page[page.index('id="h-trials"') :]
+    above = above[above.index("<thead") : above.index("</thead")]
+    headings = re.findall(r'<th scope="col"[^>]*>([^<]*)</th>', above)
+    (row,) = re.findall(r'<tr><th scope="row"><a href="[^"]+">trial 5</a></th>(.*?)</tr>', page)
+    cells = [re.sub("<[^>]*>", "", cell) for cell in re.findall(r"<td[^>]*>(.*?)</td>", row, re.DOTALL)]
+    (trial,) = (one for one in read_study(study).trials if one.folder == "trial 5")
+    motion, model = trial.summary["motion"], trial.summary["interpolation"]
+    shown = dict(zip(reversed(headings), reversed(cells), strict=False))
+    for heading, value in {
+        "Largest θ, deg": motion["theta_max_deg"],
+        "Dispersion, deg": motion["axis_dispersion_deg"],
+        "Model error, RMS rotation, deg": model["rms_angle_error_deg"],
+        "RMS displ., mm": model["rms_displacement_mm"],
+    }.items():
+        assert float(shown[heading].replace("−", "-")) == pytest.approx(
+            value, abs=0.051 if "Largest" in heading else 0.0051
+        ), heading
+    assert abs(model["rms_angle_error_deg"] - model["rmse_theta_deg"]) > 0.011
+
+
 def test_any_folder_of_results_will_do(result: Path, tmp_path: Path) -> None:
     shutil.copytree(result, tmp_path / "a" / "deep" / "one")
     shutil.copytree(result, tmp_path / "two")

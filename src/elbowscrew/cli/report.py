@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from elbowscrew.choices import FIGURE_FORMATS
+from elbowscrew.choices import DRAWN_FORMATS
 from elbowscrew.cli import options
 from elbowscrew.view.figure_names import FIGURE_CHOICES, FIGURE_ENTRIES, OVERLAY
 
@@ -87,7 +87,7 @@ def report(
         errors = ()
         names, wide = figure_names(figures), width_mm(width)
         formats = list(options.parts("figure-format", figure_format) or ("pdf",))
-        strange = [one for one in formats if one not in FIGURE_FORMATS or one == "none"]
+        strange = [one for one in formats if one not in DRAWN_FORMATS]
         if strange:
             msg = f"--figure-format {', '.join(strange)}: expected png, svg or pdf, as --figures asks for figures"
             raise UsageError(msg)

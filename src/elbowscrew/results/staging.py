@@ -12,12 +12,12 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Final, NamedTuple
 
+from elbowscrew.choices import DRAWN_FORMATS
 from elbowscrew.errors import OutputError
 from elbowscrew.results.exporting import EXPORTS
 from elbowscrew.tables import TABLES
 from elbowscrew.view.figure_names import SAVED_FIGURES
 
-FIGURE_FORMATS: Final = ("png", "svg", "pdf")
 _TABLE_ENDINGS: Final = (".csv", *(export.file for export in EXPORTS.values() if export.file.startswith(".")))
 RESULT_FILES: Final = (
     "summary.json",
@@ -25,7 +25,7 @@ RESULT_FILES: Final = (
     *(f"{name}{ending}" for name in TABLES for ending in _TABLE_ENDINGS),
     *(export.file for export in EXPORTS.values() if not export.file.startswith(".")),
     "report.html",
-    *(f"figures/{name}.{kind}" for name in SAVED_FIGURES for kind in FIGURE_FORMATS),
+    *(f"figures/{name}.{kind}" for name in SAVED_FIGURES for kind in DRAWN_FORMATS),
 )
 """All that a result folder may hold."""
 
@@ -39,7 +39,7 @@ class ResultKind(NamedTuple):
 
 ANALYSIS: Final = ResultKind(RESULT_FILES, "summary.json")
 COMPARISON: Final = ResultKind(
-    ("compare.csv", "compare.json", *(f"figures/compare.{kind}" for kind in FIGURE_FORMATS)), "compare.json"
+    ("compare.csv", "compare.json", *(f"figures/compare.{kind}" for kind in DRAWN_FORMATS)), "compare.json"
 )
 
 _PREFIX: Final = ".elbowscrew-"

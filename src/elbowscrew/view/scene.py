@@ -7,6 +7,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowscrew.geometry._blocks import evenly_thinned
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_quaternion import conjugate, multiply, pose_from_dual_quat, transform_points
 from elbowscrew.geometry.quaternion import rotate
@@ -129,7 +130,7 @@ def half_length(bodies: Bodies, center: Float) -> float:
 
 def axis_segments(view: TrialView, center: Float, half: float) -> tuple[NDArray[np.int64], Float]:
     """Rows (M,) of some of the frames with an axis, and pieces (M, 2, 3) of their axes about the center, meters."""
-    rows = thinned(np.flatnonzero(view.axis_known), _MOST_AXES)
+    rows = evenly_thinned(np.flatnonzero(view.axis_known), _MOST_AXES)
     direction, point = view.axis_direction[rows], view.axis_point[rows]
     middle = point + np.sum((center - point) * direction, axis=1, keepdims=True) * direction
     return rows, np.stack([middle - half * direction, middle + half * direction], axis=1)
@@ -146,8 +147,3 @@ def directions_across(direction: Float) -> tuple[tuple[Float, Float], tuple[str,
     if v[second] < 0.0:
         v = -v
     return (u, v), ("xyz"[first], "xyz"[second])
-
-
-def thinned(rows: NDArray[np.int64], most: int) -> NDArray[np.int64]:
-    """At most so many of the rows, evenly chosen, the first and the last among them."""
-    return rows if rows.size <= most else rows[np.linspace(0, rows.size - 1, most).astype(np.int64)]

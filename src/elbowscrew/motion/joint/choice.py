@@ -241,7 +241,7 @@ def _explained(contest: _Contest) -> Choice | None:
             if contest[contest.one].leaves_little or (name == "two_axes" and _doubtful(contest)):
                 return None
         found = contest.one if name == "hinge" else name
-        return _chosen(contest, found, "determined", f"{NAMES[found]}: the stated noise explains what it leaves")
+        return _chosen(contest, found, "determined", "the noise of the poses explains what it leaves")
     return None
 
 

@@ -9,6 +9,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from elbowscrew.geometry import dual_quaternion as dq
+from elbowscrew.geometry._blocks import evenly_thinned
 from elbowscrew.geometry._small_angle import half_cotangent_share, length
 from elbowscrew.geometry.arrays import Float, Index
 from elbowscrew.geometry.quaternion import rotation_matrix_from_quat
@@ -146,7 +147,7 @@ class _NearestWeights:
     def of(cls, mechanism: Mechanism, frames: Everywhere, rows: Index) -> _NearestWeights:
         from scipy.spatial import cKDTree
 
-        chosen = rows[np.linspace(0, rows.size - 1, _MOST_SETTLED).astype(np.int64)]
+        chosen = evenly_thinned(rows, _MOST_SETTLED)
         fit = settled(mechanism, frames.poses(chosen))
         parts = []
         for first in range(0, chosen.size, _BLOCK):

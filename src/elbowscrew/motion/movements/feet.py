@@ -16,7 +16,14 @@ _OVER_NOISE: Final = 5.0
 _PERIODS_AT_AN_END: Final = 0.75
 
 _LAW_TIME: Final = np.linspace(0.0, 1.0, 2001)
-_LAW: Final = 10.0 * _LAW_TIME**3 - 15.0 * _LAW_TIME**4 + 6.0 * _LAW_TIME**5
+
+
+def minimum_jerk(time: Float) -> Float:
+    """Position of the law of minimum jerk at times from 0 to 1 (Flash and Hogan 1985)."""
+    return 10.0 * time**3 - 15.0 * time**4 + 6.0 * time**5
+
+
+_LAW: Final = minimum_jerk(_LAW_TIME)
 
 # What the filter makes of an isolated minimum-jerk stroke: its kappa, as told from 10 % of the rise between the least
 # and the largest value, and the true one, both times the cut-off; longer ones it leaves as they are.

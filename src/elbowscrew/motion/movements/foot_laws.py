@@ -13,7 +13,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from elbowscrew.geometry.arrays import Bool, Float, Index
-from elbowscrew.motion.movements.feet import LAW_SD, LOW_SHARE, crossing, pooled, slope_at
+from elbowscrew.motion.movements.feet import LAW_SD, LOW_SHARE, crossing, minimum_jerk, pooled, slope_at
 from elbowscrew.motion.movements.swings import Swings, lowpass_series
 from elbowscrew.motion.smoothing.filtering import noise_gain
 
@@ -163,7 +163,7 @@ def _rest_before(first: int, last: int, half: float, kappa: float) -> slice:
 def _positions(time: Float) -> Float:
     """Positions of all laws at times from 0 to 1/2, shape (L, T); minimum jerk, cycloidal and harmonic come first."""
     gentle = (
-        10.0 * time**3 - 15.0 * time**4 + 6.0 * time**5,
+        minimum_jerk(time),
         time - np.sin(2.0 * np.pi * time) / (2.0 * np.pi),
         0.5 - 0.5 * np.cos(np.pi * time),
     )
