@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -29,6 +30,8 @@ from recomputed import (
 )
 from scipy.spatial.transform import Rotation
 from told_results import Told
+
+from elbowscrew.geometry.arrays import Float
 
 ERRORS = ("theta_sd_deg", "slide_sd_mm", "axis_sd_deg", "point_sd_mm", "axis_cone95_deg", "point_radius95_mm")
 AXIS = ("axis_x", "axis_y", "axis_z")
@@ -195,6 +198,16 @@ def of_keyframes(told: Told) -> set[str]:
     return {*seen, "frame", "phase", "law", "law_peak", "law_start_s", "law_end_s", "method", "blend"}
 
 
+LEAST = 1.5 * np.degrees(0.25)
+
+
+def highest(speed: Float) -> float:
+    """The highest speed of a stroke, unless a speed beside unknown ones is at least half of it, and not just slow."""
+    top = most(speed)
+    beside = [b if np.isnan(a) else a for a, b in pairwise(speed.tolist()) if np.isnan(a) != np.isnan(b)]
+    return float("nan") if any(one >= max(0.5 * top, LEAST) for one in beside) else top
+
+
 def of_repetitions(told: Told) -> set[str]:
     table, screw = told.repetitions, told.screw
     time_s, frame = screw["time_s"].to_numpy(float), screw["frame"].to_numpy()
@@ -223,8 +236,8 @@ def of_repetitions(told: Told) -> set[str]:
             [
                 np.ptp(theta[rows][np.isfinite(theta[rows])]),
                 screw["slide_mm"].iloc[rows].max() - screw["slide_mm"].iloc[rows].min(),
-                most(speed[start : top + 1]),
-                most(-speed[top : end + 1]),
+                highest(speed[start : top + 1]),
+                highest(-speed[top : end + 1]),
                 np.interp(one["start_time_s"], time_s[known], theta[known]),
                 *(real / size),
                 *(np.cross(real, dual) / size**2),

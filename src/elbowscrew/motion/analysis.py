@@ -27,7 +27,7 @@ from elbowscrew.motion.joint.measured import (
 )
 from elbowscrew.motion.movements.measured import cut_warnings, measured_cuts
 from elbowscrew.motion.movements.phases import movement_phases
-from elbowscrew.motion.movements.repetitions import cycle_curves_of, repeatability_of, repetitions_of
+from elbowscrew.motion.movements.repetitions import cycle_curves_of, repeatability_of, repetitions_of, speed_warnings
 from elbowscrew.motion.screws.measurement import Measurement, measure
 from elbowscrew.settings import Settings
 
@@ -91,7 +91,11 @@ def analyze(recording: Recording, settings: Settings | None = None, *, landmarks
         + joint_axis_warnings(joint_axis, joint_type, measured)
     )
     listed_velocity = velocity if sense.signed else np.full_like(velocity, np.nan)
-    repetitions = repetitions_of(cuts.cycles, screw, lines_one_way(measured), listed_velocity, elapsed)
+    repetitions = repetitions_of(
+        cuts.cycles, screw, lines_one_way(measured), listed_velocity, elapsed, wanted.min_rate_rad_s
+    )
+    if sense.signed and np.isfinite(velocity).any():
+        warnings += speed_warnings(repetitions)
     curves = cycle_curves_of(cuts.cycles, screw.angle, elapsed)
     cycles = cuts.cycles.start_s
     if (

@@ -21,6 +21,7 @@ REASONS: Final[dict[str, str]] = {
     "fast": "the motion has faster parts than its rhythm, which the cuts do not follow",
     "gap": "it lies where there is no pose",
     "no-dominant-axis": "the rotation has no dominant axis",
+    "unsigned": "theta is to have no sense (--signed no)",
 }
 """Why a boundary is uncertain: codes and words."""
 

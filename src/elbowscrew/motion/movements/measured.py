@@ -43,7 +43,7 @@ def measured_cuts(measured: Measurement, settings: Settings) -> Cuts:
     noise = rotation_noise_of(measured.joint, measured.noise) if known else None
     cuts = cut(twist, elapsed, rate_hz, noise, least_swing=least)
     if not measured.sense.signed:
-        cuts = _all_doubted(cuts, "no-dominant-axis")
+        cuts = _all_doubted(cuts, "unsigned" if settings.signed == "no" else "no-dominant-axis")
     if settings.no_cycles:
         return replace(cuts, cycles=no_cycles())
     if settings.cycles is not None:

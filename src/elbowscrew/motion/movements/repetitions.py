@@ -8,17 +8,20 @@ import numpy as np
 
 from elbowscrew.geometry._small_angle import divide, length
 from elbowscrew.geometry.arrays import Float
-from elbowscrew.model import CycleCurves, Repeatability, Repetitions, ScrewMotion
+from elbowscrew.model import CycleCurves, QualityWarning, Repeatability, Repetitions, ScrewMotion
 from elbowscrew.motion.axes.mean_axis import mean_line_of
 from elbowscrew.motion.difference import direction_between, piercing
 from elbowscrew.motion.movements.boundaries import Cycles
 from elbowscrew.motion.movements.phases import nearest_rows
 
 _POINTS: Final = 101
+_CYCLES_TOLD: Final = 6
+_ABOVE_LEAST: Final = 1.5
+_FAST_SHARE: Final = 0.5  # of the highest speed; beside slower frames the highest one is not looked for
 
 
 def repetitions_of(
-    cycles: Cycles, screw: ScrewMotion, line: Float, angular_velocity: Float, elapsed: Float
+    cycles: Cycles, screw: ScrewMotion, line: Float, angular_velocity: Float, elapsed: Float, least_rate: float = 0.0
 ) -> Repetitions:
     """Figures of every cycle.
 
@@ -30,6 +33,8 @@ def repetitions_of(
         Axes of the frames, NaN where there is none.
     angular_velocity, elapsed : ndarray, shape (N,)
         rad/s and seconds.
+    least_rate : float
+        Angular velocities under it (rad/s) are not given.
     """
     count = cycles.start_s.size
     time = elapsed - elapsed[0]
@@ -42,7 +47,12 @@ def repetitions_of(
         known = first + np.flatnonzero(screw.valid[rows] & np.isfinite(line[rows]).all(axis=1))
         angles = screw.angle[rows][np.isfinite(screw.angle[rows])]
         span[k] = np.ptp(angles) if angles.size else np.nan
-        speed[k] = _largest(angular_velocity[first : turn + 1]), _largest(-angular_velocity[turn : last + 1])
+        out, back = angular_velocity[first : turn + 1], -angular_velocity[turn : last + 1]
+        if first == 0:  # what a filter leaves out at an end of the recording is not lost in it
+            out = out[np.argmax(np.isfinite(out)) :]
+        if last == elapsed.size - 1:
+            back = back[: back.size - np.argmax(np.isfinite(back[::-1]))]
+        speed[k] = _highest(out, least_rate), _highest(back, least_rate)
         if known.size:
             direction[k], point[k] = mean_line_of(screw.angle[known], line[known])
             slides = screw.slide[rows]
@@ -217,6 +227,29 @@ def _point_spread(directions: Float, points: Float, near: Float) -> float:
     return _spread(length(point - point.mean(axis=0)))
 
 
-def _largest(values: Float) -> float:
-    known = values[np.isfinite(values)]
-    return float(known.max()) if known.size else float("nan")
+def speed_warnings(repetitions: Repetitions) -> tuple[QualityWarning, ...]:
+    """Say in which cycles the highest speed is not given, of a motion that has speeds."""
+    missing = np.isnan(repetitions.outward_speed) | np.isnan(repetitions.back_speed)
+    if not missing.any():
+        return ()
+    numbers = repetitions.number[missing].tolist()
+    told = ", ".join(map(str, numbers[:_CYCLES_TOLD])) + (" and others" if len(numbers) > _CYCLES_TOLD else "")
+    message = (
+        f"the highest speed of a stroke is left empty in cycle{'s' if len(numbers) > 1 else ''} {told}: it may lie "
+        "where no speed is known, about lost frames (instantaneous.csv)"
+    )
+    return (QualityWarning(code="speeds-unknown", message=message, count=len(numbers)),)
+
+
+def _highest(speed: Float, least_rate: float) -> float:
+    """Highest of the speeds of a stroke; NaN where it may lie among those that are not known, beside fast ones.
+
+    Speeds under `least_rate` are not known either, and those beside them little above it.
+    """
+    known = np.isfinite(speed)
+    if not known.any():
+        return float("nan")
+    highest = float(speed[known].max())
+    beside = known & (np.append(~known[1:], False) | np.insert(~known[:-1], 0, False))
+    fast = max(_FAST_SHARE * highest, _ABOVE_LEAST * least_rate)
+    return float("nan") if (speed[beside] >= fast).any() else highest
