@@ -306,3 +306,14 @@ def test_bodies_of_different_sides_are_refused_with_both_sides_and_the_options(r
         assert word in told
     named = analyze(recording, Settings(proximal="Upper Arm L", distal="Forearm R"))
     assert "sides-differ" in [warning.code for warning in named.warnings]
+
+
+def test_error_bars_that_are_not_there_rest_on_nothing(real_data: Path) -> None:
+    """Only one of the two bodies has a still stretch: what errors rest on is not told of errors that are not given."""
+    found = analyze(
+        read_recording(real_data / "cases" / "knee_screwhome.csv"), Settings(proximal="R_Thigh", distal="R_Shank")
+    )
+    assert np.isnan(found.screw.angle_sd).all()
+    told = {warning.code for warning in found.warnings}
+    assert "noise-unknown" in told
+    assert "noise-from-jitter" not in told

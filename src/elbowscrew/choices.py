@@ -66,6 +66,16 @@ BLEND_NAMES: Final[tuple[BlendName, ...]] = get_args(BlendName)
 KEYFRAME_SOURCES: Final[tuple[KeyframeSource, ...]] = get_args(KeyframeSource)
 NOISE_SOURCES: Final[tuple[NoiseSource, ...]] = get_args(NoiseSource)
 STATED_JOINTS: Final[tuple[StatedJoint, ...]] = get_args(StatedJoint)
+JOINT_TYPE_WORDS: Final[dict[str, str]] = {
+    "rigid": "a rigid joint",
+    "hinge": "a hinge",
+    "screw_hinge": "a screw-hinge",
+    "two_axes": "two axes",
+    "ball": "a ball joint",
+    "free": "free",
+    "undetermined": "undetermined",
+}
+"""What types of joint are called in a sentence."""
 FRAMES: Final[tuple[ExpressIn, ...]] = get_args(ExpressIn)
 FIGURE_FORMATS: Final[tuple[FigureFormat, ...]] = get_args(FigureFormat)
 DRAWN_FORMATS: Final = tuple(kind for kind in FIGURE_FORMATS if kind != "none")

@@ -14,6 +14,7 @@ from typing import Any
 import pytest
 from motive_files import bodies_of, write_columns, write_row_tagged
 from oracles import known_trial
+from trials import LANDMARKS
 
 from elbowscrew.cli import main
 
@@ -301,17 +302,6 @@ def test_an_interrupted_run_leaves_nothing(tmp_path: Path, sent: signal.Signals,
     process.communicate(timeout=60)
     assert process.returncode == code
     assert sorted(path.name for path in tmp_path.iterdir()) == ["long.csv", "long.truth.json"]
-
-
-LANDMARKS = """
-side = "right"
-[landmarks]
-EL = { body = "lab", mm = [352, 1105, -190] }
-EM = { body = "lab", mm = [268, 1110, -140] }
-GH = { body = "lab", mm = [300, 1380, -190] }
-US = { body = "forearm", mm = [-20, -150, -10] }
-RS = { body = "forearm", mm = [25, -148, 8] }
-"""
 
 
 def test_landmarks_add_anatomical_angles(take: Path, capsys: pytest.CaptureFixture[str]) -> None:

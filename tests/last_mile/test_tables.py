@@ -220,6 +220,8 @@ def of_repetitions(told: Told) -> set[str]:
     seen = near(table, ["number"], np.arange(1, len(table) + 1))
     seen |= near(table, ["duration_s"], (table["end_time_s"] - table["start_time_s"]).to_numpy(float), 1e-9)
     known = np.isfinite(theta)
+    # Before the first speed and after the last one nothing is lost: there the recording begins and ends.
+    given = np.flatnonzero(np.isfinite(speed)) if np.isfinite(speed).any() else np.array([0])
     rows_of = []
     for _, one in table.iterrows():
         start, top, end = (
@@ -236,8 +238,8 @@ def of_repetitions(told: Told) -> set[str]:
             [
                 np.ptp(theta[rows][np.isfinite(theta[rows])]),
                 screw["slide_mm"].iloc[rows].max() - screw["slide_mm"].iloc[rows].min(),
-                highest(speed[start : top + 1]),
-                highest(-speed[top : end + 1]),
+                highest(speed[max(start, given[0]) : top + 1]),
+                highest(-speed[top : min(end, given[-1]) + 1]),
                 np.interp(one["start_time_s"], time_s[known], theta[known]),
                 *(real / size),
                 *(np.cross(real, dual) / size**2),

@@ -14,6 +14,7 @@ from typing import Any, get_type_hints
 import pytest
 from finished_results import ball, flexion_only
 from jsonschema import Draft202012Validator
+from trials import LANDMARKS
 
 from elbowscrew import (
     Analysis,
@@ -58,15 +59,6 @@ CASES: dict[str, dict[str, Any]] = {
     "real/motive_rowtag_v11_1body": {},
     "real/v123_transboat_circle020": {},
 }
-LANDMARKS = """
-side = "right"
-[landmarks]
-EL = { body = "lab", mm = [352, 1105, -190] }
-EM = { body = "lab", mm = [268, 1110, -140] }
-GH = { body = "lab", mm = [300, 1380, -190] }
-US = { body = "forearm", mm = [-20, -150, -10] }
-RS = { body = "forearm", mm = [25, -148, 8] }
-"""
 
 
 @cache

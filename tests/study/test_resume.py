@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from studies import FAST, batch, break_trial, command, contents, write_trials
+from trials import LANDMARKS
 
 OUT = "batch_elbowscrew"
 
@@ -78,17 +79,6 @@ def test_exports_are_part_of_the_settings(finished: Path) -> None:
     assert len(redone(finished, "--export", "sto")) == 10
     assert (finished / OUT / "trial0" / "joint_angle.sto").exists()
     assert redone(finished, "--export", "sto") == set()
-
-
-LANDMARKS = """
-side = "right"
-[landmarks]
-EL = { body = "lab", mm = [352, 1105, -190] }
-EM = { body = "lab", mm = [268, 1110, -140] }
-GH = { body = "lab", mm = [300, 1380, -190] }
-US = { body = "forearm", mm = [-20, -150, -10] }
-RS = { body = "forearm", mm = [25, -148, 8] }
-"""
 
 
 def test_what_a_file_of_landmarks_says_counts_and_not_its_name(finished: Path) -> None:

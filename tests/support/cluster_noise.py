@@ -94,12 +94,12 @@ def line_errors(line_pose: Float, truth: Float) -> tuple[float, float]:
     return float(np.arctan2(np.hypot(h[0], h[1]), abs(h[2]))), float(np.hypot(point[0], point[1]))
 
 
-class Coverage(NamedTuple):
-    """One column each: direction and place in the proximal body, the same in the distal one."""
+@dataclass(frozen=True)
+class Held:
+    """Errors and 95 % radii, shape (trials, numbers)."""
 
     error: Float
     radius: Float
-    spurious_pitch: float
 
     @property
     def held(self) -> Float:
@@ -108,6 +108,13 @@ class Coverage(NamedTuple):
     @property
     def sharpness(self) -> Float:
         return np.asarray(self.radius.mean(axis=0) / np.quantile(self.error, 0.95, axis=0))
+
+
+@dataclass(frozen=True)
+class Coverage(Held):
+    """One column each: direction and place in the proximal body, the same in the distal one."""
+
+    spurious_pitch: float
 
 
 ROWS = tuple(np.eye(9)[k : k + 2] for k in (0, 2, 4, 6))

@@ -40,3 +40,15 @@ def _seen(offsets: Float, poses: Float, rng: np.random.Generator) -> Float:
     centered = offsets - offsets.mean(axis=0)
     markers = dq.transform_points(poses[..., None, :], centered)
     return pose_from_points(centered, markers + rng.normal(scale=SIGMA, size=markers.shape))
+
+
+# Of a right arm, as a file of landmarks has them.
+LANDMARKS = """
+side = "right"
+[landmarks]
+EL = { body = "lab", mm = [352, 1105, -190] }
+EM = { body = "lab", mm = [268, 1110, -140] }
+GH = { body = "lab", mm = [300, 1380, -190] }
+US = { body = "forearm", mm = [-20, -150, -10] }
+RS = { body = "forearm", mm = [25, -148, 8] }
+"""

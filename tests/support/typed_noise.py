@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Literal, NamedTuple
+from dataclasses import dataclass
+from typing import Literal
 
 import moving_joints as mj
 import numpy as np
-from cluster_noise import Hinge, Noise, Seen, seen, white, with_rms_alone
+from cluster_noise import Held, Hinge, Noise, Seen, seen, white, with_rms_alone
 from trials import LINE, START
 
 from elbowscrew.geometry import dual_quaternion as dq
@@ -66,20 +67,11 @@ def skin_of_both(size: float) -> Noise:
     return noise
 
 
-class TypedCoverage(NamedTuple):
-    """Errors and 95 % radii, shape (trials, numbers), of what `names` says."""
+@dataclass(frozen=True)
+class TypedCoverage(Held):
+    """Of the numbers that `names` says."""
 
     names: tuple[str, ...]
-    error: Float
-    radius: Float
-
-    @property
-    def held(self) -> Float:
-        return np.asarray(np.mean(self.error <= self.radius, axis=0))
-
-    @property
-    def sharpness(self) -> Float:
-        return np.asarray(self.radius.mean(axis=0) / np.quantile(self.error, 0.95, axis=0))
 
 
 def fitted_type(kind: Kind, case: Seen) -> tuple[Mechanism, JointInterval]:
@@ -114,7 +106,7 @@ def typed_coverage(
     names: tuple[str, ...] = ("center in the proximal body", "center in the distal body")
     if kind == "two_axes":
         names = ("direction 1", "place 1", "direction 2", "place 2", "angle between", "distance")
-    return TypedCoverage(names, np.array(error), np.array(radius))
+    return TypedCoverage(np.array(error), np.array(radius), names)
 
 
 def _of_ball(found: Ball, interval: JointInterval) -> tuple[list[float], list[float]]:

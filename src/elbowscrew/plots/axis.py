@@ -17,6 +17,7 @@ from elbowscrew.choices import LengthUnit
 from elbowscrew.geometry._blocks import evenly_thinned
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import Analysis
+from elbowscrew.motion.difference import piercing
 from elbowscrew.plots import style
 from elbowscrew.quantities import angle_in, length_in
 from elbowscrew.results.trial_views import view_of
@@ -104,9 +105,8 @@ def plot_axis_places(ax: Axes, analysis: Analysis | TrialView) -> Axes:
     direction, point = view.axis_direction[rows], view.axis_point[rows]
     along = direction @ mean.direction
     crossing = np.abs(along) > 0.1  # an axis nearly in the plane pierces it far away or nowhere
-    rows, direction, point, along = rows[crossing], direction[crossing], point[crossing], along[crossing]
-    reach = ((mean.center - point) @ mean.direction) / along
-    offset = length_in(point + reach[:, None] * direction - mean.center, unit)
+    rows, direction, point = rows[crossing], direction[crossing], point[crossing]
+    offset = length_in(piercing(direction, point, mean.direction, mean.center) - mean.center, unit)
     _scatter(ax, view, rows, [offset @ across for across in mean.across])
     ax.set_xlabel(f"Place toward {mean.names[0]} ({unit})")
     ax.set_ylabel(f"Place toward {mean.names[1]} ({unit})")

@@ -14,6 +14,8 @@ from mpl_toolkits.mplot3d.axes3d import Axes3D
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.sensitivity import NORMAL_95
 from elbowscrew.model import Analysis
+from elbowscrew.model.joint_type import JointAngles
+from elbowscrew.motion.difference import piercing
 from elbowscrew.plots import style
 from elbowscrew.plots.axis import equal_aspect
 from elbowscrew.plots.figures import NARROW_MM, WIDTH_MM
@@ -196,11 +198,7 @@ def plot_center(ax: Axes, analysis: Analysis | TrialView, body: JointInBody, sid
 
 def joint_angles_figure(analysis: Analysis | TrialView, *, width_mm: float = WIDTH_MM) -> Figure:
     """Make the figure of the joint's own angles over time, of two against each other, and of what is left."""
-    view = view_of(analysis)
-    angles = view.joint_angles
-    if angles is None:
-        msg = "this joint has no angles of its own to draw"
-        raise ValueError(msg)
+    view, angles = _with_angles(analysis)
     narrow, both, three = width_mm < NARROW_MM, angles.angle.shape[1] == 2, angles.angle.shape[1] == 3
     if narrow:
         figure = style.new_figure(width_mm, 190.0 if both else 130.0)
@@ -229,11 +227,19 @@ def joint_angles_figure(analysis: Analysis | TrialView, *, width_mm: float = WID
     return figure
 
 
+def _with_angles(analysis: Analysis | TrialView) -> tuple[TrialView, JointAngles]:
+    """Give the view and the joint's own angles; ValueError of a joint without any."""
+    view = view_of(analysis)
+    if view.joint_angles is None:
+        msg = "this joint has no angles of its own to draw"
+        raise ValueError(msg)
+    return view, view.joint_angles
+
+
 def plot_joint_angles(ax: Axes, analysis: Analysis | TrialView) -> Axes:
     """Draw the joint's own angles over time with their 95 % intervals."""
-    view = view_of(analysis)
-    angles, unit = view.joint_angles, view.settings.angle_unit
-    assert angles is not None  # noqa: S101 - the figure is drawn where there are some
+    view, angles = _with_angles(analysis)
+    unit = view.settings.angle_unit
     names = ANGLE_NAMES[angles.angle.shape[1]]
     for k, name in enumerate(names):
         values, reach = angle_in(angles.angle[:, k], unit), angle_in(NORMAL_95 * angles.angle_sd[:, k], unit)
@@ -249,9 +255,8 @@ def plot_joint_angles(ax: Axes, analysis: Analysis | TrialView) -> Axes:
 
 def plot_joint_residual(ax: Axes, analysis: Analysis | TrialView) -> Axes:
     """Draw what the joint leaves of each pose, rotation and place, over time."""
-    view = view_of(analysis)
-    angles, settings = view.joint_angles, view.settings
-    assert angles is not None  # noqa: S101
+    view, angles = _with_angles(analysis)
+    settings = view.settings
     rotation = angle_in(angles.residual_rotation, settings.angle_unit)
     translation = length_in(angles.residual_translation, settings.length_unit)
     line(ax, angles.time_s, rotation, label="residual rotation", color="#000000", linewidth=0.8)
@@ -274,9 +279,8 @@ def _largest(values: Float) -> float:
 
 def plot_angles_together(ax: Axes, analysis: Analysis | TrialView) -> Axes:
     """Draw the second angle against the first."""
-    view = view_of(analysis)
-    angles, unit = view.joint_angles, view.settings.angle_unit
-    assert angles is not None  # noqa: S101
+    view, angles = _with_angles(analysis)
+    unit = view.settings.angle_unit
     rows = drawn_rows(*angles.angle.T)
     first, second = angle_in(angles.angle[rows], unit).T
     ax.plot(first, second, color="#000000", linewidth=0.9)
@@ -305,13 +309,10 @@ def axis_path_figure(analysis: Analysis | TrialView, *, width_mm: float = WIDTH_
     across, toward = directions_across(direction)
     settings, frame = view.settings, view.settings.express_in
     angle = angle_in(path.angle, settings.angle_unit)
-    # Places across the mean axis, where it is nearest the origin.
-    place = path.point - view.joint_point
-    along = -(place @ direction) / (path.direction @ direction)
-    place = place + along[:, None] * path.direction
+    offset = piercing(path.direction, path.point, direction, view.joint_point) - view.joint_point
     for k, (u, name) in enumerate(zip(across, toward, strict=True)):
         tilt = angle_in(np.arctan2(path.direction @ u, path.direction @ direction), settings.angle_unit)
-        shift = length_in(place @ u, settings.length_unit)
+        shift = length_in(offset @ u, settings.length_unit)
         for ax, values, sd in (
             (panels[0], tilt, angle_in(path.axis_sd, settings.angle_unit)),
             (panels[1], shift, length_in(path.point_sd, settings.length_unit)),

@@ -8,17 +8,6 @@ from elbowscrew.model.joint_summary_types import JointSummary, TwoAxesSummary
 from elbowscrew.report.pages import number, vector
 from elbowscrew.view.trial_view import TrialView
 
-TYPE_WORDS = {
-    "rigid": "a rigid joint",
-    "hinge": "a hinge",
-    "screw_hinge": "a screw-hinge",
-    "two_axes": "two axes",
-    "ball": "a ball",
-    "free": "free",
-    "undetermined": "undetermined",
-}
-"""What types are called in a sentence."""
-
 
 def joint_sentences(view: TrialView) -> tuple[str, ...]:
     """Say what the joint is, in sentences for the page."""

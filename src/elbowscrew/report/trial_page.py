@@ -9,10 +9,11 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowscrew.choices import JOINT_TYPE_WORDS
 from elbowscrew.geometry._blocks import evenly_thinned
 from elbowscrew.joints import Joint
 from elbowscrew.model.joint_summary_types import EstimateSummary, JointSummary
-from elbowscrew.report.joint_words import TYPE_WORDS, joint_sentences
+from elbowscrew.report.joint_words import joint_sentences
 from elbowscrew.report.methods import citations_of, methods_of
 from elbowscrew.report.pages import UNSHOWABLE, render, unshowable, write_page
 from elbowscrew.report.scene import WIDEST, scene_of
@@ -107,7 +108,7 @@ def trial_page(trial: TrialView, folder: Path) -> str:
         "curve_chart": None if curve is None else repetition_chart(curve, trial.repetitions.number.size),
         "estimates": _estimates(joint),
         "joint_sentences": joint_sentences(trial),
-        "joint_words": TYPE_WORDS,
+        "joint_words": JOINT_TYPE_WORDS,
         "axis_rows": _axis_rows(trial),
         "repetitions": _repetition_rows(trial),
         "settings": _settings(trial.settings),

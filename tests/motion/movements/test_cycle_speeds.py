@@ -51,3 +51,15 @@ def test_slow_strokes_keep_their_speed_though_slower_frames_have_none() -> None:
     found = analyze(slow)
     assert np.degrees(found.repetitions.outward_speed[0]) == pytest.approx(30.0 * 1.875 / 3.0, rel=0.05)
     assert "speeds-unknown" not in codes(found)
+
+
+def test_what_the_filter_leaves_out_at_the_ends_of_a_recording_is_not_lost() -> None:
+    found = analyze(
+        simulate_trial(
+            joint_type="hinge", top_deg=90.0, frames=90, inversion=45, law="linear", marker_noise_mm=0.05
+        ).recording
+    )
+    speed = found.instantaneous.angular_velocity
+    assert np.isnan(speed[[0, -1]]).all()
+    assert np.isfinite([found.repetitions.outward_speed[0], found.repetitions.back_speed[0]]).all()
+    assert "speeds-unknown" not in codes(found)

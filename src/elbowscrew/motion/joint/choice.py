@@ -12,6 +12,7 @@ from typing import Final, Literal, NamedTuple
 
 import numpy as np
 
+from elbowscrew.choices import JOINT_TYPE_WORDS
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.model.joint_type import JointTypeName, TypeCandidate
 from elbowscrew.motion.joint.fitting import Fitted, fit_type, shared_covariance
@@ -55,15 +56,6 @@ LEAST_RANGE_IN_SD: Final = 12.0
 
 RMS_TO_RANGE: Final = 3.3
 """Range of a rotation that goes to and fro, over its RMS."""
-
-NAMES: Final[dict[str, str]] = {
-    "rigid": "a rigid joint",
-    "hinge": "a hinge",
-    "screw_hinge": "a screw-hinge",
-    "two_axes": "two axes",
-    "ball": "a ball joint",
-}
-
 
 _ORDER: Final[tuple[Fitted, ...]] = ("rigid", "hinge", "screw_hinge", "two_axes", "ball")
 
@@ -217,7 +209,7 @@ def choose_type(
     contest = _Contest(poses, noise_known=noise_known, robust=robust, one=one)
     if forced is not None:
         contest[forced]
-        return _chosen(contest, forced, "forced", f"{NAMES[forced]}, as stated")
+        return _chosen(contest, forced, "forced", f"{JOINT_TYPE_WORDS[forced]}, as stated")
     if contest["rigid"].hardly_moves:
         limit = _EXPLAINED if noise_known else _NEED_LARGE * contest.floor("rigid")
         return _unless_too_far(contest, "rigid", 0.0, doubt=None if contest.heldout("rigid") <= limit else _HARDLY)
@@ -295,9 +287,10 @@ def _unless_too_far(contest: _Contest, name: Fitted, gain: float, *, doubt: str 
     if tried.too_far:
         contest.try_all()
         return _none_fits(
-            contest, f"{NAMES[name]} would be preferred, but leaves {1000.0 * tried.fit.residual_translation:.0f} mm"
+            contest,
+            f"{JOINT_TYPE_WORDS[name]} would be preferred, but leaves {1000.0 * tried.fit.residual_translation:.0f} mm",
         )
-    left = f"{NAMES[name]} leaves {np.degrees(tried.fit.residual_rotation):.2g} deg and " + (
+    left = f"{JOINT_TYPE_WORDS[name]} leaves {np.degrees(tried.fit.residual_rotation):.2g} deg and " + (
         f"{1000.0 * tried.fit.residual_translation:.2g} mm RMS"
     )
     if doubt is None and gain >= _NEED_LARGE:

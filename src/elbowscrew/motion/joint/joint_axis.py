@@ -27,7 +27,7 @@ from elbowscrew.motion.joint.joint_fit import LineFit, fit_joint, sara_lines
 from elbowscrew.motion.joint.lines import Z_LINE
 from elbowscrew.motion.joint.nonrigid import Segment
 from elbowscrew.motion.joint.wander import wander_of_axis
-from elbowscrew.motion.joint.wandering import told_wander
+from elbowscrew.motion.joint.wander_result import told_wander
 from elbowscrew.motion.screws.pose_noise import JointNoise
 from elbowscrew.motion.screws.uncertainty import joint_covariance
 

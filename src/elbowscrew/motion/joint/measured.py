@@ -194,10 +194,7 @@ def joint_axis_warnings(
             "is not a perfect hinge, or the markers move on the skin; the joint axis' interval is that of the residuals"
         )
         warnings.append(QualityWarning(code="beyond-noise", message=message, severity="note"))
-    if any(
-        noise is not None and noise.source == STILL_STRETCH
-        for noise in (measured.noise.proximal, measured.noise.distal)
-    ):
+    if any(noise is not None and noise.source == STILL_STRETCH for noise in measured.noise.known or ()):
         message = (
             "error bars rest on the jitter of a still stretch, which a moving body usually exceeds many times over; "
             "--marker-noise MM states more"

@@ -42,16 +42,16 @@ def repetitions_of(
     direction, point = np.full((count, 3), np.nan), np.full((count, 3), np.nan)
     slide_range, span = np.full(count, np.nan), np.full(count, np.nan)
     speed = np.full((count, 2), np.nan)
+    moving = np.flatnonzero(np.isfinite(angular_velocity))
+    given = (int(moving[0]), int(moving[-1])) if moving.size else (0, 0)
     for k, (first, turn, last) in enumerate(zip(start.tolist(), top.tolist(), end.tolist(), strict=True)):
         rows = slice(first, last + 1)
         known = first + np.flatnonzero(screw.valid[rows] & np.isfinite(line[rows]).all(axis=1))
         angles = screw.angle[rows][np.isfinite(screw.angle[rows])]
         span[k] = np.ptp(angles) if angles.size else np.nan
         out, back = angular_velocity[first : turn + 1], -angular_velocity[turn : last + 1]
-        if first == 0:  # what a filter leaves out at an end of the recording is not lost in it
-            out = out[np.argmax(np.isfinite(out)) :]
-        if last == elapsed.size - 1:
-            back = back[: back.size - np.argmax(np.isfinite(back[::-1]))]
+        # What the filter leaves out at the ends of the recording is not lost in it.
+        out, back = out[max(given[0] - first, 0) :], back[: max(given[-1] + 1 - turn, 0)]
         speed[k] = _highest(out, least_rate), _highest(back, least_rate)
         if known.size:
             direction[k], point[k] = mean_line_of(screw.angle[known], line[known])
