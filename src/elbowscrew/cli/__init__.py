@@ -24,6 +24,10 @@ def command() -> int:
     """Run the command line as a process of its own; see `main`."""
     if sys.argv[1:] == ["--version"] and _version_told():
         return 0
+    from elbowscrew._search_path import leave_out_current_folder
+
+    leave_out_current_folder()  # before anything else is imported
+
     import gc
 
     from elbowscrew._process import set_up_process

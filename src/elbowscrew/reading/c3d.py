@@ -12,10 +12,12 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
+from elbowscrew._search_path import guarded_environment
 from elbowscrew.errors import NoBodiesError, RecordingError
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import QualityWarning, Recording, RigidBody, Source, invalid_warning, out_of_reach
 from elbowscrew.quantities import METERS
+from elbowscrew.reading import c3d_worker
 from elbowscrew.reading.builders import MarkerBuilder
 from elbowscrew.reading.clock import is_rate
 from elbowscrew.reading.options import ASK_FOR_MARKERS, ReadOptions, stated_unit
@@ -94,10 +96,12 @@ def _open(path: Path) -> _Content:
     if find_spec("ezc3d") is None:
         msg = f"{path}: a C3D file needs ezc3d; install it with: pip install 'elbowscrew[c3d]'"
         raise RecordingError(msg)
-    command = [sys.executable, "-m", "elbowscrew.reading.c3d_worker", str(path)]
+    command = [sys.executable, "-P", c3d_worker.__file__, str(path)]
     reason = "the file is damaged"
     try:
-        done = subprocess.run(command, capture_output=True, check=True, timeout=_LONGEST_OPENING_S)  # noqa: S603
+        done = subprocess.run(  # noqa: S603
+            command, capture_output=True, check=True, timeout=_LONGEST_OPENING_S, env=guarded_environment()
+        )
         with np.load(io.BytesIO(done.stdout)) as arrays:
             statement = json.loads(str(arrays["statement"]))
             points, residuals, rotations = (

@@ -1,4 +1,4 @@
-"""Opens one C3D file in a process of its own: ``python -m elbowscrew.reading.c3d_worker FILE`` writes its arrays.
+"""Opens one C3D file in a process of its own: ``python -P c3d_worker.py FILE`` writes its arrays.
 
 A damaged file makes the library behind ezc3d abort, which no ``try`` can catch; here it takes nobody with it.
 """

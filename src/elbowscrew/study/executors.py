@@ -15,6 +15,7 @@ from importlib import import_module
 from importlib.util import find_spec
 from typing import Any, Final
 
+from elbowscrew._search_path import CurrentFolderLeftOut
 from elbowscrew.errors import UsageError
 from elbowscrew.study.worker import prepare_worker
 
@@ -64,7 +65,8 @@ def _local_pool(workers: int) -> Iterator[Executor]:
     watched, held = context.Pipe(duplex=False)
     executor = ProcessPoolExecutor(workers, mp_context=context, initializer=prepare_worker, initargs=(watched,))
     try:
-        yield executor
+        with CurrentFolderLeftOut():
+            yield executor
     except BaseException:
         held.close()  # the workers end at once, whatever they are at
         executor.shutdown(wait=True, cancel_futures=True)
@@ -90,7 +92,7 @@ def _cluster(scheduler: str, workers: int) -> Iterator[Executor]:
             "MPLBACKEND": "agg",
         },
     }
-    with dask.config.set(quiet), _silence():
+    with dask.config.set(quiet), CurrentFolderLeftOut(), _silence():
         try:
             if scheduler == LOCAL_CLUSTER:
                 cluster = distributed.LocalCluster(
