@@ -29,13 +29,13 @@ class InstantaneousMotion(ArrayRecord):
         Along the axis, m/s; as the axis, NaN where the distal body turns too slowly.
     axis_direction, axis_point : ndarray, shape (N, 3)
         Unit direction, and the point (m) nearest the origin.
-    lowpass_hz : float
-        Cut-off of the filter that the poses went through.
+    lowpass_hz : float or None
+        Cut-off of the filter that the poses went through; None of a clock of several rates, on which none is right.
     """
 
     frame: NDArray[np.int64]
     time_s: Float
-    lowpass_hz: float
+    lowpass_hz: float | None
     angular_velocity: Float
     slide_velocity: Float
     axis_direction: Float

@@ -134,7 +134,7 @@ class TrialSummary(RecordingSummary):
     lowpass_hz: float | None
     """Cut-off of the filter that the poses went through; None if they went through none."""
     instantaneous_lowpass_hz: float | None
-    """Cut-off of the filter that the instantaneous axes come of."""
+    """Cut-off of the filter that the instantaneous axes come of; None of a clock of several rates."""
 
 
 class DominantAxis(TypedDict):

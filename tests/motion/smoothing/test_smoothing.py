@@ -96,9 +96,40 @@ def test_a_clock_of_two_rates_is_not_filtered() -> None:
     assert analyze(two_rates()).screw.angle.size == two_rates().frame.size
 
 
-def two_rates() -> Recording:
+def test_speeds_on_a_clock_of_two_rates() -> None:
+    """None without the reason told; and on an even clock the true ones in either half."""
+    uneven = analyze(two_rates(), Settings())
+    assert not np.isfinite(uneven.instantaneous.angular_velocity).any()
+    (message,) = [one.message for one in uneven.warnings if one.code == "no-instantaneous-axis"]
+    assert "--resample HZ" in message
+    for settings in (Settings(resample_hz=100.0), Settings(resample_hz=100.0, lowpass_hz=15.0)):
+        even = analyze(two_rates(), settings)
+        speed = np.degrees(even.instantaneous.angular_velocity)
+        true = 94.25 * np.sin(2.0 * np.pi * even.elapsed / 3.0)
+        inner = (even.elapsed > 0.4) & (even.elapsed < even.elapsed[-1] - 0.4)
+        assert speed[inner] == pytest.approx(true[inner], abs=0.5)
+
+
+@pytest.mark.parametrize("resample_hz", [50.0, 100.0, 150.0])
+def test_a_filter_after_a_change_of_rate_has_one_cut_off(resample_hz: float) -> None:
+    """At the cut-off its gain is the root of a half, on either side of the change of the recording's clock."""
+    angle, free = (
+        analyze(two_rates(ripple_deg=1.0), Settings(resample_hz=resample_hz, lowpass_hz=lowpass_hz)).screw.angle
+        for lowpass_hz in (3.0, None)
+    )
+    smooth = analyze(two_rates(), Settings(resample_hz=resample_hz, lowpass_hz=3.0)).screw.angle
+    plain = analyze(two_rates(), Settings(resample_hz=resample_hz)).screw.angle
+    time = np.arange(angle.size) / resample_hz
+    for begin, end in ((0.5, 2.5), (3.5, 5.5)):
+        part = (time > begin) & (time < end)
+        gain = np.std((angle - smooth)[part]) / np.std((free - plain)[part])
+        assert gain == pytest.approx(np.sqrt(0.5), rel=0.02)
+
+
+def two_rates(ripple_deg: float = 0.0) -> Recording:
     time = np.concatenate([np.arange(300) / 100.0, 3.0 + np.arange(150) / 50.0])
     angle = np.radians(45.0) * (1.0 - np.cos(2.0 * np.pi * time / 3.0))
+    angle += np.radians(ripple_deg) * np.sin(2.0 * np.pi * 3.0 * time)
     pose = dual_quat_from_screw(angle, 0.0, [0.0, 0.0, 1.0], [0.0, 0.1, 0.0])
     body = RigidBody(name="b", dual_quat_lab_body=pose, loss=np.zeros(time.size, dtype=np.uint8))
     recording = Recording.from_bodies([body], rate_hz=100)

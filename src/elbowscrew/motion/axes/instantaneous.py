@@ -27,7 +27,7 @@ def instantaneous_motion(
     min_rate: float,
     sense: Float,
     margin: int,
-    lowpass_hz: float,
+    lowpass_hz: float | None,
 ) -> InstantaneousMotion:
     """Instantaneous helical axis of every frame, from the poses on either side of it.
 
@@ -49,7 +49,7 @@ def instantaneous_motion(
         Direction about which a positive angular velocity turns.
     margin : int
         Frames to either side that must be measured, too; 1 at least.
-    lowpass_hz : float
+    lowpass_hz : float or None
         Cut-off of the filter that the poses went through.
 
     References

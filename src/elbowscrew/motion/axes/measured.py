@@ -19,6 +19,7 @@ from elbowscrew.motion.screws.measurement import Measurement
 from elbowscrew.motion.screws.relative import IDENTITY, expressed
 from elbowscrew.motion.screws.sense import rotation_noise
 from elbowscrew.motion.smoothing.smoothing import Smoothing
+from elbowscrew.motion.tracking.clock import other_rate
 from elbowscrew.settings import Settings
 
 # What the field filters at: the cut-off of recordings too short for residual analysis, lower where the rate asks it.
@@ -66,7 +67,11 @@ def measured_instantaneous_motion(
     """
     D, smoothing = measured.displacement, measured.smoothing
     warnings: tuple[QualityWarning, ...] = ()
-    if smoothing.cutoff_hz is None:
+    other = other_rate(smoothing.elapsed, smoothing.rate_hz)
+    if other is not None:
+        smoothing = smoothing._replace(cutoff_hz=None)
+        D = np.full_like(D, np.nan)
+    elif smoothing.cutoff_hz is None:
         smoothing = twist_smoothing(measured, settings)
         D = smoothed_displacement(measured, smoothing)
         warnings = _left_out(measured, D, smoothing.cutoff_hz or np.inf)
@@ -80,9 +85,9 @@ def measured_instantaneous_motion(
         settings.min_rate_rad_s,
         measured.sense.direction,
         margin=smoothing.margin,
-        lowpass_hz=smoothing.cutoff_hz or np.inf,
+        lowpass_hz=smoothing.cutoff_hz,
     )
-    return motion, warnings + _without_axes(motion, settings.min_rate_rad_s)
+    return motion, warnings + _without_axes(motion, settings.min_rate_rad_s, smoothing.rate_hz, other)
 
 
 def _left_out(measured: Measurement, filtered: Float, cutoff_hz: float) -> tuple[QualityWarning, ...]:
@@ -104,12 +109,19 @@ def _left_out(measured: Measurement, filtered: Float, cutoff_hz: float) -> tuple
     return (QualityWarning(code="fast-motion-left-out", message=message),)
 
 
-def _without_axes(motion: InstantaneousMotion, least: float) -> tuple[QualityWarning, ...]:
-    """Say why no frame has an instantaneous axis, where none has."""
+def _without_axes(
+    motion: InstantaneousMotion, least: float, rate_hz: float, other: tuple[float, float] | None
+) -> tuple[QualityWarning, ...]:
+    """Say why no frame has an instantaneous axis, where none has; `other` is another rate of the clock and its begin."""
     if np.isfinite(motion.axis_direction).any():
         return ()
     speed = np.abs(motion.angular_velocity[np.isfinite(motion.angular_velocity)])
-    if speed.size:
+    if other is not None:
+        reason = (
+            f"the clock keeps no one rate ({other[0]:.4g} frames per second from {other[1]:.4g} s on, {rate_hz:.4g} "
+            "in the mean), and no filter for speeds is right on it; --resample HZ makes it even"
+        )
+    elif speed.size:
         reason = (
             f"the distal body turns at {speed.max():.3g} rad/s at most, and an axis needs "
             f"{least:.3g} rad/s (--min-rate)"

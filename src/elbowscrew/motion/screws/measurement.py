@@ -28,10 +28,10 @@ from elbowscrew.motion.screws.uncertainty import (
     no_errors,
     screw_errors,
 )
-from elbowscrew.motion.smoothing.resampling import resample_recording
+from elbowscrew.motion.smoothing.resampling import resample_recording, resampling_warnings
 from elbowscrew.motion.smoothing.smoothing import Smoothing
 from elbowscrew.motion.tracking.bodies import tracked_bodies
-from elbowscrew.motion.tracking.clock import elapsed_time, row_of_frame
+from elbowscrew.motion.tracking.clock import elapsed_time, fastest_rate, other_rate, row_of_frame
 from elbowscrew.settings import Settings
 
 
@@ -126,17 +126,22 @@ def measure(recording: Recording, settings: Settings) -> Measurement:
     express_in, doubts = frame_called(settings.express_in, tracked.joint)
     warnings += doubts
     elapsed = tracked.elapsed
-    smoothing = Smoothing.of(proximal, distal, elapsed, recording.rate_hz, broken_rows, settings)
     noise = JointNoise.of(proximal, distal, recording.rate_hz, settings)
     unfiltered = Unfiltered(proximal, distal, elapsed, recording.rate_hz)
+    own_hz, wanted_hz, none_broken = recording.rate_hz, settings.resample_hz, np.empty(0, dtype=np.intp)
+    if wanted_hz is not None and settings.lowpass_hz is not None and other_rate(elapsed, own_hz) is not None:
+        # A filter needs an even clock: here as fast as the recording ever is, so that nothing folds before the filter.
+        even_hz = max(wanted_hz, fastest_rate(elapsed, own_hz))
+        recording, proximal, distal = _resampled(recording, proximal, distal, elapsed, broken_rows, even_hz)
+        elapsed, broken_rows = elapsed_time(recording), none_broken
+    smoothing = Smoothing.of(proximal, distal, elapsed, recording.rate_hz, broken_rows, settings)
     proximal, distal = smoothing.apply(proximal, distal)
-    if settings.resample_hz is not None:
-        recording, proximal, distal, more = _resampled(
-            recording, proximal, distal, elapsed, broken_rows, settings.resample_hz
-        )
-        folding = smoothing.cutoff_hz is None or smoothing.cutoff_hz > 0.5 * settings.resample_hz
+    if wanted_hz is not None:
+        recording, proximal, distal = _resampled(recording, proximal, distal, elapsed, broken_rows, wanted_hz)
+        folding = smoothing.cutoff_hz is None or smoothing.cutoff_hz > 0.5 * wanted_hz
+        more = resampling_warnings(own_hz, wanted_hz)
         warnings += tuple(warning for warning in more if folding or warning.code != "aliasing")
-        elapsed, broken_rows = elapsed_time(recording), np.empty(0, dtype=np.intp)
+        elapsed, broken_rows = elapsed_time(recording), none_broken
         smoothing = smoothing._replace(elapsed=elapsed, rate_hz=recording.rate_hz, broken_rows=broken_rows)
     joint = joint_from_bodies(
         proximal,
@@ -213,13 +218,12 @@ def _resampled(
     elapsed: Float,
     broken_rows: NDArray[np.intp],
     rate_hz: float,
-) -> tuple[Recording, RigidBody | None, RigidBody, tuple[QualityWarning, ...]]:
+) -> tuple[Recording, RigidBody | None, RigidBody]:
     """Put the two bodies, as they are now, and the markers on another clock."""
     chosen = (distal,) if proximal is None else (proximal, distal)
     resampled = resample_recording(replace(recording, bodies=chosen, warnings=()), rate_hz, broken_rows, elapsed)
     proximal = None if proximal is None else resampled.bodies[0]
-    warnings = resampled.warnings
-    return replace(resampled, warnings=recording.warnings), proximal, resampled.bodies[-1], warnings
+    return replace(resampled, warnings=recording.warnings), proximal, resampled.bodies[-1]
 
 
 def _rotation_sigma(joint: JointMotion, noise: JointNoise, gain: Float) -> float | None:

@@ -12,7 +12,7 @@ from elbowscrew.geometry import sclerp
 from elbowscrew.geometry.arrays import Bool, Float, Index
 from elbowscrew.geometry.dual_quaternion import align_signs
 from elbowscrew.model import QualityWarning, Recording, RigidBody, TrackingLoss
-from elbowscrew.motion.tracking.clock import elapsed_time
+from elbowscrew.motion.tracking.clock import elapsed_time, step_ratios
 
 _MOST_FRAMES: Final = 10_000_000
 _LONGEST_STEP_FRAMES: Final = 1.5
@@ -78,7 +78,7 @@ def resample_recording(
         time_s=recording.time_s[0] + since_start,
         rate_hz=float(rate_hz),
         markers=tuple(replace(marker, position=_linear(marker.position, between)) for marker in recording.markers),
-        warnings=recording.warnings + _warnings(recording.rate_hz, rate_hz),
+        warnings=recording.warnings + resampling_warnings(recording.rate_hz, rate_hz),
     )
 
 
@@ -124,8 +124,7 @@ class _Neighbors:
 def _neighbors(elapsed: Float, wanted: Float, rate_hz: float, broken_rows: Index | None) -> _Neighbors:
     before = np.clip(np.searchsorted(elapsed, wanted, side="right") - 1, 0, elapsed.size - 2)
     after = before + 1
-    step = elapsed[after] - elapsed[before]
-    fraction = np.clip((wanted - elapsed[before]) / step, 0.0, 1.0)
+    fraction = np.clip((wanted - elapsed[before]) / (elapsed[after] - elapsed[before]), 0.0, 1.0)
     same = np.minimum(fraction, 1.0 - fraction) <= _SAME
     return _Neighbors(
         before=before,
@@ -133,7 +132,7 @@ def _neighbors(elapsed: Float, wanted: Float, rate_hz: float, broken_rows: Index
         nearer=np.where(fraction < 0.5, before, after),
         fraction=fraction,
         same=same,
-        apart=~same & (step * rate_hz > _LONGEST_STEP_FRAMES),
+        apart=~same & (step_ratios(elapsed, rate_hz)[before] > _LONGEST_STEP_FRAMES),
         broken=~same & np.isin(after, [] if broken_rows is None else broken_rows),
     )
 
@@ -175,7 +174,8 @@ def _optional_linear(values: Float | None, between: _Neighbors) -> Float | None:
     return None if values is None else _linear(values, between)
 
 
-def _warnings(old_hz: float, new_hz: float) -> tuple[QualityWarning, ...]:
+def resampling_warnings(old_hz: float, new_hz: float) -> tuple[QualityWarning, ...]:
+    """Give the note of a change of rate, and the warning of what folds into a lower one."""
     message = f"resampled from {old_hz:g} to {new_hz:g} frames per second: frame numbers count from 0 at the first time"
     note = QualityWarning(code="resampled", message=message, severity="note")
     if new_hz >= old_hz:

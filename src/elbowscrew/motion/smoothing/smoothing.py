@@ -15,11 +15,10 @@ from elbowscrew.model import RigidBody
 from elbowscrew.motion.difference import DEFAULT_RADIUS
 from elbowscrew.motion.smoothing.filtering import automatic_cutoff, lowpass_poses, noise_gain
 from elbowscrew.motion.smoothing.gaps import fill_gaps
+from elbowscrew.motion.tracking.clock import other_rate
 from elbowscrew.settings import Settings
 
 _STEP_TOLERANCE: Final = 0.5
-_RATE_STEPS: Final = 16
-_RATE_TOLERANCE: Final = 0.1
 
 
 def inside(measured: NDArray[np.bool_], elapsed: Float, rate_hz: float, margin: int) -> NDArray[np.bool_]:
@@ -35,17 +34,11 @@ def inside(measured: NDArray[np.bool_], elapsed: Float, rate_hz: float, margin: 
 
 def _check_even(elapsed: Float, rate_hz: float) -> None:
     """Refuse to filter where the clock keeps another rate for a while: the cut-off would be another one there."""
-    steps = np.diff(elapsed) * rate_hz
-    count = steps.size // _RATE_STEPS
-    if not count:
-        return
-    rates = np.median(steps[: count * _RATE_STEPS].reshape(count, _RATE_STEPS), axis=1)
-    other = np.flatnonzero(np.abs(rates - 1.0) > _RATE_TOLERANCE)
-    if other.size:
+    other = other_rate(elapsed, rate_hz)
+    if other is not None:
         msg = (
-            f"--lowpass: expected one rate, {rate_hz:g} frames per second, found {rate_hz / rates[other[0]]:.4g} from "
-            f"{elapsed[other[0] * _RATE_STEPS]:.4g} s on; resample the recording first "
-            "(--resample HZ, without --lowpass), or leave --lowpass out"
+            f"--lowpass: expected one rate, {rate_hz:g} frames per second, found {other[0]:.4g} from {other[1]:.4g} s "
+            "on; give --resample HZ as well, which makes the clock even before the filter, or leave --lowpass out"
         )
         raise SettingError(msg)
 

@@ -8,10 +8,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowscrew.errors import RecordingError, SettingError
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import Recording
 from elbowscrew.model.clock import time_resolution
 
 _TIME_TOLERANCE_FRAMES: Final = 0.5
+# A clock keeps one rate if the median of so many steps is nowhere off by more than this share.
+_RATE_STEPS: Final = 16
+_RATE_TOLERANCE: Final = 0.1
+_STEPS_BESIDE: Final = 7
 
 
 def allowed_offset(recording: Recording) -> float:
@@ -47,6 +52,62 @@ def elapsed_time(recording: Recording) -> NDArray[np.float64]:
         "frame numbers give a clock; export the take again, or cut it there"
     )
     raise RecordingError(msg)
+
+
+def other_rate(elapsed: Float, rate_hz: float) -> tuple[float, float] | None:
+    """Rate (Hz) that a clock keeps for a while in place of its own, and since when (s); None if it keeps one rate.
+
+    Parameters
+    ----------
+    elapsed : ndarray, shape (N,)
+        Seconds, increasing.
+    rate_hz : float
+    """
+    rates = _rates(elapsed, rate_hz)
+    other = np.flatnonzero(np.abs(rate_hz / rates - 1.0) > _RATE_TOLERANCE)
+    return (float(rates[other[0]]), float(elapsed[other[0] * _RATE_STEPS])) if other.size else None
+
+
+def fastest_rate(elapsed: Float, rate_hz: float) -> float:
+    """Highest rate (Hz) that a clock keeps for a while; its own where it keeps one."""
+    return float(_rates(elapsed, rate_hz).max(initial=rate_hz))
+
+
+def step_ratios(elapsed: Float, rate_hz: float) -> Float:
+    """Steps of a clock over the usual one, shape (N - 1,): well over 1 where frames are missing.
+
+    The usual step is that of the rate or, where the clock has another one for a while, any between that and the medians
+    of the steps before and after.
+
+    Parameters
+    ----------
+    elapsed : ndarray, shape (N,)
+        Seconds, increasing.
+    rate_hz : float
+
+    Examples
+    --------
+    >>> two_rates = np.concatenate([np.arange(40) * 0.01, 0.4 + np.arange(40) * 0.02])
+    >>> bool(np.allclose(step_ratios(two_rates, 75.0), 1.0))
+    True
+    """
+    steps = np.diff(elapsed)
+    if other_rate(elapsed, rate_hz) is None:
+        return steps * rate_hz
+    windows = np.lib.stride_tricks.sliding_window_view(np.pad(steps, _STEPS_BESIDE, mode="reflect"), _STEPS_BESIDE)
+    medians = np.median(windows, axis=1)
+    usual = np.stack([np.full(steps.size, 1.0 / rate_hz), medians[: steps.size], medians[_STEPS_BESIDE + 1 :]])
+    return steps / np.clip(steps, usual.min(axis=0), usual.max(axis=0))
+
+
+def _rates(elapsed: Float, rate_hz: float) -> Float:
+    """Rates (Hz) of blocks of steps, neither ruled by a hole nor by times that jitter."""
+    steps = np.diff(elapsed)
+    count = steps.size // _RATE_STEPS
+    blocks = steps[: count * _RATE_STEPS].reshape(count, _RATE_STEPS)
+    usual = 1.0 / rate_hz
+    nearest: Float = np.clip(usual, *np.sort([blocks.mean(axis=1), np.median(blocks, axis=1)], axis=0))
+    return 1.0 / nearest
 
 
 def row_of_frame(frame: NDArray[np.int64], wanted: int, option: str) -> int:
