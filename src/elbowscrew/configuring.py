@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import difflib
-import tomllib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Final
@@ -12,6 +11,7 @@ from pydantic import ValidationError
 
 from elbowscrew.declaring import option_name
 from elbowscrew.errors import UsageError
+from elbowscrew.opening import read_toml
 from elbowscrew.settings import LISTS, SETTINGS, Settings
 
 _FIELDS: Final = {one.option: one.field for one in SETTINGS}
@@ -41,19 +41,18 @@ def settings_from(config: Path | None = None, options: Mapping[str, Any] | None 
 
 def _read_toml(config: Path) -> dict[str, Any]:
     try:
-        with config.open("rb") as stream:
-            given = tomllib.load(stream)
-            table = {option_name(key): value for key, value in given.items()}
-            if len(table) < len(given):
-                msg = f"{config}: one setting is given twice, under two spellings; keep one of {', '.join(given)}"
-                raise UsageError(msg)
-            return {key: [value] if key in LISTS and isinstance(value, str) else value for key, value in table.items()}
+        given = read_toml(config)
     except OSError as error:
-        msg = f"{config}: cannot be read as a settings file: {error.strerror}"
+        msg = f"{config}: cannot be read as a settings file: {error.strerror or error}"
         raise UsageError(msg) from error
-    except (ValueError, RecursionError) as error:
+    except ValueError as error:
         msg = f"{config}: not TOML: {error}. Write one `key = value` a line, text in quotes"
         raise UsageError(msg) from error
+    table = {option_name(key): value for key, value in given.items()}
+    if len(table) < len(given):
+        msg = f"{config}: one setting is given twice, under two spellings; keep one of {', '.join(given)}"
+        raise UsageError(msg)
+    return {key: [value] if key in LISTS and isinstance(value, str) else value for key, value in table.items()}
 
 
 def settings_from_options(values: Mapping[str, Any]) -> Settings:

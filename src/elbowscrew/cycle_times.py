@@ -7,6 +7,8 @@ import math
 from pathlib import Path
 from typing import Final
 
+from elbowscrew.opening import open_text
+
 _COLUMNS: Final = ("start_time_s", "end_time_s")
 
 
@@ -19,10 +21,10 @@ def read_cycle_times(path: Path) -> list[tuple[float, float]]:
         If the file cannot be read, a column is missing, there is no cycle, or a cycle does not begin before it ends.
     """
     try:
-        with path.open(encoding="utf-8-sig", newline="") as stream:
+        with open_text(path, encoding="utf-8-sig", newline="") as stream:
             times = _times(csv.DictReader(stream), path)
     except OSError as error:
-        msg = f"{path}: cannot be read as a file of cycles: {error.strerror}"
+        msg = f"{path}: cannot be read as a file of cycles: {error.strerror or error}"
         raise ValueError(msg) from error
     except (csv.Error, UnicodeDecodeError) as error:
         msg = f"{path}: not a CSV file in UTF-8: {error}"

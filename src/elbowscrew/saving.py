@@ -16,6 +16,7 @@ from elbowscrew.model import Analysis, Comparison, Landmarks, RebuiltMotion, Tri
 from elbowscrew.model.comparison_summary_types import ComparisonSummary, TrialsSummary
 from elbowscrew.model.summary_types import Summary
 from elbowscrew.motion.analysis import analyze
+from elbowscrew.opening import write_new
 from elbowscrew.reading.registry import read_recording
 from elbowscrew.reading.source import sha256_of
 from elbowscrew.report import write_trial_page
@@ -155,7 +156,7 @@ def digests(folder: Path) -> dict[str, str]:
 
 
 def _write_json(path: Path, content: Mapping[str, object]) -> None:
-    path.write_text(json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False) + "\n", encoding="utf-8")
+    write_new(path, (json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False) + "\n").encode())
 
 
 def _write_figures(staged: Path, view: TrialView, formats: Sequence[str]) -> None:
@@ -167,7 +168,7 @@ def _write_figures(staged: Path, view: TrialView, formats: Sequence[str]) -> Non
 def _write_all(folder: Path, files: Mapping[str, bytes]) -> None:
     folder.mkdir()
     for name, content in files.items():
-        (folder / name).write_bytes(content)
+        write_new(folder / name, content)
 
 
 def save_simulation(

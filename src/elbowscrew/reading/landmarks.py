@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import difflib
 import os
-import tomllib
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from reprlib import repr as brief
@@ -14,6 +13,7 @@ import numpy as np
 
 from elbowscrew.errors import UsageError
 from elbowscrew.model.anatomy import LANDMARKS, Landmark, LandmarkFrame, Landmarks, Side
+from elbowscrew.opening import read_toml
 
 _FARTHEST_MM: Final = 10_000.0
 _SIDES: Final = get_args(Side)
@@ -74,11 +74,11 @@ def read_landmarks(path: str | os.PathLike[str]) -> Landmarks:
 
 def _read_toml(file: Path) -> dict[str, Any]:
     try:
-        return tomllib.loads(file.read_bytes().decode("utf-8-sig"))
+        return read_toml(file)
     except OSError as error:
-        msg = f"{file}: cannot be read as a file of landmarks: {error.strerror}"
+        msg = f"{file}: cannot be read as a file of landmarks: {error.strerror or error}"
         raise UsageError(msg) from error
-    except (ValueError, RecursionError) as error:
+    except ValueError as error:
         msg = f"{file}: not TOML: {error}. Write one `key = value` a line, text in quotes"
         raise UsageError(msg) from error
 

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Final, TextIO
 
 from elbowscrew.errors import RecordingError
+from elbowscrew.opening import open_bytes, open_text
 
 _HEAD_BYTES: Final = 65536
 _MAX_LINE: Final = 1 << 24
@@ -124,7 +125,7 @@ class TextSource:
         raise RecordingError(msg)
 
     def _open(self) -> TextIO:
-        return self.path.open(encoding="utf-8-sig", newline=None)
+        return open_text(self.path, encoding="utf-8-sig")
 
 
 @contextmanager
@@ -146,7 +147,7 @@ def sha256_of(path: Path) -> str:
     OSError
         If it cannot be read.
     """
-    with path.open("rb") as stream:
+    with open_bytes(path) as stream:
         return _digest(stream)
 
 
@@ -157,9 +158,7 @@ def _digest(stream: BufferedReader) -> str:
 def first_bytes(path: Path, count: int) -> bytes:
     """Read the first bytes of a file; none if it is no regular file or cannot be read, as `open_source` reports."""
     try:
-        if not path.is_file():
-            return b""
-        with path.open("rb") as stream:
+        with open_bytes(path) as stream:
             return stream.read(count)
     except (OSError, ValueError):
         return b""
@@ -174,10 +173,7 @@ def open_source(path: Path) -> TextSource:
         If it is missing, a folder, unreadable, empty or binary.
     """
     try:
-        if path.exists() and not path.is_file() and not path.is_dir():
-            msg = f"{path}: not a regular file; give an exported CSV file"
-            raise RecordingError(msg)
-        with path.open("rb") as stream:
+        with open_bytes(path) as stream:
             head = stream.read(_HEAD_BYTES)
             stream.seek(0)
             digest = _digest(stream)

@@ -15,6 +15,7 @@ from elbowscrew import tables
 from elbowscrew.errors import ResultError
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.model.summary_types import Summary
+from elbowscrew.opening import open_text
 from elbowscrew.reading.source import longest_cell
 from elbowscrew.results.summary_reading import read_summary, settings_in
 from elbowscrew.results.table_reading import read_columns
@@ -191,10 +192,10 @@ def _is_number(text: str) -> bool:
 
 
 def _rows(path: Path) -> list[list[str]]:
-    if not path.is_file():
+    if not path.exists():
         return []
     try:
-        with longest_cell(_LONGEST_CELL), path.open(encoding="utf-8-sig", newline="") as stream:
+        with longest_cell(_LONGEST_CELL), open_text(path, encoding="utf-8-sig", newline="") as stream:
             return [row for row in csv.reader(stream) if row]
     except OSError as error:
         msg = f"{path}: cannot be read: {error.strerror or error}"

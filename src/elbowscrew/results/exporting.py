@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from elbowscrew.errors import UsageError
 from elbowscrew.model import Analysis
 from elbowscrew.model.summary_types import AnalysisSummary
+from elbowscrew.opening import create, write_new
 from elbowscrew.quantities import angle_in
 from elbowscrew.results.writing import named_tables
 
@@ -52,7 +53,8 @@ def _write_parquet(folder: Path, analysis: Analysis, summary: AnalysisSummary) -
     metadata = {b"elbowscrew": json.dumps(summary, ensure_ascii=True, allow_nan=False).encode()}
     for name, table in named_tables(analysis).items():
         columns = {column: _arrow_array(pa, values) for column, values in table.items()}
-        pq.write_table(pa.table(columns).replace_schema_metadata(metadata), folder / f"{name}.parquet")
+        with create(folder / f"{name}.parquet") as stream:
+            pq.write_table(pa.table(columns).replace_schema_metadata(metadata), stream)
 
 
 def _arrow_array(pa: Any, values: NDArray[Any]) -> Any:
@@ -77,7 +79,7 @@ def _write_mat(folder: Path, analysis: Analysis, summary: AnalysisSummary) -> No
     written = stream.getvalue()
     # The header tells platform and time; the same analysis is to give the same bytes.
     header = b"MATLAB 5.0 MAT-file, by elbowscrew".ljust(_MAT_HEADER_BYTES)
-    (folder / "trial.mat").write_bytes(header + written[_MAT_HEADER_BYTES:])
+    write_new(folder / "trial.mat", header + written[_MAT_HEADER_BYTES:])
 
 
 def _matlab_array(values: NDArray[Any]) -> NDArray[Any]:
@@ -112,9 +114,9 @@ def _write_sto(folder: Path, analysis: Analysis, _summary: AnalysisSummary) -> N
         "\t".join(("time", *series)),
     )
     rows = zip(*((column + 0.0).tolist() for column in columns), strict=True)
-    with (folder / "joint_angle.sto").open("w", encoding="utf-8", newline="") as stream:
-        stream.writelines(f"{line}\n" for line in header)
-        stream.writelines("\t".join("NaN" if x != x else repr(x) for x in row) + "\n" for row in rows)
+    with create(folder / "joint_angle.sto") as stream:
+        stream.writelines(f"{line}\n".encode() for line in header)
+        stream.writelines(("\t".join("NaN" if x != x else repr(x) for x in row) + "\n").encode() for row in rows)
 
 
 class Export(NamedTuple):

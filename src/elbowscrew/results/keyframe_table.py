@@ -19,12 +19,12 @@ from elbowscrew.model import KeyframeSet, PhaseLaw
 from elbowscrew.model.joint_coordinates import MOVING_JOINTS, JointCoordinates
 from elbowscrew.motion.interpolation.keyframes import phase_time_share
 from elbowscrew.motion.interpolation.laws import LAWS, named_law
+from elbowscrew.opening import read_text
 from elbowscrew.quantities import METERS, Quantity
 from elbowscrew.tables import KEYFRAME_JOINT_COLUMNS
 
 _POSE: Final = ("e0", "e1", "e2", "e3", "d_x", "d_y", "d_z")
 _UNIT_TOLERANCE: Final = 5e-3
-_LARGEST_FILE: Final = 100_000_000
 
 
 def read_keyframes(
@@ -201,15 +201,12 @@ class _Table:
     def read(cls, path: Path) -> _Table:
         """Read the file, faults of its form named with their line."""
         try:
-            if path.stat().st_size > _LARGEST_FILE:
-                msg = f"{path}: too large for a file of keyframes"
-                raise RecordingError(msg)
-            text = path.read_text(encoding="utf-8-sig")
+            text = read_text(path, encoding="utf-8-sig")
             rows = [
                 row for row in enumerate(csv.reader(text.splitlines()), start=1) if any(cell.strip() for cell in row[1])
             ]
         except (OSError, ValueError, csv.Error) as error:
-            why = error.strerror if isinstance(error, OSError) else "not a CSV file in UTF-8"
+            why = error.strerror or error if isinstance(error, OSError) else "not a CSV file in UTF-8"
             msg = f"{path}: cannot be read as keyframes: {why}"
             raise RecordingError(msg) from error
         names = [cell.strip() for cell in rows[0][1]] if rows else []

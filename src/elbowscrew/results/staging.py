@@ -14,6 +14,7 @@ from typing import Final, NamedTuple
 
 from elbowscrew.choices import DRAWN_FORMATS
 from elbowscrew.errors import OutputError
+from elbowscrew.opening import create, open_bytes, read_text
 from elbowscrew.results.exporting import EXPORTS
 from elbowscrew.tables import TABLES
 from elbowscrew.view.figure_names import SAVED_FIGURES
@@ -112,7 +113,7 @@ def check_result_folder(target: Path, *, force: bool, kind: ResultKind = ANALYSI
 def is_summary(path: Path) -> bool:
     """Whether a file is the summary of a result."""
     try:
-        summary = json.loads(path.read_text(encoding="utf-8"))
+        summary = json.loads(read_text(path))
     except (OSError, ValueError, RecursionError):
         return False
     return isinstance(summary, dict) and "elbowscrew" in summary
@@ -141,17 +142,17 @@ def write_files(contents: Mapping[Path, Iterable[str] | bytes], *, replaceable: 
     target = next(iter(contents))
     try:
         for target, lines in contents.items():
-            destination = target.resolve()
+            destination = _destination(target)
             made += _make_parents(destination)
             staged[target] = _temporary(destination)
-            with staged[target].open("xb") as stream:
+            with create(staged[target]) as stream:
                 if isinstance(lines, bytes):
                     stream.write(lines)
                 else:
                     stream.writelines(f"{line}\n".encode() for line in lines)
         for target, temporary in staged.items():
             _check_file(target, replaceable)
-            temporary.replace(target.resolve())
+            temporary.replace(_destination(target))
         made = []
     except OSError as error:
         raise _output_error(target, error) from error
@@ -171,7 +172,7 @@ def replace_file(target: Path, content: bytes) -> None:
     """
     temporary = _temporary(target)
     try:
-        with temporary.open("xb") as stream:
+        with create(temporary) as stream:
             stream.write(content)
             stream.flush()
             os.fsync(stream.fileno())
@@ -209,18 +210,24 @@ def _check_file(target: Path, replaceable: str | None) -> None:
     try:
         if not os.path.lexists(target):
             return
-        if not target.is_file():
-            msg = f"{target}: exists already and is not a file; give another name"
+        if target.is_symlink() or not target.is_file():
+            what = "is a link" if target.is_symlink() else "is not a file"
+            msg = f"{target}: exists already and {what}; give another name"
             raise OutputError(msg)
         if replaceable is None:
             msg = f"{target}: exists already; give --force to replace it, or another name"
             raise OutputError(msg)
-        with target.open("rb") as stream:
+        with open_bytes(target) as stream:
             if replaceable.encode() not in stream.read(4096):
                 msg = f"{target}: exists already and was not written by elbowscrew; give another name"
                 raise OutputError(msg)
     except OSError as error:
         raise _output_error(target, error) from error
+
+
+def _destination(target: Path) -> Path:
+    """Follow the links that lead to the folder of a file, but never one in the place of the file."""
+    return target.parent.resolve() / target.name
 
 
 def _make_parents(destination: Path) -> list[Path]:

@@ -16,6 +16,7 @@ from elbowscrew.configuring import checked_settings
 from elbowscrew.errors import ResultError, UsageError
 from elbowscrew.model.joint_summary_types import JointSummary
 from elbowscrew.model.summary_types import Summary
+from elbowscrew.opening import read_text
 from elbowscrew.results.joint_summary import preferred_fit
 from elbowscrew.settings import Settings
 
@@ -91,7 +92,7 @@ def _joint_adapter() -> TypeAdapter[JointSummary]:
 
 def _read_object(path: Path) -> dict[str, Any]:
     try:
-        content = json.loads(path.read_text(encoding="utf-8"), parse_float=_finite, parse_constant=_finite)
+        content = json.loads(read_text(path), parse_float=_finite, parse_constant=_finite)
     except OSError as error:
         msg = (
             f"{path.parent}: holds no finished result: {path.name}: {error.strerror or error}; analyze the trial first"

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from elbowscrew.choices import AngleUnit, LengthUnit
 from elbowscrew.errors import ResultError
+from elbowscrew.opening import open_text
 from elbowscrew.quantities import Quantity, as_read_back, in_si, unit_suffixes
 from elbowscrew.tables import Column, attributes
 
@@ -86,7 +87,7 @@ def _read(path: Path, table: tuple[Column, ...], angle_unit: AngleUnit, length_u
     """Read columns, in the order of the table."""
     suffixes = unit_suffixes(angle_unit, length_unit)
     try:
-        with path.open(encoding="utf-8", newline="") as stream:
+        with open_text(path, newline="") as stream:
             header = stream.readline().rstrip("\n").split(",")
             places = [header.index(column.name + suffixes.get(column.quantity, "")) for column in table]
             blocks: list[list[NDArray[Any]]] = [[] for _ in table]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import io
 import re
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -15,6 +16,7 @@ from numpy.typing import NDArray
 from elbowscrew import tables
 from elbowscrew.model import Analysis
 from elbowscrew.motion.interpolation.rebuilding import keyframes_of
+from elbowscrew.opening import create
 
 _BLOCK_ROWS = 4096
 # What JSON would escape, what CSV quotes, and the word that JSON has for an empty cell.
@@ -59,7 +61,7 @@ def _results(analysis: Analysis) -> list[tuple[str, object, tuple[tables.Column,
 def write_csv(path: Path, columns: dict[str, NDArray[Any]], *, quoted: bool = False) -> None:
     """Write columns of equal length; NaN and masked values become empty cells, text is quoted if that is asked for."""
     if quoted:
-        with path.open("w", encoding="utf-8", newline="") as stream:
+        with io.TextIOWrapper(create(path), encoding="utf-8", newline="") as stream:
             table = csv.writer(stream, lineterminator="\n")
             table.writerow(columns)
             table.writerows(zip(*(_cells(values) for values in columns.values()), strict=True))
@@ -74,7 +76,7 @@ def _blocks(rows: int) -> list[slice]:
 
 
 def _write_blocks(path: Path, blocks: Iterable[Mapping[str, NDArray[Any]]]) -> None:
-    with path.open("wb") as stream:
+    with create(path) as stream:
         for k, block in enumerate(blocks):
             if k == 0:
                 stream.write((",".join(map(_quoted, block)) + "\n").encode())

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import IO, Final
 
 from elbowscrew.errors import OutputError
+from elbowscrew.opening import open_own
 from elbowscrew.results.staging import remove_leftovers
 
 MARK: Final = ".elbowscrew-batch.lock"
@@ -35,7 +36,7 @@ def batch_folder(folder: Path) -> Iterator[None]:
         try:
             _check_folder(folder)
             folder.mkdir(parents=True, exist_ok=True)
-            _hold(folder, held.enter_context((folder / MARK).open("a+b")))
+            _hold(folder, held.enter_context(open_own(folder / MARK)))
             _wait_for_workers(folder)
             remove_leftovers(folder)
         except OSError as error:
@@ -67,7 +68,7 @@ def at_work(folder: Path) -> Iterator[None]:
         return
     import fcntl
 
-    with (folder / _WORK).open("ab") as stream:
+    with open_own(folder / _WORK) as stream:
         fcntl.flock(stream, fcntl.LOCK_SH)
         yield
 
@@ -78,7 +79,7 @@ def _wait_for_workers(folder: Path) -> None:
     import fcntl
 
     deadline = time.monotonic() + _LONGEST_WAIT_S
-    with (folder / _WORK).open("ab") as stream:
+    with open_own(folder / _WORK) as stream:
         while True:
             try:
                 fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)

@@ -13,6 +13,7 @@ from typing import Final
 from elbowscrew.configuring import settings_from
 from elbowscrew.declaring import option_name
 from elbowscrew.errors import UsageError
+from elbowscrew.opening import read_text
 from elbowscrew.reading.source import first_bytes
 from elbowscrew.settings import LISTS, Settings
 from elbowscrew.study.trial import Trial
@@ -115,9 +116,9 @@ def read_manifest(path: Path) -> list[Trial]:
 
 def _read(path: Path) -> tuple[list[str], list[tuple[int, list[str]]], str]:
     try:
-        text = path.read_text(encoding="utf-8-sig")
+        text = read_text(path, encoding="utf-8-sig")
     except OSError as error:
-        msg = f"{path}: cannot be read as a manifest: {error.strerror}"
+        msg = f"{path}: cannot be read as a manifest: {error.strerror or error}"
         raise UsageError(msg) from error
     except UnicodeDecodeError as error:
         msg = f"{path}: not UTF-8 text; save the manifest as CSV in UTF-8"

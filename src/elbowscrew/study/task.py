@@ -70,6 +70,9 @@ def analyze_trial(task: TrialTask) -> Failure | None:
         return Failure(error_class="UsageError", message=message, exit_code=UsageError.exit_code, stops_all=True)
     try:
         with _ONE_AT_A_TIME, at_work(task.folder.parent):
+            if task.folder.is_symlink():
+                msg = f"{task.folder}: is a link; a batch writes into its own folder alone: remove it"
+                raise OutputError(msg)
             remove_damaged(task.folder)
             save_analysis(analyze_file(task.path, task.settings, landmarks=task.landmarks), task.folder, force=True)
             collect_garbage()

@@ -1,0 +1,152 @@
+"""What is read is a regular file and what is written a new one, whatever has been put in its place."""
+
+from __future__ import annotations
+
+import os
+import socket
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from elbowscrew.cli import main
+from elbowscrew.errors import OutputError
+from elbowscrew.opening import create, open_bytes, open_own, open_text, read_text
+from elbowscrew.results.staging import write_files
+from elbowscrew.study.folder import MARK, at_work, batch_folder
+
+posix = pytest.mark.skipif(sys.platform == "win32", reason="links, pipes and sockets of POSIX")
+PRECIOUS = b"years of work\n"
+
+
+def pipe(path: Path) -> None:
+    os.mkfifo(path)
+
+
+def listener(path: Path) -> None:
+    before = Path.cwd()
+    os.chdir(path.parent)  # the address of a socket is short
+    with socket.socket(socket.AF_UNIX) as one:
+        one.bind(path.name)
+    os.chdir(before)
+
+
+def device(path: Path) -> None:
+    path.symlink_to("/dev/zero")
+
+
+STRANGE = pytest.mark.parametrize("make", [pipe, listener, device])
+
+
+@pytest.fixture
+def precious(tmp_path: Path) -> Path:
+    file = tmp_path / "precious"
+    file.write_bytes(PRECIOUS)
+    return file
+
+
+@posix
+@STRANGE
+@pytest.mark.parametrize("read", [open_bytes, open_text, read_text, open_own])
+def test_only_regular_files_are_opened(
+    tmp_path: Path, make: Callable[[Path], None], read: Callable[[Path], object]
+) -> None:
+    make(tmp_path / "file")
+    with pytest.raises(OSError, match=r"no regular file|link"):
+        read(tmp_path / "file")
+
+
+def test_a_folder_is_told_as_one(tmp_path: Path) -> None:
+    with pytest.raises(IsADirectoryError if os.name != "nt" else OSError):
+        open_bytes(tmp_path)
+
+
+def test_a_file_larger_than_anybody_means_is_not_read(tmp_path: Path) -> None:
+    (tmp_path / "file").write_bytes(b"12345678")
+    assert read_text(tmp_path / "file", largest=8) == "12345678"
+    with pytest.raises(OSError, match="over 7 bytes"):
+        read_text(tmp_path / "file", largest=7)
+
+
+@posix
+@STRANGE
+def test_a_command_waits_for_no_pipe(
+    tmp_path: Path, samples: Path, capsys: pytest.CaptureFixture[str], make: Callable[[Path], None]
+) -> None:
+    take, strange = samples / "elbow_paper.csv", tmp_path / "strange.csv"
+    make(strange)
+    assert main(["analyze", str(take), "-o", str(tmp_path / "out"), "--config", str(strange)]) == 2
+    assert main(["analyze", str(take), "-o", str(tmp_path / "out"), "--landmarks", str(strange)]) == 2
+    assert main(["analyze", str(take), "-o", str(tmp_path / "out"), "--cycles", str(strange)]) == 2
+    assert main(["interpolate", str(strange), "--frames", "9"]) == 3
+    assert main(["info", str(strange)]) == 3
+    assert main(["batch", str(strange), "-o", str(tmp_path / "out")]) in (2, 7)
+    told = capsys.readouterr().err.splitlines()
+    assert sum("no regular file" in line for line in told) >= 5
+    assert not (tmp_path / "out").exists() or (tmp_path / "out" / "failures.csv").exists()
+
+
+@posix
+@STRANGE
+@pytest.mark.parametrize("name", ["summary.json", "joint.json", "screw.csv", "interpolation.csv", "report.html"])
+def test_nor_for_one_in_a_result(
+    tmp_path: Path, samples: Path, capsys: pytest.CaptureFixture[str], make: Callable[[Path], None], name: str
+) -> None:
+    take, result = str(samples / "elbow_paper.csv"), tmp_path / "study" / "result"
+    assert main(["analyze", take, "-o", str(result), "--figure-format", "none", "-q"]) == 0
+    (result / name).unlink()
+    make(result / name)
+    assert main(["report", str(result)]) in (3, 6)
+    assert main(["report", str(tmp_path / "study")]) in (3, 6, 0)
+    assert main(["analyze", take, "-o", str(result), "--figure-format", "none", "-q"]) == 6
+    assert capsys.readouterr().err.count("error") >= 2
+
+
+@posix
+@pytest.mark.parametrize("link", [Path.symlink_to, Path.hardlink_to])
+@pytest.mark.parametrize("name", [MARK, ".elbowscrew-work.lock"])
+def test_a_link_in_the_output_of_a_batch_is_not_followed(
+    tmp_path: Path, precious: Path, link: Callable[[Path, Path], None], name: str
+) -> None:
+    out = tmp_path / "out"
+    with batch_folder(out):
+        pass
+    (out / name).unlink()
+    link(out / name, precious)
+    with pytest.raises(OutputError, match="link to another file"), batch_folder(out):
+        pass
+    assert precious.read_bytes() == PRECIOUS
+    if name != MARK:
+        with pytest.raises(OSError, match="link to another file"), at_work(out):
+            pass
+
+
+@posix
+@pytest.mark.parametrize("to", ["precious", "not there"])
+def test_no_file_is_written_through_a_link(tmp_path: Path, precious: Path, to: str) -> None:
+    precious.write_bytes(b"synthetic")
+    link = tmp_path / "link.csv"
+    link.symlink_to(tmp_path / to)
+    with pytest.raises(OutputError, match="is a link"):
+        write_files({link: b"synthetic"}, replaceable="synthetic")
+    with pytest.raises(OSError):  # noqa: PT011 - of the system
+        create(link)
+    assert link.is_symlink()
+    assert precious.read_bytes() == b"synthetic"
+    assert not (tmp_path / "not there").exists()
+
+
+@posix
+def test_a_trial_of_a_batch_goes_into_no_other_folder(
+    tmp_path: Path, samples: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    take, other, out = samples / "elbow_paper.csv", tmp_path / "other", tmp_path / "out"
+    assert main(["analyze", str(take), "-o", str(other), "--figure-format", "none", "-q"]) == 0
+    before = {path.name: path.read_bytes() for path in other.iterdir()}
+    with batch_folder(out):
+        (out / "elbow_paper").symlink_to(other)
+    common = ["batch", str(take), "-o", str(out), "--figure-format", "none", "--workers", "1", "-q", "--min-angle", "9"]
+    assert main(common) == 7
+    assert "is a link" in (out / "failures.csv").read_text()
+    assert {path.name: path.read_bytes() for path in other.iterdir()} == before
