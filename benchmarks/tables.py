@@ -14,7 +14,7 @@ from rows import Row, alternate, clean_environment, share, table
 from trial import long_export
 
 from elbowscrew import read_recording
-from elbowscrew.results.writing import write_csv
+from elbowscrew.results.writing import BLOCK_ROWS, write_csv
 
 HEADER_LINES = 7
 USED = list(range(18))
@@ -46,10 +46,17 @@ def writing(folder: Path, frames: int, rounds: int) -> list[Row]:
     rng = np.random.default_rng(4)
     columns = {f"c{k}": rng.normal(size=frames) for k in range(COLUMNS)}
     frame, polar = pd.DataFrame(columns), polars.DataFrame(columns)
-    write_csv(folder / "ours.csv", columns)
+
+    def ours() -> None:
+        starts = range(0, frames, BLOCK_ROWS)
+        blocks = ({name: values[k : k + BLOCK_ROWS] for name, values in columns.items()} for k in starts)
+        (folder / "ours.csv").unlink(missing_ok=True)
+        write_csv(folder / "ours.csv", blocks)
+
+    ours()
     times = alternate(
         {
-            "ours": lambda: write_csv(folder / "ours.csv", columns),
+            "ours": ours,
             "pandas": lambda: frame.to_csv(folder / "pandas.csv", index=False),
             "polars": lambda: polar.write_csv(folder / "polars.csv"),
             "a copy of the file": lambda: shutil.copyfile(folder / "ours.csv", folder / "copy.csv"),

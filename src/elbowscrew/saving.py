@@ -9,7 +9,6 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
-from elbowscrew import tables
 from elbowscrew.choices import DRAWN_FORMATS
 from elbowscrew.errors import ElbowscrewError, UsageError
 from elbowscrew.model import Analysis, Comparison, Landmarks, RebuiltMotion, TrialsComparison
@@ -31,7 +30,7 @@ from elbowscrew.results.staging import (
 from elbowscrew.results.summary import summary_from_analysis
 from elbowscrew.results.summary_reading import JOINT, SUMMARY
 from elbowscrew.results.trial_views import view_of_analysis
-from elbowscrew.results.writing import write_csv, write_tables
+from elbowscrew.results.writing import write_table, write_tables
 from elbowscrew.settings import Settings
 from elbowscrew.view.figure_names import SAVED_FIGURES
 from elbowscrew.view.trial_view import TrialView
@@ -287,10 +286,9 @@ def save_motion(motion: RebuiltMotion, path: str | os.PathLike[str], *, force: b
     'motion.csv'
     """
     target = Path(path)
-    columns = tables.columns(motion, tables.MOTION_COLUMNS, "deg", "mm")
     with tempfile.TemporaryDirectory() as folder:
         staged = Path(folder) / "motion.csv"
-        write_csv(staged, columns)
+        write_table(staged, motion, "deg", "mm")
         content = staged.read_bytes()
     write_files({target: content}, replaceable="frame,time_s,phase,t,theta" if force else None)
     return target
@@ -355,15 +353,11 @@ def write_comparison(
 
     settings = comparison.settings
     formats = _known_formats(settings.figure_formats if figure_formats is None else tuple(figure_formats))
-    units = settings.angle_unit, settings.length_unit
-    if isinstance(comparison, Comparison):
-        columns = tables.columns(comparison.models, tables.COMPARISON_COLUMNS, *units)
-        summary: ComparisonSummary | TrialsSummary = comparison_summary(comparison)
-    else:
-        columns = tables.columns(comparison.models, tables.TRIALS_COMPARISON_COLUMNS, *units)
-        summary = trials_summary(comparison)
+    summary: ComparisonSummary | TrialsSummary = (
+        comparison_summary(comparison) if isinstance(comparison, Comparison) else trials_summary(comparison)
+    )
     with result_folder(target, force=force, kind=COMPARISON) as staged:
-        write_csv(staged / "compare.csv", columns, quoted=True)
+        write_table(staged / "compare.csv", comparison.models, settings.angle_unit, settings.length_unit)
         _write_json(staged / "compare.json", summary)
         if formats:
             from elbowscrew.plots.comparison import comparison_figure

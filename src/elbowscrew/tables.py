@@ -1,23 +1,19 @@
 """The only list of column names: what stands in ``screw.csv`` and ``interpolation.csv``, in which order and unit.
 
 The results themselves hold SI units and radians; a column says where its values come from and what kind of quantity
-they are, and `columns` turns a result into named columns in the units asked for.
+they are; `TableRecord.columns` turns a result into named columns in the units asked for.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowscrew.choices import AngleUnit, LengthUnit
-from elbowscrew.quantities import Quantity, in_units, unit_suffixes
-
-if TYPE_CHECKING:
-    import pandas as pd
+from elbowscrew.quantities import Quantity
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -286,23 +282,6 @@ TABLES: Final = {
 """The tables of a result, each a file of its name, and their columns: those of the joint's angles with two axes."""
 
 
-def columns(
-    result: object,
-    table: tuple[Column, ...],
-    angle_unit: AngleUnit,
-    length_unit: LengthUnit,
-    rows: slice = slice(None),
-) -> dict[str, NDArray[Any]]:
-    """Named columns of a result, in order; floats are NaN and masked integers masked where nothing is known."""
-    suffixes = unit_suffixes(angle_unit, length_unit)
-    return {
-        column.name + suffixes.get(column.quantity, ""): in_units(
-            column.values(result)[rows], column.quantity, angle_unit, length_unit
-        )
-        for column in table
-    }
-
-
 def attributes(read: Sequence[NDArray[Any]], table: tuple[Column, ...]) -> dict[str, NDArray[Any]]:
     """Put columns together to the attributes that they were made from; the inverse of `Column.values`.
 
@@ -330,20 +309,3 @@ def attributes(read: Sequence[NDArray[Any]], table: tuple[Column, ...]) -> dict[
         else:
             found[attribute] = values[0]
     return found
-
-
-def data_frame(
-    result: object, table: tuple[Column, ...], angle_unit: AngleUnit, length_unit: LengthUnit
-) -> pd.DataFrame:
-    """Return the columns as a pandas data frame, the same names and values as in the CSV."""
-    import pandas as pd
-
-    named = columns(result, table, angle_unit, length_unit)
-    return pd.DataFrame(
-        {
-            name: pd.Series(values.filled(0), dtype="Int64").mask(np.ma.getmaskarray(values))
-            if isinstance(values, np.ma.MaskedArray)
-            else values
-            for name, values in named.items()
-        }
-    )

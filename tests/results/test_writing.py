@@ -11,7 +11,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from elbowscrew import analyze, simulate_trial, tables
+from elbowscrew import ComparisonPlan, analyze, compare_trials, save_comparison, save_simulation, simulate_trial
 from elbowscrew.results.writing import write_csv, write_tables
 
 SCREW_NAMES = (
@@ -29,7 +29,7 @@ INTERPOLATION_NAMES = (
 @given(values=st.lists(st.floats(allow_nan=True, allow_infinity=True), min_size=1, max_size=20))
 def test_numbers_read_back_as_the_same_float(tmp_path_factory: pytest.TempPathFactory, values: list[float]) -> None:
     path = tmp_path_factory.mktemp("csv") / "t.csv"
-    write_csv(path, {"value": np.array(values), "n": np.arange(len(values))})
+    write_csv(path, [{"value": np.array(values), "n": np.arange(len(values))}])
     with path.open(newline="") as stream:
         rows = list(csv.DictReader(stream))
     for row, value in zip(rows, values, strict=True):
@@ -44,7 +44,9 @@ def test_every_kind_of_cell_and_block(tmp_path: Path) -> None:
     phase = np.ma.array(np.arange(count), mask=np.arange(count) % 5 == 0)
     flag = np.arange(count) % 2 == 0
     word = np.where(flag, "blank", "")
-    write_csv(tmp_path / "t.csv", {"x": number, "phase": phase, "flag": flag.astype(np.int64), "word": word})
+    columns = {"x": number, "phase": phase, "flag": flag.astype(np.int64), "word": word}
+    blocks = (slice(0, 4096), slice(4096, 4096), slice(4096, count))
+    write_csv(tmp_path / "t.csv", ({name: values[rows] for name, values in columns.items()} for rows in blocks))
     lines = (tmp_path / "t.csv").read_bytes().split(b"\n")
     assert lines[0] == b"x,phase,flag,word"
     assert lines[1] == b"0.0,,1,blank"
@@ -76,8 +78,8 @@ def test_the_columns_are_the_contract(tmp_path: Path) -> None:
 
 def test_units_change_names_and_values_together(tmp_path: Path) -> None:
     analysis = analyze(simulate_trial(frames=60, inversion=30).recording)
-    default = tables.columns(analysis.screw, tables.SCREW_COLUMNS, "deg", "mm")
-    si = tables.columns(analysis.screw, tables.SCREW_COLUMNS, "rad", "m")
+    default = analysis.screw.columns()
+    si = analysis.screw.columns("rad", "m")
     assert np.degrees(si["theta_rad"]) == pytest.approx(default["theta_deg"], nan_ok=True)
     for name in ("slide", "point_x", "d_z"):
         assert 1000 * si[f"{name}_m"] == pytest.approx(default[f"{name}_mm"], nan_ok=True)
@@ -98,3 +100,14 @@ def test_frames_outside_the_keyframes_have_no_phase(tmp_path: Path) -> None:
     assert all(cell == "" for row in rows[:10] for cell in row[2:])
     phases = analysis.interpolated.to_frame()["phase"]
     assert phases.isna().sum() == 19
+
+
+def test_what_is_not_known_of_compared_models_is_empty(tmp_path: Path) -> None:
+    trial = tmp_path / "trial.csv"
+    save_simulation(simulate_trial(frames=60, inversion=30), trial)
+    plan = ComparisonPlan(laws=("linear",), methods=("sclerp",), counts=(2,), data=("raw",))
+    save_comparison(compare_trials([trial], plan=plan), tmp_path / "found", figure_formats=())
+    with (tmp_path / "found" / "compare.csv").open(newline="") as stream:
+        (row,) = csv.DictReader(stream)
+    assert float(row["rms_displacement_mean_mm"]) > 0.0
+    assert row["rms_displacement_sd_mm"] == row["ns_per_frame_sd"] == ""  # a single trial has no deviation

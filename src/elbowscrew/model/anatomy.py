@@ -4,18 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, Literal
+from typing import ClassVar, Final, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowscrew import choices, tables
+from elbowscrew import tables
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.model.array_record import ArrayRecord
-
-if TYPE_CHECKING:
-    import pandas as pd
-
+from elbowscrew.model.table_record import TableRecord
 
 Side = Literal["right", "left"]
 LandmarkFrame = Literal["proximal", "distal", "lab"]
@@ -92,7 +89,7 @@ class Landmarks(ArrayRecord):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class AnatomicalMotion(ArrayRecord):
+class AnatomicalMotion(TableRecord):
     """The elbow's angles by the ISB's sequence, and its screw axes beside the epicondyle line.
 
     Attributes
@@ -123,6 +120,8 @@ class AnatomicalMotion(ArrayRecord):
     Wu and others 2005, J Biomech 38:981-992.
     """
 
+    table: ClassVar = tables.ANATOMY_COLUMNS
+
     side: Side
     frame: NDArray[np.int64]
     time_s: Float
@@ -139,7 +138,3 @@ class AnatomicalMotion(ArrayRecord):
     dual_quat_distal_isb: Float
     points: Mapping[str, Float]
     landmarks: Landmarks
-
-    def to_frame(self, angle_unit: choices.AngleUnit = "deg", length_unit: choices.LengthUnit = "mm") -> pd.DataFrame:
-        """Return the columns of ``anatomy.csv``."""
-        return tables.data_frame(self, tables.ANATOMY_COLUMNS, angle_unit, length_unit)

@@ -3,21 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowscrew import choices, tables
+from elbowscrew import tables
 from elbowscrew.geometry.arrays import Float
-from elbowscrew.model.array_record import ArrayRecord
-
-if TYPE_CHECKING:
-    import pandas as pd
+from elbowscrew.model.table_record import TableRecord
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class InstantaneousMotion(ArrayRecord):
+class InstantaneousMotion(TableRecord):
     """Instantaneous helical axis of every frame, in the frame the screws are expressed in.
 
     Attributes
@@ -33,6 +30,8 @@ class InstantaneousMotion(ArrayRecord):
         Cut-off of the filter that the poses went through; None of a clock of several rates, on which none is right.
     """
 
+    table: ClassVar = tables.INSTANTANEOUS_COLUMNS
+
     frame: NDArray[np.int64]
     time_s: Float
     lowpass_hz: float | None
@@ -41,13 +40,9 @@ class InstantaneousMotion(ArrayRecord):
     axis_direction: Float
     axis_point: Float
 
-    def to_frame(self, angle_unit: choices.AngleUnit = "deg", length_unit: choices.LengthUnit = "mm") -> pd.DataFrame:
-        """Return the columns of ``instantaneous.csv``."""
-        return tables.data_frame(self, tables.INSTANTANEOUS_COLUMNS, angle_unit, length_unit)
-
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class HelicalSteps(ArrayRecord):
+class HelicalSteps(TableRecord):
     """Finite helical axes between successive poses, in the frame the screws are expressed in.
 
     Attributes
@@ -61,6 +56,8 @@ class HelicalSteps(ArrayRecord):
     angle_sd, slide_sd, axis_sd, point_sd, axis_cone, point_radius : ndarray, shape (K,)
         As in `ScrewMotion`.
     """
+
+    table: ClassVar = tables.STEP_COLUMNS
 
     start_frame: NDArray[np.int64]
     end_frame: NDArray[np.int64]
@@ -76,7 +73,3 @@ class HelicalSteps(ArrayRecord):
     point_sd: Float
     axis_cone: Float
     point_radius: Float
-
-    def to_frame(self, angle_unit: choices.AngleUnit = "deg", length_unit: choices.LengthUnit = "mm") -> pd.DataFrame:
-        """Return the columns of ``steps.csv``."""
-        return tables.data_frame(self, tables.STEP_COLUMNS, angle_unit, length_unit)

@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowscrew import choices, tables
+from elbowscrew import tables
 from elbowscrew.geometry.arrays import Float, Index
 from elbowscrew.model.array_record import ArrayRecord
 from elbowscrew.model.modeled import ModelPhases, PhaseLaw, Selection
+from elbowscrew.model.table_record import TableRecord
 
 if TYPE_CHECKING:
-    import pandas as pd
-
     from elbowscrew.errors import ElbowscrewError
     from elbowscrew.model.modeled import BodyPoints
     from elbowscrew.model.recording import QualityWarning, Recording
@@ -26,7 +25,7 @@ Label = NDArray[np.str_]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class ComparedModels(ArrayRecord):
+class ComparedModels(TableRecord):
     """Models and their errors, the best first; those that could not be made last, with the reason.
 
     Errors are those of the model against the measured motion, unfiltered and at the recording's own rate, over the
@@ -58,6 +57,8 @@ class ComparedModels(ArrayRecord):
         Why there is no model; empty where there is one.
     """
 
+    table: ClassVar = tables.COMPARISON_COLUMNS
+
     rank: Index
     data: Label
     method: Label
@@ -79,10 +80,6 @@ class ComparedModels(ArrayRecord):
     max_axis_distance: Float
     ns_per_frame: Float
     note: Label
-
-    def to_frame(self, angle_unit: choices.AngleUnit = "deg", length_unit: choices.LengthUnit = "mm") -> pd.DataFrame:
-        """Return the columns of ``compare.csv``."""
-        return tables.data_frame(self, tables.COMPARISON_COLUMNS, angle_unit, length_unit)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -117,7 +114,7 @@ class Comparison(ArrayRecord):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class ComparedOverTrials(ArrayRecord):
+class ComparedOverTrials(TableRecord):
     """The same models over several trials: mean and standard deviation of each error; the best mean first.
 
     Attributes
@@ -133,6 +130,8 @@ class ComparedOverTrials(ArrayRecord):
         Radians.
     ns_per_frame_mean, ns_per_frame_sd : ndarray, shape (M,)
     """
+
+    table: ClassVar = tables.TRIALS_COMPARISON_COLUMNS
 
     rank: Index
     data: Label
@@ -152,10 +151,6 @@ class ComparedOverTrials(ArrayRecord):
     max_angle_error_sd: Float
     ns_per_frame_mean: Float
     ns_per_frame_sd: Float
-
-    def to_frame(self, angle_unit: choices.AngleUnit = "deg", length_unit: choices.LengthUnit = "mm") -> pd.DataFrame:
-        """Return the columns of ``compare.csv`` of a folder."""
-        return tables.data_frame(self, tables.TRIALS_COMPARISON_COLUMNS, angle_unit, length_unit)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)

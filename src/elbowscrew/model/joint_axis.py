@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowscrew import tables
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.model.array_record import ArrayRecord
+from elbowscrew.model.table_record import TableRecord
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -160,7 +162,7 @@ class MeanLine(ArrayRecord):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class AxisPath(ArrayRecord):
+class AxisPath(TableRecord):
     """An axis that wanders, against the angle, in the frame the screws are expressed in.
 
     Attributes
@@ -174,6 +176,8 @@ class AxisPath(ArrayRecord):
     frames : ndarray, shape (K,)
         How many of the frames that were fitted are in each part.
     """
+
+    table: ClassVar = tables.AXIS_PATH_COLUMNS
 
     angle: Float
     direction: Float

@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, Literal
+from typing import Final, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowscrew import choices, tables
+from elbowscrew import tables
 from elbowscrew.choices import StatedJoint
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.sensitivity import NORMAL_95
 from elbowscrew.model.array_record import ArrayRecord
 from elbowscrew.model.joint_coordinates import JointCoordinates
-
-if TYPE_CHECKING:
-    import pandas as pd
+from elbowscrew.model.table_record import TableRecord
 
 BALL_95: Final = 2.795483
 """Radius that holds 95 % of three normal errors alike: root of the quantile of chi-square with 3 degrees of freedom."""
@@ -227,7 +225,7 @@ class JointType(ArrayRecord):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class JointAngles(ArrayRecord):
+class JointAngles(TableRecord):
     """The joint's own angles in every frame, zero at the reference pose; NaN where they are not known.
 
     Attributes
@@ -252,7 +250,3 @@ class JointAngles(ArrayRecord):
     def table(self) -> tuple[tables.Column, ...]:
         """Columns of ``joint_angles.csv`` for this joint."""
         return tables.JOINT_ANGLE_COLUMNS[self.angle.shape[1]]
-
-    def to_frame(self, angle_unit: choices.AngleUnit = "deg", length_unit: choices.LengthUnit = "mm") -> pd.DataFrame:
-        """Return the columns of ``joint_angles.csv``."""
-        return tables.data_frame(self, self.table, angle_unit, length_unit)

@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from typing import Any, ClassVar, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowscrew import choices, tables
+from elbowscrew import tables
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat
 from elbowscrew.model.array_record import ArrayRecord
 from elbowscrew.model.joint_coordinates import JointCoordinates
-
-if TYPE_CHECKING:
-    import pandas as pd
+from elbowscrew.model.table_record import TableRecord
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -95,7 +93,7 @@ class Keyframes(ArrayRecord):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class KeyframeSet(ArrayRecord):
+class KeyframeSet(TableRecord):
     """Keyframes with all that rebuilds the motion from them.
 
     Attributes
@@ -202,13 +200,9 @@ class KeyframeSet(ArrayRecord):
         row = np.concatenate([axis[0], point[0], axis[1], point[1], [self.joint.pitch], quat, place])
         return np.tile(row, (self.frame.size, 1))
 
-    def to_frame(self, angle_unit: choices.AngleUnit = "deg", length_unit: choices.LengthUnit = "mm") -> pd.DataFrame:
-        """Return the columns of ``keyframes.csv``."""
-        return tables.data_frame(self, self.table, angle_unit, length_unit)
-
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class RebuiltMotion(ArrayRecord):
+class RebuiltMotion(TableRecord):
     """The motion that keyframes tell of, frame by frame.
 
     Attributes
@@ -221,6 +215,8 @@ class RebuiltMotion(ArrayRecord):
         As in `InterpolatedMotion`.
     """
 
+    table: ClassVar = tables.MOTION_COLUMNS
+
     frame: NDArray[np.int64]
     time_s: Float
     phase: np.ma.MaskedArray[Any, np.dtype[np.int64]]
@@ -229,10 +225,6 @@ class RebuiltMotion(ArrayRecord):
     slide: Float
     euler_parameters: Float
     translation: Float
-
-    def to_frame(self, angle_unit: choices.AngleUnit = "deg", length_unit: choices.LengthUnit = "mm") -> pd.DataFrame:
-        """Return the columns that ``elbowscrew interpolate`` writes."""
-        return tables.data_frame(self, tables.MOTION_COLUMNS, angle_unit, length_unit)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -274,7 +266,7 @@ class Selection(ArrayRecord):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class InterpolatedMotion(ArrayRecord):
+class InterpolatedMotion(TableRecord):
     """The motion modeled from the keyframes, and its difference from the measured one; NaN outside the keyframes.
 
     Attributes
@@ -297,6 +289,8 @@ class InterpolatedMotion(ArrayRecord):
         where it passes the distal body at the reference; NaN where one of the two is not known.
     """
 
+    table: ClassVar = tables.INTERPOLATION_COLUMNS
+
     frame: NDArray[np.int64]
     time_s: Float
     phase: np.ma.MaskedArray[Any, np.dtype[np.int64]]
@@ -310,10 +304,6 @@ class InterpolatedMotion(ArrayRecord):
     rms_displacement: Float
     axis_error: Float
     axis_distance: Float
-
-    def to_frame(self, angle_unit: choices.AngleUnit = "deg", length_unit: choices.LengthUnit = "mm") -> pd.DataFrame:
-        """Return the columns of ``interpolation.csv``."""
-        return tables.data_frame(self, tables.INTERPOLATION_COLUMNS, angle_unit, length_unit)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)

@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowscrew import choices, tables
+from elbowscrew import tables
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.model.array_record import ArrayRecord
-
-if TYPE_CHECKING:
-    import pandas as pd
+from elbowscrew.model.table_record import TableRecord
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -33,7 +31,7 @@ class MovementPhases(ArrayRecord):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class Repetitions(ArrayRecord):
+class Repetitions(TableRecord):
     """Cycles out and back: a value for each of them.
 
     Attributes
@@ -60,6 +58,8 @@ class Repetitions(ArrayRecord):
         Angle (rad) of that axis from the mean of all cycles'.
     """
 
+    table: ClassVar = tables.REPETITION_COLUMNS
+
     number: NDArray[np.int64]
     start_frame: NDArray[np.int64]
     inversion_frame: NDArray[np.int64]
@@ -80,13 +80,9 @@ class Repetitions(ArrayRecord):
     axis_point: Float
     axis_deviation: Float
 
-    def to_frame(self, angle_unit: choices.AngleUnit = "deg", length_unit: choices.LengthUnit = "mm") -> pd.DataFrame:
-        """Return the columns of ``repetitions.csv``."""
-        return tables.data_frame(self, tables.REPETITION_COLUMNS, angle_unit, length_unit)
-
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class Repeatability(ArrayRecord):
+class Repeatability(TableRecord):
     """How alike the repetitions are; NaN where fewer than two do not say.
 
     Attributes
@@ -105,6 +101,8 @@ class Repeatability(ArrayRecord):
         Of the largest angle, radians.
     """
 
+    table: ClassVar = tables.CURVE_COLUMNS
+
     percent: Float
     mean: Float
     sd: Float
@@ -115,13 +113,9 @@ class Repeatability(ArrayRecord):
     point_sd: float
     top_sd: float
 
-    def to_frame(self, angle_unit: choices.AngleUnit = "deg", length_unit: choices.LengthUnit = "mm") -> pd.DataFrame:
-        """Return the columns of ``repetition_curve.csv``."""
-        return tables.data_frame(self, tables.CURVE_COLUMNS, angle_unit, length_unit)
-
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class CycleCurves(ArrayRecord):
+class CycleCurves(TableRecord):
     """Every cycle over its own time, one after the other.
 
     Attributes
@@ -134,10 +128,8 @@ class CycleCurves(ArrayRecord):
         Radians; NaN where a neighboring frame has none.
     """
 
+    table: ClassVar = tables.CYCLE_COLUMNS
+
     cycle: NDArray[np.int64]
     percent: Float
     angle: Float
-
-    def to_frame(self, angle_unit: choices.AngleUnit = "deg", length_unit: choices.LengthUnit = "mm") -> pd.DataFrame:
-        """Return the columns of ``cycles.csv``."""
-        return tables.data_frame(self, tables.CYCLE_COLUMNS, angle_unit, length_unit)

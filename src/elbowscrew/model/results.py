@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowscrew import choices, tables
+from elbowscrew import tables
 from elbowscrew.geometry.arrays import Bool, Float
 from elbowscrew.joints import Joint
 from elbowscrew.model.anatomy import AnatomicalMotion
@@ -21,10 +21,9 @@ from elbowscrew.model.quality import BodyQuality
 from elbowscrew.model.recording import QualityWarning, Recording, RigidBody
 from elbowscrew.model.repetitions import CycleCurves, MovementPhases, Repeatability, Repetitions
 from elbowscrew.model.sense import Sense
+from elbowscrew.model.table_record import TableRecord
 
 if TYPE_CHECKING:
-    import pandas as pd
-
     from elbowscrew.settings import Settings
 
 
@@ -57,7 +56,7 @@ class JointMotion(ArrayRecord):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class ScrewMotion(ArrayRecord):
+class ScrewMotion(TableRecord):
     """The displacement since the reference (P 35) and its screw, frame by frame; NaN where not defined or not known.
 
     Attributes
@@ -84,6 +83,8 @@ class ScrewMotion(ArrayRecord):
         Half-angle (rad) of the cone, and radius (m) of the circle, that hold 95 %.
     """
 
+    table: ClassVar = tables.SCREW_COLUMNS
+
     frame: NDArray[np.int64]
     time_s: Float
     valid: Bool
@@ -108,10 +109,6 @@ class ScrewMotion(ArrayRecord):
         """Frames whose rotation is large enough for an axis, shape (N,)."""
         known: Bool = np.logical_and.reduce(np.isfinite(self.axis_direction), axis=1)
         return known
-
-    def to_frame(self, angle_unit: choices.AngleUnit = "deg", length_unit: choices.LengthUnit = "mm") -> pd.DataFrame:
-        """Return the columns of ``screw.csv``."""
-        return tables.data_frame(self, tables.SCREW_COLUMNS, angle_unit, length_unit)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)

@@ -8,7 +8,6 @@ from typing import Any, Final, TypeVar, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowscrew import tables
 from elbowscrew._version import __version__
 from elbowscrew.model import Comparison, TrialsComparison
 from elbowscrew.model.comparison_summary_types import (
@@ -31,7 +30,7 @@ Model = TypeVar("Model", bound=ModelChoice)
 def comparison_summary(comparison: Comparison) -> ComparisonSummary:
     """Say phases, laws, the best models and the selections of one recording; degrees and millimeters."""
     frame, phases = comparison.frame, comparison.phases
-    models = _models(tables.columns(comparison.models, tables.COMPARISON_COLUMNS, "deg", "mm"), ComparedModel)
+    models = _models(comparison.models.columns(), ComparedModel)
     return {
         "elbowscrew": __version__,
         "source": source_summary(comparison.recording),
@@ -57,7 +56,7 @@ def comparison_summary(comparison: Comparison) -> ComparisonSummary:
 
 def trials_summary(found: TrialsComparison) -> TrialsSummary:
     """Say the best models over several recordings, and what each recording's selection needs."""
-    models = _models(tables.columns(found.models, tables.TRIALS_COMPARISON_COLUMNS, "deg", "mm"), ModelOverTrials)
+    models = _models(found.models.columns(), ModelOverTrials)
     return {
         "elbowscrew": __version__,
         "settings": settings_summary(found.settings),

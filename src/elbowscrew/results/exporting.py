@@ -20,7 +20,7 @@ from elbowscrew.model import Analysis
 from elbowscrew.model.summary_types import AnalysisSummary
 from elbowscrew.opening import create, write_new
 from elbowscrew.quantities import angle_in
-from elbowscrew.results.writing import named_tables
+from elbowscrew.results.writing import results_by_table
 
 _Table = Mapping[str, NDArray[Any]]
 
@@ -51,8 +51,9 @@ def _write_parquet(folder: Path, analysis: Analysis, summary: AnalysisSummary) -
     import pyarrow.parquet as pq
 
     metadata = {b"elbowscrew": json.dumps(summary, ensure_ascii=True, allow_nan=False).encode()}
-    for name, table in named_tables(analysis).items():
-        columns = {column: _arrow_array(pa, values) for column, values in table.items()}
+    units = analysis.settings.angle_unit, analysis.settings.length_unit
+    for name, result in results_by_table(analysis).items():
+        columns = {column: _arrow_array(pa, values) for column, values in result.columns(*units).items()}
         with create(folder / f"{name}.parquet") as stream:
             pq.write_table(pa.table(columns).replace_schema_metadata(metadata), stream)
 
@@ -69,9 +70,10 @@ def _write_mat(folder: Path, analysis: Analysis, summary: AnalysisSummary) -> No
     """Write one file with a structure for each table, and the summary as JSON; not known is NaN."""
     from scipy.io import savemat
 
+    units = analysis.settings.angle_unit, analysis.settings.length_unit
     content: dict[str, Any] = {
-        name: {column: _matlab_array(values) for column, values in table.items()}
-        for name, table in named_tables(analysis).items()
+        name: {column: _matlab_array(values) for column, values in result.columns(*units).items()}
+        for name, result in results_by_table(analysis).items()
     }
     content["summary_json"] = json.dumps(summary, ensure_ascii=True, allow_nan=False)
     stream = io.BytesIO()

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from elbowscrew.choices import AngleUnit, LengthUnit
 from elbowscrew.errors import ResultError
+from elbowscrew.model.table_record import TableRecord
 from elbowscrew.opening import open_text
 from elbowscrew.quantities import Quantity, as_read_back, in_si, unit_suffixes
 from elbowscrew.tables import Column, attributes
@@ -25,17 +26,14 @@ Attributes = dict[str, NDArray[Any]]
 """Columns of a result by the attributes that they are of."""
 
 
-def as_read(
-    result: object, table: tuple[Column, ...], names: Collection[str], angle_unit: AngleUnit, length_unit: LengthUnit
-) -> Attributes:
+def as_read(result: TableRecord, names: Collection[str], angle_unit: AngleUnit, length_unit: LengthUnit) -> Attributes:
     """Give attributes of a result with the numbers that its table gives when it is read back, to the last digit.
 
     Only the sign of a zero is lost in a table.
 
     Parameters
     ----------
-    result : object
-    table : tuple of Column
+    result : TableRecord
     names : collection of str
         Of the attributes wanted.
     angle_unit, length_unit : str
@@ -46,7 +44,7 @@ def as_read(
     dict of str to ndarray
         As `read_attributes` does of the table.
     """
-    quantities = {column.attribute: column.quantity for column in table if column.attribute in names}
+    quantities = {column.attribute: column.quantity for column in result.table if column.attribute in names}
     return {
         name: getattr(result, name)
         if quantity in _AS_THEY_ARE
@@ -58,7 +56,7 @@ def as_read(
 def read_columns(
     path: Path, table: tuple[Column, ...], angle_unit: AngleUnit, length_unit: LengthUnit
 ) -> dict[str, NDArray[Any]]:
-    """Read columns by their names without units; the inverse of `elbowscrew.tables.columns`.
+    """Read columns by their names without units; the inverse of `TableRecord.columns`.
 
     Parameters
     ----------

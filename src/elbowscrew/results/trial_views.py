@@ -107,16 +107,16 @@ def view_of_analysis(analysis: Analysis, summary: AnalysisSummary, joint: JointS
     angles, path = analysis.joint_angles, analysis.joint_axis.path
     curve = None
     if analysis.repetitions.number.size > 1:
-        names = [column.attribute for column in tables.CURVE_COLUMNS]
-        values = as_read(analysis.repeatability, tables.CURVE_COLUMNS, names, *units)
-        curve = {column.name: values[column.attribute] for column in tables.CURVE_COLUMNS}
+        table = analysis.repeatability.table
+        values = as_read(analysis.repeatability, [column.attribute for column in table], *units)
+        curve = {column.name: values[column.attribute] for column in table}
     written = _Tables(
-        screw=as_read(analysis.screw, tables.SCREW_COLUMNS, _SCREW, *units),
-        model=as_read(analysis.interpolated, tables.INTERPOLATION_COLUMNS, _MODEL, *units),
-        repetitions=as_read(analysis.repetitions, tables.REPETITION_COLUMNS, _REPETITIONS, *units),
+        screw=as_read(analysis.screw, _SCREW, *units),
+        model=as_read(analysis.interpolated, _MODEL, *units),
+        repetitions=as_read(analysis.repetitions, _REPETITIONS, *units),
         curve=curve,
-        angles=None if angles is None else as_read(angles, angles.table, _ANGLES, *units),
-        path=None if path is None else as_read(path, tables.AXIS_PATH_COLUMNS, _PATH, *units),
+        angles=None if angles is None else as_read(angles, _ANGLES, *units),
+        path=None if path is None else as_read(path, _PATH, *units),
     )
     resolved = {"method": analysis.settings.model_method, "law": analysis.settings.model_law}
     return _view(summary, joint, analysis.settings.model_copy(update=resolved), written)

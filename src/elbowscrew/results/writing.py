@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import re
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -13,36 +11,24 @@ import numpy as np
 import orjson
 from numpy.typing import NDArray
 
-from elbowscrew import tables
+from elbowscrew.choices import AngleUnit, LengthUnit
 from elbowscrew.model import Analysis
+from elbowscrew.model.table_record import TableRecord
 from elbowscrew.motion.interpolation.rebuilding import keyframes_of
 from elbowscrew.opening import create
 
-_BLOCK_ROWS = 4096
+BLOCK_ROWS: Final = 4096
 # What JSON would escape, what CSV quotes, and the word that JSON has for an empty cell.
 _NOT_PLAIN: Final = re.compile(r'[",\\\x00-\x1f]|null')
 
 
-def named_tables(analysis: Analysis) -> dict[str, dict[str, NDArray[Any]]]:
-    """Give the columns of ``screw``, ``interpolation`` and what else was asked for, in the units of the settings."""
-    units = analysis.settings.angle_unit, analysis.settings.length_unit
-    return {name: tables.columns(result, table, *units) for name, result, table in _results(analysis)}
-
-
-def write_tables(folder: Path, analysis: Analysis) -> None:
-    """Write the tables of an analysis, each to a file of its name; converted block by block, as they may be long."""
-    units = analysis.settings.angle_unit, analysis.settings.length_unit
-    for name, result, table in _results(analysis):
-        blocks = (tables.columns(result, table, *units, rows) for rows in _blocks(len(table[0].values(result))))
-        _write_blocks(folder / f"{name}.csv", blocks)
-
-
-def _results(analysis: Analysis) -> list[tuple[str, object, tuple[tables.Column, ...]]]:
-    """Name, result and columns of each table that there is."""
+def results_by_table(analysis: Analysis) -> dict[str, TableRecord]:
+    """Give the results of an analysis that are written as tables, by the tables' names."""
     several = analysis.repetitions.number.size > 1
-    found: dict[str, object] = {
+    found = {
         "screw": analysis.screw,
         "interpolation": analysis.interpolated,
+        "keyframes": keyframes_of(analysis),
         "instantaneous": analysis.instantaneous,
         "repetitions": analysis.repetitions,
         "cycles": analysis.cycle_curves if analysis.repetitions.number.size else None,
@@ -50,32 +36,30 @@ def _results(analysis: Analysis) -> list[tuple[str, object, tuple[tables.Column,
         "steps": analysis.steps,
         "anatomy": analysis.anatomy,
         "axis_path": analysis.joint_axis.path,
+        "joint_angles": analysis.joint_angles,
     }
-    keyframes = keyframes_of(analysis)
-    given = [(name, result, tables.TABLES[name]) for name, result in found.items() if result is not None]
-    given.insert(2, ("keyframes", keyframes, keyframes.table))
-    angles = analysis.joint_angles
-    return given if angles is None else [*given, ("joint_angles", angles, angles.table)]
+    return {name: result for name, result in found.items() if result is not None}
 
 
-def write_csv(path: Path, columns: dict[str, NDArray[Any]], *, quoted: bool = False) -> None:
-    """Write columns of equal length; NaN and masked values become empty cells, text is quoted if that is asked for."""
-    if quoted:
-        with io.TextIOWrapper(create(path), encoding="utf-8", newline="") as stream:
-            table = csv.writer(stream, lineterminator="\n")
-            table.writerow(columns)
-            table.writerows(zip(*(_cells(values) for values in columns.values()), strict=True))
-        return
-    parts = _blocks(len(next(iter(columns.values()))))
-    _write_blocks(path, ({name: values[rows] for name, values in columns.items()} for rows in parts))
+def write_tables(folder: Path, analysis: Analysis) -> None:
+    """Write the tables of an analysis in the units of its settings, each to a file of its name."""
+    for name, result in results_by_table(analysis).items():
+        write_table(folder / f"{name}.csv", result, analysis.settings.angle_unit, analysis.settings.length_unit)
+
+
+def write_table(path: Path, result: TableRecord, angle_unit: AngleUnit, length_unit: LengthUnit) -> None:
+    """Write a result as CSV; it is converted block by block, as it may be long."""
+    rows = len(result.table[0].values(result))
+    write_csv(path, (result.columns(angle_unit, length_unit, block) for block in _blocks(rows)))
 
 
 def _blocks(rows: int) -> list[slice]:
     """Some thousand rows each; a table without any is one block of none."""
-    return [slice(start, start + _BLOCK_ROWS) for start in range(0, max(rows, 1), _BLOCK_ROWS)]
+    return [slice(start, start + BLOCK_ROWS) for start in range(0, max(rows, 1), BLOCK_ROWS)]
 
 
-def _write_blocks(path: Path, blocks: Iterable[Mapping[str, NDArray[Any]]]) -> None:
+def write_csv(path: Path, blocks: Iterable[Mapping[str, NDArray[Any]]]) -> None:
+    """Write columns of equal length, block by block; NaN and masked values become empty cells."""
     with create(path) as stream:
         for k, block in enumerate(blocks):
             if k == 0:

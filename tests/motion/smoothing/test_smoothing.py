@@ -86,6 +86,7 @@ def test_no_rate_is_too_low_or_too_high_for_the_instantaneous_axis(rate_hz: floa
         simulate_trial(frames=60, inversion=30, rate_hz=rate_hz).recording,
         Settings(max_turn_deg_s=1e12, max_speed_m_s=1e9),
     ).instantaneous
+    assert found.lowpass_hz is not None
     assert 0.0 < found.lowpass_hz < 0.5 * rate_hz
 
 

@@ -112,7 +112,7 @@ def _left_out(measured: Measurement, filtered: Float, cutoff_hz: float) -> tuple
 def _without_axes(
     motion: InstantaneousMotion, least: float, rate_hz: float, other: tuple[float, float] | None
 ) -> tuple[QualityWarning, ...]:
-    """Say why no frame has an instantaneous axis, where none has; `other` is another rate of the clock and its begin."""
+    """Say why no frame has an instantaneous axis, where none has; `other`: another rate of the clock, and its start."""
     if np.isfinite(motion.axis_direction).any():
         return ()
     speed = np.abs(motion.angular_velocity[np.isfinite(motion.angular_velocity)])
