@@ -15,7 +15,7 @@ from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_quaternion import conjugate, transform_points
 from elbowscrew.model import JointAxis, MeanAxis
 from elbowscrew.motion.axes.measured import measured_mean_axis
-from elbowscrew.motion.joint.joint_axis import distal_line, estimate_joint_axis, fitted_frames
+from elbowscrew.motion.joint.joint_axis import BodyMarkers, distal_line, estimate_joint_axis, fitted_frames
 from elbowscrew.motion.joint.measured import axis_of_type, markers_of
 from elbowscrew.motion.joint.typed import identify_joint
 from elbowscrew.motion.screws.measurement import Measurement, measure
@@ -62,6 +62,13 @@ def parts_of_hinges(real_data: Path) -> list[list[tuple[JointAxis, JointAxis]]]:
     return pairs
 
 
+def of_rows(markers: BodyMarkers, rows: slice) -> BodyMarkers:
+    motion, rms = markers.motion, markers.rms
+    assert motion is not None
+    assert rms is not None
+    return markers._replace(motion=replace(motion, row=motion.row - rows.start), rms=rms[rows])
+
+
 def axis_of_part(measured: Measurement, mean: MeanAxis, rows: slice) -> JointAxis:
     joint = measured.joint
     part = replace(
@@ -72,7 +79,7 @@ def axis_of_part(measured: Measurement, mean: MeanAxis, rows: slice) -> JointAxi
         reference_row=0,
     )
     line = distal_line(np.concatenate([mean.direction, np.cross(mean.point, mean.direction)]), measured.change)
-    markers = tuple(one._replace(rms=one.rms[rows]) for one in markers_of(measured))
+    markers = tuple(of_rows(one, rows) for one in markers_of(measured))
     gain = measured.noise_gain[rows]
     axis = estimate_joint_axis(
         part, measured.course[rows], line, measured.noise, gain, express_in="proximal", robust=False, markers=markers

@@ -11,13 +11,12 @@ from scipy.signal import butter, sosfiltfilt
 from trials import ARM, FOREARM, LINE, START, joint_poses
 
 from elbowscrew.geometry import dual_quaternion as dq
-from elbowscrew.geometry import pose_from_points
+from elbowscrew.geometry import nonrigid_coordinates, pose_from_points
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import PoseNoise
 from elbowscrew.motion.joint.influence import Influence, influence_of_fit
 from elbowscrew.motion.joint.interval import SURE, ClusterMotion, JointInterval, SkinMotion, joint_interval
 from elbowscrew.motion.joint.joint_fit import LineFit, fit_joint
-from elbowscrew.motion.joint.nonrigid import nonrigid_coordinates
 from elbowscrew.motion.screws.pose_noise import covariance_from_markers
 from elbowscrew.motion.screws.uncertainty import joint_covariance
 

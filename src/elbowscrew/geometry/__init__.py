@@ -10,7 +10,13 @@ from elbowscrew.geometry.blending import IterativeBlend, dib, dlb, lagrange_weig
 from elbowscrew.geometry.dual_matrix import DualMatrix
 from elbowscrew.geometry.dual_number import DualNumber
 from elbowscrew.geometry.interpolation import chain, nlerp, sclerp, sdlb
-from elbowscrew.geometry.registration import FittedPose, fit_poses, fit_poses_dual_qr, pose_from_points
+from elbowscrew.geometry.registration import (
+    FittedPose,
+    fit_poses,
+    fit_poses_dual_qr,
+    nonrigid_coordinates,
+    pose_from_points,
+)
 from elbowscrew.geometry.screw import (
     Screw,
     compose_screws,
@@ -49,6 +55,7 @@ __all__ = [
     "lagrange_weights",
     "line_through",
     "nlerp",
+    "nonrigid_coordinates",
     "point_nearest_origin",
     "pose_from_points",
     "quaternion",

@@ -162,6 +162,36 @@ def fit_poses_dual_qr(body_points: ArrayLike, points: ArrayLike) -> FittedPose:
     return FittedPose(np.where(fixed[..., None], pose, np.nan), np.where(fixed, deviation, np.nan))
 
 
+def nonrigid_coordinates(seen: Float, shape: Float) -> Float:
+    """What no motion of the whole cluster explains, in coordinates that are all of the markers' own noise.
+
+    Parameters
+    ----------
+    seen : ndarray, shape (F, M, 3)
+        The markers in the body's frame, as its measured pose gives them.
+    shape : ndarray, shape (M, 3)
+        The markers of the rigid body in the same frame, not on one line.
+
+    Returns
+    -------
+    ndarray, shape (F, 3 M - 6)
+        NaN in frames where a marker is not seen.
+
+    References
+    ----------
+    ``Q^T vec(seen - shape)``, Q the orthonormal columns across all ``[-[x_k]x, 1]``, the markers' motions by a twist.
+
+    Examples
+    --------
+    >>> shape = np.array([[0.05, 0.0, 0.0], [-0.05, 0.03, 0.0], [0.0, -0.03, 0.04]])
+    >>> shifted, stretched = shape + [0.001, 0.0, 0.0], 1.02 * shape
+    >>> np.linalg.norm(nonrigid_coordinates(np.stack([shifted, stretched]), shape), axis=1).round(5).tolist()
+    [0.0, 0.00173]
+    """
+    across = np.linalg.qr(_rigid_motions(shape), mode="complete")[0][:, 6:]
+    return np.asarray((seen - shape).reshape(len(seen), -1) @ across, dtype=np.float64)
+
+
 def _centered(body_points: ArrayLike, seen: Float) -> tuple[Float, Float, Float, tuple[Float, Float]]:
     """Markers about their centroids, those not seen at zero: body, seen, weights (..., M) and the two centroids."""
     weight: Float = np.min(np.isfinite(seen).astype(np.float64), axis=-1)
@@ -175,6 +205,13 @@ def _centered(body_points: ArrayLike, seen: Float) -> tuple[Float, Float, Float,
         weight,
         centers,
     )
+
+
+def _rigid_motions(shape: Float) -> Float:
+    """Motions (3 M, 6) of a cluster's markers by a small twist: ``[-[x_k]x, 1]``."""
+    turned = np.swapaxes(np.cross(np.eye(3)[None], shape[:, None, :]), 1, 2)  # column a: e_a cross x_k
+    shifted = np.broadcast_to(np.eye(3), turned.shape)
+    return np.concatenate([turned, shifted], axis=2).reshape(-1, 6)
 
 
 def _spread(centered: Float) -> Float:

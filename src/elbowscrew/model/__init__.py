@@ -17,6 +17,7 @@ from elbowscrew.model.modeled import (
 from elbowscrew.model.quality import BodyQuality, ClockQuality, Spread
 from elbowscrew.model.recording import (
     Marker,
+    MarkerMotion,
     QualityWarning,
     Recording,
     RigidBody,
@@ -55,6 +56,7 @@ __all__ = [
     "Landmarks",
     "LineEstimate",
     "Marker",
+    "MarkerMotion",
     "MeanAxis",
     "MeanLine",
     "ModelPhases",

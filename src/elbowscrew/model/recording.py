@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from elbowscrew.geometry import dual_quaternion, quaternion
-from elbowscrew.geometry.arrays import Bool, Float
+from elbowscrew.geometry.arrays import Bool, Float, Index
 from elbowscrew.model.array_record import ArrayRecord
 
 # Exports print six decimals, so that a norm is off by 1e-6; a digit or a cell gone wrong shows above this.
@@ -83,6 +83,33 @@ def invalid_marker_warning(owner: str, places: int) -> QualityWarning:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class MarkerMotion(ArrayRecord):
+    """How a body's markers move among themselves, which no pose of the body explains.
+
+    Attributes
+    ----------
+    shape : ndarray, shape (M, 3)
+        The markers in the body's frame, meters.
+    row : ndarray, shape (K,)
+        Rows of the recording that are kept, ascending: all of them, or of a long recording some, evenly spread. After a
+        change of rate they are no whole numbers.
+    nonrigid : ndarray, shape (K, 3 M - 6)
+        `elbowscrew.geometry.nonrigid_coordinates`, meters; NaN where a marker is not seen.
+    own_shape : bool
+        Whether the shape is the trial's own, so that a constant misfit is not seen.
+    """
+
+    shape: Float
+    row: Float
+    nonrigid: Float
+    own_shape: bool
+
+    def at(self, rows: Index) -> Float:
+        """Non-rigid coordinates (F, 3 M - 6) of the kept rows nearest these (F,)."""
+        return np.asarray(self.nonrigid[np.searchsorted(0.5 * (self.row[1:] + self.row[:-1]), rows)])
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class RigidBody(ArrayRecord):
     """The poses of one rigid body.
 
@@ -100,6 +127,8 @@ class RigidBody(ArrayRecord):
         Mean marker error as the file has it, meters.
     marker_residual : ndarray, shape (N,), optional
         RMS distance between the markers seen and the body's own, meters: how rigid the cluster was.
+    marker_motion : MarkerMotion, optional
+        How the markers seen move among themselves.
     shape_deviation : ndarray, shape (N,), optional
         Departure of the dual QR decomposition's triangular factor from the identity, a pure number (P 28).
     """
@@ -111,6 +140,7 @@ class RigidBody(ArrayRecord):
     marker_offsets: Float | None = None
     reported_error: Float | None = None
     marker_residual: Float | None = None
+    marker_motion: MarkerMotion | None = None
     shape_deviation: Float | None = None
 
     @classmethod

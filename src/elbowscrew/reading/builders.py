@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,9 @@ from elbowscrew.model import (
     invalid_warning,
     out_of_reach,
 )
+
+# More than a joint is fitted to; of four markers 3 MB.
+_MOST_THINNED: Final = 65_536
 
 
 class ArrayBuilder:
@@ -34,6 +37,12 @@ class ArrayBuilder:
         self._store[self._rows : needed] = block
         self._rows = needed
 
+    def thin(self) -> None:
+        """Keep every other row."""
+        kept = self._store[: self._rows : 2].copy()
+        self._rows = len(kept)
+        self._store[: self._rows] = kept
+
     def finish(self) -> NDArray[Any]:
         """Give the array, with no row to spare."""
         self._resize(self._rows)
@@ -41,6 +50,33 @@ class ArrayBuilder:
 
     def _resize(self, rows: int) -> None:
         self._store.resize((rows, *self._store.shape[1:]), refcheck=False)
+
+
+class ThinnedBuilder:
+    """Of rows that come by blocks every k-th, k a power of two, so that what is kept has a bound."""
+
+    def __init__(self, width: int) -> None:
+        self._kept = ArrayBuilder((width,))
+        self._rows = self._count = 0
+        self._step = 1
+
+    def wanted(self, count: int) -> slice:
+        """Which rows of the next block, of so many, are to be appended."""
+        return slice(-self._rows % self._step, count, self._step)
+
+    def append(self, wanted: Float, count: int) -> None:
+        """Add the rows wanted of a block of so many."""
+        self._kept.append(wanted)
+        self._rows += count
+        self._count += len(wanted)
+        while self._count > _MOST_THINNED:
+            self._kept.thin()
+            self._count = -(-self._count // 2)
+            self._step *= 2
+
+    def finish(self) -> tuple[Float, Float]:
+        """Give the numbers (K,) of the rows that are kept, and the rows (K, width)."""
+        return np.arange(0.0, self._rows, self._step), self._kept.finish()
 
 
 class BodyBuilder:

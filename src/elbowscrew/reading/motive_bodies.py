@@ -8,11 +8,11 @@ from typing import Final
 
 import numpy as np
 
-from elbowscrew.geometry import quaternion
+from elbowscrew.geometry import nonrigid_coordinates, quaternion
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_quaternion import conjugate, transform_points
-from elbowscrew.model import QualityWarning, RigidBody, invalid_marker_warning, out_of_reach
-from elbowscrew.reading.builders import ArrayBuilder, BodyBuilder
+from elbowscrew.model import MarkerMotion, QualityWarning, RigidBody, invalid_marker_warning, out_of_reach
+from elbowscrew.reading.builders import ArrayBuilder, BodyBuilder, ThinnedBuilder
 from elbowscrew.reading.cells import read_blocks
 from elbowscrew.reading.cluster_shapes import ClusterMismatch
 from elbowscrew.reading.motive_header import BodyColumns, Header
@@ -152,10 +152,10 @@ class MotiveBody:
         self._error, self._residual = ArrayBuilder(), ArrayBuilder()
         self._seen = {number: xyz for number, xyz in body.seen.items() if number in sample.offsets}
         self._partly_blank = self._far_markers = 0
-        offsets = [sample.offsets[number] for number in self._seen]
-        self.cluster_mismatch = (
-            ClusterMismatch(body.name, np.stack(offsets)) if len(offsets) >= _FEWEST_OF_A_SHAPE else None
-        )
+        self._shape = np.array([sample.offsets[number] for number in self._seen]).reshape(-1, 3)
+        clustered = len(self._shape) >= _FEWEST_OF_A_SHAPE
+        self.cluster_mismatch = ClusterMismatch(body.name, self._shape) if clustered else None
+        self._nonrigid = ThinnedBuilder(3 * len(self._shape) - 6) if clustered else None
 
     @property
     def columns(self) -> set[int]:
@@ -183,10 +183,13 @@ class MotiveBody:
             self._residual.append(residual)
             if self.cluster_mismatch is not None:
                 self.cluster_mismatch.append(seen, residual)
+            if self._nonrigid is not None:
+                rows = self._nonrigid.wanted(len(seen))
+                in_body = transform_points(conjugate(pose[rows])[:, None, :], seen[rows])
+                self._nonrigid.append(nonrigid_coordinates(in_body, self._shape), len(seen))
 
     def _rms_residual(self, pose: Float, seen: Float) -> Float:
-        offsets = np.stack([self._sample.offsets[number] for number in self._seen])
-        square = np.sum((seen - transform_points(pose[:, None, :], offsets)) ** 2, axis=2)
+        square = np.sum((seen - transform_points(pose[:, None, :], self._shape)) ** 2, axis=2)
         counted = np.isfinite(square)
         count = counted.sum(axis=1)
         mean = np.where(counted, square, 0.0).sum(axis=1) / np.maximum(count, 1)
@@ -201,7 +204,18 @@ class MotiveBody:
         )
         if self._body.error is not None:
             rigid = replace(rigid, reported_error=self._error.finish())
-        return replace(rigid, marker_residual=self._residual.finish()) if self._seen else rigid
+        return (
+            replace(rigid, marker_residual=self._residual.finish(), marker_motion=self._motion())
+            if self._seen
+            else rigid
+        )
+
+    def _motion(self) -> MarkerMotion | None:
+        if self._nonrigid is None:
+            return None
+        row, nonrigid = self._nonrigid.finish()
+        # Where the file has no markers of the solved body, its shape is that of the markers seen.
+        return MarkerMotion(shape=self._shape, row=row, nonrigid=nonrigid, own_shape=not self._body.fitted)
 
     def warnings(self, version: str) -> list[QualityWarning]:
         """What the reader of a result must know of this body's cells."""

@@ -26,6 +26,7 @@ from scipy.stats import binom, t
 from trials import LINE, START, joint_poses
 
 from elbowscrew.geometry import dual_quaternion as dq
+from elbowscrew.geometry import nonrigid_coordinates
 from elbowscrew.geometry import quaternion as qn
 from elbowscrew.geometry.sensitivity import confidence_radius
 from elbowscrew.geometry.twist import adjoint
@@ -39,7 +40,7 @@ from elbowscrew.motion.joint.interval import (
     skin_sensitivity,
 )
 from elbowscrew.motion.joint.joint_fit import fit_joint
-from elbowscrew.motion.joint.nonrigid import nonrigid_coordinates, nonrigid_covariance, residual_covariance
+from elbowscrew.motion.joint.nonrigid import nonrigid_covariance, residual_covariance
 from elbowscrew.motion.joint.tails import Mixture
 from elbowscrew.motion.screws.pose_noise import covariance_from_markers
 from elbowscrew.motion.screws.uncertainty import joint_covariance

@@ -12,7 +12,7 @@ from elbowscrew.geometry._blocks import evenly_thinned
 from elbowscrew.geometry.arrays import Float, Index
 from elbowscrew.geometry.dual_quaternion import conjugate, pose_from_dual_quat, transform_lines
 from elbowscrew.geometry.sensitivity import NORMAL_95
-from elbowscrew.model import FittedJoint, JointAxis, JointMotion, PoseNoise
+from elbowscrew.model import FittedJoint, JointAxis, JointMotion, MarkerMotion, PoseNoise
 from elbowscrew.motion.joint.estimates import line_errors, line_estimate
 from elbowscrew.motion.joint.influence import influence_of_fit
 from elbowscrew.motion.joint.interval import (
@@ -130,16 +130,39 @@ def assumed_noise(noise: JointNoise) -> tuple[PoseNoise | None, PoseNoise]:
 
 
 class BodyMarkers(NamedTuple):
-    """What a body's markers tell of their own motion: the body, their places (M, 3) in it, and their RMS (N,)."""
+    """What a body's markers tell of their own motion.
+
+    Attributes
+    ----------
+    segment : {"proximal", "distal"}
+    shape : ndarray, shape (M, 3)
+        Their places in the body.
+    motion : MarkerMotion or None
+        How they move among themselves.
+    rms : ndarray, shape (N,), or None
+        Their RMS in each frame, which tells less, but also where some are hidden.
+    """
 
     segment: Segment
     shape: Float
-    rms: Float
+    motion: MarkerMotion | None
+    rms: Float | None
+
+    def at(self, rows: Index) -> ClusterMotion:
+        """Of the frames that a joint is fitted to."""
+        motion = self.motion
+        return ClusterMotion(
+            segment=self.segment,
+            shape=self.shape,
+            nonrigid=None if motion is None else motion.at(rows),
+            rms=None if self.rms is None else self.rms[rows],
+            own_shape=motion is not None and motion.own_shape,
+        )
 
 
 def clusters_of(markers: tuple[BodyMarkers, ...], rows: Index) -> tuple[ClusterMotion, ...]:
     """What the markers tell of the frames that a joint is fitted to."""
-    return tuple(ClusterMotion(segment=one.segment, shape=one.shape, rms=one.rms[rows]) for one in markers)
+    return tuple(one.at(rows) for one in markers)
 
 
 def _reference_angle(fit: LineFit, rows: Index, joint: JointMotion) -> float:

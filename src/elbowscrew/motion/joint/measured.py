@@ -26,12 +26,11 @@ from elbowscrew.motion.joint.joint_axis import (
 from elbowscrew.motion.joint.nonrigid import Segment
 from elbowscrew.motion.joint.typed import identify_joint
 from elbowscrew.motion.screws.measurement import Measurement
-from elbowscrew.motion.screws.pose_noise import STILL_STRETCH
+from elbowscrew.motion.screws.pose_noise import STILL_STRETCH, fix_a_pose
 from elbowscrew.motion.screws.uncertainty import joint_covariance
 from elbowscrew.settings import Settings
 
 _LARGE_NOISE_RATIO: Final = 2.0
-_FEWEST_MARKERS: Final = 3
 _LEAST_SHIFT: Final = 1e-6
 _ONE_AXIS: Final = ("hinge", "screw_hinge")
 _OTHERS: Final = ("rigid", "two_axes", "ball", "free")
@@ -146,9 +145,11 @@ def markers_of(measured: Measurement) -> tuple[BodyMarkers, ...]:
     """Markers of the bodies that move; none if one of them does not tell of its markers."""
     found = []
     for segment, body in _moving(measured):
-        if body.marker_offsets is None or body.marker_residual is None or len(body.marker_offsets) < _FEWEST_MARKERS:
+        motion, rms = body.marker_motion, body.marker_residual
+        shape = body.marker_offsets if motion is None else motion.shape
+        if shape is None or (motion is None and rms is None) or not fix_a_pose(shape):
             return ()
-        found.append(BodyMarkers(segment, body.marker_offsets, body.marker_residual))
+        found.append(BodyMarkers(segment, shape, motion, rms))
     return tuple(found)
 
 

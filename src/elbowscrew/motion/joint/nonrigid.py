@@ -31,25 +31,6 @@ _ALIKE: Final = 3.0
 _RANK: Final = 1e-6
 
 
-def nonrigid_coordinates(seen: Float, shape: Float) -> Float:
-    """What no motion of the whole cluster explains, in coordinates that are all of the markers' own noise.
-
-    Parameters
-    ----------
-    seen : ndarray, shape (F, M, 3)
-        The markers in the body's frame, as its measured pose gives them.
-    shape : ndarray, shape (M, 3)
-        The markers of the rigid body in the same frame, not on one line.
-
-    Returns
-    -------
-    ndarray, shape (F, 3 M - 6)
-        NaN in frames where a marker is not seen.
-    """
-    across = np.linalg.qr(_rigid_motions(shape), mode="complete")[0][:, 6:]
-    return np.asarray((seen - shape).reshape(len(seen), -1) @ across, dtype=np.float64)
-
-
 def nonrigid_covariance(
     influence: Influence, shape: Float, nonrigid: Float, *, segment: Segment, own_shape: bool = False
 ) -> Mixture | None:
@@ -214,13 +195,6 @@ def _of_rigid_coordinates(influence: Influence, shape: Float, segment: Segment) 
     """Influence (F, P, 6) of a cluster's six rigid coordinates, each as large as a coordinate of a marker."""
     root = np.linalg.cholesky(covariance_from_markers(shape, 1.0))
     return (influence.of_distal if segment == "distal" else influence.of_proximal) @ root
-
-
-def _rigid_motions(shape: Float) -> Float:
-    """Motions (3 M, 6) of a cluster's markers by a small twist: ``[-[x_k]x, 1]``."""
-    turned = np.swapaxes(np.cross(np.eye(3)[None], shape[:, None, :]), 1, 2)  # column a: e_a cross x_k
-    shifted = np.broadcast_to(np.eye(3), turned.shape)
-    return np.concatenate([turned, shifted], axis=2).reshape(-1, 6)
 
 
 def _without_holes(nonrigid: Float) -> Float | None:

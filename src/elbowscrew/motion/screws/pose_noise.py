@@ -105,7 +105,7 @@ def covariance_from_markers(offsets: Float, marker_noise: float) -> Float:
 
 def _from_marker_noise(body: RigidBody, marker_noise: float, source: str, settings: Settings) -> PoseNoise:
     offsets = body.marker_offsets
-    if offsets is not None and _fix_a_pose(offsets):
+    if offsets is not None and fix_a_pose(offsets):
         return PoseNoise(
             covariance=covariance_from_markers(offsets, marker_noise), source=source, marker_noise=marker_noise
         )
@@ -170,7 +170,8 @@ def _still(body: RigidBody, rate_hz: float, settings: Settings) -> PoseNoise | N
     return PoseNoise(covariance=covariance, source=STILL_STRETCH, marker_noise=None)
 
 
-def _fix_a_pose(offsets: Float) -> bool:
+def fix_a_pose(offsets: Float) -> bool:
+    """Whether markers (M, 3) are three and more that are not on one line."""
     if len(offsets) < 3:
         return False
     spread = np.linalg.svd(offsets - offsets.mean(axis=0), compute_uv=False)

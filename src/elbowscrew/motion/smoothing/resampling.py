@@ -11,7 +11,7 @@ from elbowscrew.errors import SettingError
 from elbowscrew.geometry import sclerp
 from elbowscrew.geometry.arrays import Bool, Float, Index
 from elbowscrew.geometry.dual_quaternion import align_signs
-from elbowscrew.model import QualityWarning, Recording, RigidBody, TrackingLoss
+from elbowscrew.model import MarkerMotion, QualityWarning, Recording, RigidBody, TrackingLoss
 from elbowscrew.motion.tracking.clock import elapsed_time, step_ratios
 
 _MOST_FRAMES: Final = 10_000_000
@@ -157,8 +157,15 @@ def _resampled_body(body: RigidBody, between: _Neighbors) -> RigidBody:
         loss=loss,
         reported_error=_optional_linear(body.reported_error, between),
         marker_residual=_optional_linear(body.marker_residual, between),
+        marker_motion=None if body.marker_motion is None else _motion_on(body.marker_motion, between),
         shape_deviation=_optional_linear(body.shape_deviation, between),
     )
+
+
+def _motion_on(motion: MarkerMotion, between: _Neighbors) -> MarkerMotion:
+    """The same frames, by the rows of the new clock that they lie between."""
+    old = between.before + between.fraction
+    return replace(motion, row=np.interp(motion.row, old, np.arange(old.size, dtype=np.float64)))
 
 
 def _linear(values: Float, between: _Neighbors) -> Float:

@@ -8,12 +8,14 @@ from typing import Final
 import numpy as np
 
 from elbowscrew.errors import SettingError
-from elbowscrew.geometry import FittedPose, fit_poses, fit_poses_dual_qr
+from elbowscrew.geometry import FittedPose, fit_poses, fit_poses_dual_qr, nonrigid_coordinates
+from elbowscrew.geometry._blocks import evenly_thinned
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_quaternion import conjugate, transform_points
-from elbowscrew.model import Recording, RigidBody, TrackingLoss, marker_matches
+from elbowscrew.model import MarkerMotion, Recording, RigidBody, TrackingLoss, marker_matches
 
 _REFINEMENTS: Final = 2
+_MOST_FRAMES: Final = 65_536
 
 POSE_METHODS: Final[dict[str, tuple[Callable[[Float, Float], FittedPose], int]]] = {
     "svd": (fit_poses, 3),
@@ -77,8 +79,17 @@ def body_from_markers(recording: Recording, name: str, patterns: tuple[str, ...]
         loss=np.where(lost, TrackingLoss.BLANK, TrackingLoss.NONE).astype(np.uint8),
         marker_offsets=shape,
         marker_residual=fitted.deviation if svd else fit_poses(shape, seen).deviation,
+        marker_motion=_motion(fitted.dual_quat, seen, shape),
         shape_deviation=None if svd else fitted.deviation,
     )
+
+
+def _motion(pose: Float, seen: Float, shape: Float) -> MarkerMotion:
+    """How the markers move among themselves, of a long recording in some frames."""
+    rows = evenly_thinned(np.arange(len(pose)), _MOST_FRAMES)
+    in_body = transform_points(conjugate(pose[rows])[:, None, :], seen[rows])
+    nonrigid = nonrigid_coordinates(in_body, shape)
+    return MarkerMotion(shape=shape, row=rows.astype(np.float64), nonrigid=nonrigid, own_shape=True)
 
 
 def cluster_shape(seen: Float) -> Float | None:

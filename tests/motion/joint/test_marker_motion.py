@@ -1,0 +1,51 @@
+"""Markers that move among themselves, from a recording to the joint's interval."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from cluster_noise import Hinge, Noise, fitted, interval_of, seen, skin, white, with_rms_alone
+from poses import random_poses
+from trials import joint_poses
+
+from elbowscrew import Recording, Settings, analyze
+from elbowscrew.geometry import dual_quaternion as dq
+from elbowscrew.geometry.arrays import Float
+from elbowscrew.model import FittedJoint, Marker
+
+CHOICE = Settings(proximal_markers=("A*",), distal_markers=("F*",), joint_type="hinge", express_in="proximal")
+
+
+def recording_of(hinge: Hinge, noise: tuple[Float, Float]) -> Recording:
+    """Markers alone, the proximal cluster anywhere in the laboratory."""
+    joint = joint_poses(hinge.angle, np.zeros(hinge.frames))
+    arm = random_poses((), 5)
+    markers = []
+    for letter, pose, shape, off in zip("AF", (arm, dq.multiply(arm, joint)), hinge.shapes, noise, strict=True):
+        places = dq.transform_points(np.broadcast_to(pose, (hinge.frames, 8))[:, None, :], shape + off)
+        markers += [Marker(name=f"{letter}{k}", position=places[:, k]) for k in range(len(shape))]
+    time_s = np.arange(hinge.frames) / 100.0
+    return Recording(bodies=(), frame=np.arange(hinge.frames), time_s=time_s, rate_hz=100.0, markers=tuple(markers))
+
+
+def hinge_of(recording: Recording, settings: Settings = CHOICE) -> FittedJoint:
+    found = analyze(recording, settings).joint_axis.hinge
+    assert found is not None
+    return found
+
+
+@pytest.mark.parametrize(("noise", "gain"), [(white(), 1.0), (skin(3e-3), 1.1)])
+def test_an_analysis_knows_of_the_markers_what_there_is_to_know(noise: Noise, gain: float) -> None:
+    """The interval that the coverage is measured of, in place of that of the RMS alone."""
+    hinge = Hinge(top_deg=60.0, cycles=4)
+    off = noise(hinge, np.random.default_rng(6))
+    found = hinge_of(recording_of(hinge, off))
+    case = seen(hinge, off)
+    case = case._replace(clusters=tuple(replace(cluster, own_shape=True) for cluster in case.clusters))
+    rows = np.eye(9)[:2]
+    wanted = interval_of(case, fitted(case)[1]).radius(rows)
+    assert found.axis_cone == pytest.approx(wanted, rel=0.05)
+    alone = with_rms_alone(case)
+    assert interval_of(alone, fitted(alone)[1]).radius(rows) > gain * 0.95 * wanted
