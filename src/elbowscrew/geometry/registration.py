@@ -186,7 +186,7 @@ def nonrigid_coordinates(seen: Float, shape: Float) -> Float:
     >>> shape = np.array([[0.05, 0.0, 0.0], [-0.05, 0.03, 0.0], [0.0, -0.03, 0.04]])
     >>> shifted, stretched = shape + [0.001, 0.0, 0.0], 1.02 * shape
     >>> np.linalg.norm(nonrigid_coordinates(np.stack([shifted, stretched]), shape), axis=1).round(5).tolist()
-    [0.0, 0.00173]
+    [0.0, 0.00177]
     """
     across = np.linalg.qr(_rigid_motions(shape), mode="complete")[0][:, 6:]
     return np.asarray((seen - shape).reshape(len(seen), -1) @ across, dtype=np.float64)
