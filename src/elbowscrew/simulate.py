@@ -18,7 +18,7 @@ from elbowscrew.model import Recording, RigidBody, TrackingLoss
 from elbowscrew.motion.interpolation.laws import LAWS
 from elbowscrew.simulated_joint import Geometry, JointCourse, ball, mirrors, odd_course, one_axis, two_axes
 
-_ARM_PLACE: Final = np.array([0.31, 1.24, -0.18])
+_ARM_POSITION: Final = np.array([0.31, 1.24, -0.18])
 _ARM_TURN: Final = np.array([0.12, 0.55, -0.2])
 _MOST_FRAMES: Final = 10_000_000
 _SLIDE_MM: Final = 3.0
@@ -295,7 +295,7 @@ def _progress(wanted: Simulation) -> tuple[Float, Bool, list[int]]:
 
 
 class _Skin(NamedTuple):
-    """How far markers are from their places on the bone, (N, M, 3) or none, and by what."""
+    """How far markers are from their positions on the bone, (N, M, 3) or none, and by what."""
 
     shift: Float | None
     truth: list[dict[str, Any]]
@@ -329,7 +329,7 @@ def _proximal_poses(time_s: Float, wanted: Simulation) -> Float:
     turn = quaternion.multiply(
         quaternion.quat_from_rotation_vector(axial * sway), quaternion.quat_from_rotation_vector(axial * _ARM_TURN)
     )
-    return dual_quat_from_pose(turn, mirror * (_ARM_PLACE + shift))
+    return dual_quat_from_pose(turn, mirror * (_ARM_POSITION + shift))
 
 
 def _lost_frames(wanted: Simulation, frames: int, rng: np.random.Generator) -> Bool:

@@ -113,7 +113,7 @@ def test_tilts_are_the_angles_to_the_mean_axis(analysis: Analysis) -> None:
 
 def test_places_of_axes_that_are_one_line_are_at_the_mean() -> None:
     exact = analyze(simulate_trial(marker_noise_mm=0.0, frames=60, inversion=30).recording)
-    ax = plots.plot_axis_places(Figure().add_subplot(), exact)
+    ax = plots.plot_axis_positions(Figure().add_subplot(), exact)
     assert np.abs(np.asarray(ax.collections[0].get_offsets())).max() < 1e-6
 
 

@@ -70,7 +70,7 @@ def test_the_title_says_how_far_apart_the_axes_are(elbow: Analysis) -> None:
     assert two is not None
     assert two.distance is not None
     text = drawing.joint_text(elbow)
-    assert text.startswith("Two axes (determined), ")
+    assert text.startswith("Joint: two axes (determined), ")
     assert text.endswith(
         f"{np.degrees(two.angle_between.value):.3g} deg and {1000 * abs(two.distance.value):.3g} mm apart"
     )
@@ -81,7 +81,7 @@ def test_parallel_axes_have_a_distance_and_no_angle(elbow: Analysis) -> None:
     assert elbow.joint_type.two_axes is not None
     parallel = replace(elbow.joint_type.two_axes, distance=None, offset=Measure(value=0.0321, sd=1e-4))
     text = drawing.joint_text(replace(elbow, joint_type=replace(elbow.joint_type, two_axes=parallel)))
-    assert text == "Two axes (determined), parallel, 32.1 mm apart"
+    assert text == "Joint: two axes (determined), parallel, 32.1 mm apart"
 
 
 def test_the_band_of_an_axis_is_what_holds_95_percent(elbow: Analysis) -> None:
@@ -192,7 +192,7 @@ def test_figures_are_there_where_the_joint_has_what_they_show(
         "wandering": ["joint", "joint_angles", "axis_path"],
         "rigid": ["joint"],
     }
-    assert drawing.joint_text(rigid) == "Rigid joint (as stated)"
+    assert drawing.joint_text(rigid) == "Joint: a rigid joint (as stated)"
     for missing, draw in ((rigid, drawing.joint_angles_figure), (elbow, drawing.axis_path_figure)):
         with pytest.raises(ValueError, match=r"does not wander|no angles"):
             draw(missing)

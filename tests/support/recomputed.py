@@ -715,11 +715,11 @@ def _dispersion(told: Told) -> dict[str, float]:
         "direction_95_deg": float(np.percentile(off, 95)),
         "direction_max_deg": most(off),
         "direction_excursion_deg": float(2.0 * np.degrees(np.arcsin(0.5 * pdist(axis).max()))),
-        "place_median_mm": median(distance),
-        "place_rms_mm": rms(distance),
-        "place_95_mm": float(np.nanpercentile(distance, 95)),
-        "place_max_mm": most(distance),
-        "place_excursion_mm": float(pdist(place).max()),
+        "position_median_mm": median(distance),
+        "position_rms_mm": rms(distance),
+        "position_95_mm": float(np.nanpercentile(distance, 95)),
+        "position_max_mm": most(distance),
+        "position_excursion_mm": float(pdist(place).max()),
     }
 
 

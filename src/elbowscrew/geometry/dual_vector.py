@@ -166,7 +166,7 @@ def common_normal(first: ArrayLike, second: ArrayLike) -> Float:
     Returns
     -------
     ndarray, shape (..., 6)
-        For parallel lines its place is not defined: the moment is NaN; nor is the direction where they are one line.
+        For parallel lines its position is not defined: the moment is NaN; nor is the direction where they are one line.
 
     References
     ----------

@@ -22,7 +22,7 @@ class PoseNoise(ArrayRecord):
     Attributes
     ----------
     covariance : ndarray, shape (6, 6)
-        Of the rotation vector (rad) and of the origin's place (m), in the body's frame.
+        Of the rotation vector (rad) and of the origin's position (m), in the body's frame.
     source : str
         Where it is known from.
     marker_noise : float or None
@@ -119,22 +119,22 @@ class AxisWander:
 
     Attributes
     ----------
-    turn, turn_sd : float
-        By how much its direction turns, rad.
+    tilt, tilt_sd : float
+        By how much its direction changes, rad.
     shift, shift_sd : float
         By how much it moves across itself, m, at its point nearest the distal body's origin at the reference.
     significant : bool
         Whether one of both is beyond what an axis that stays shows in 0.27 % of the trials.
-    unseen_turn, unseen_shift : float
+    unseen_tilt, unseen_shift : float
         Up to so much (rad, m) an axis may wander without being told from one that stays.
     """
 
-    turn: float
-    turn_sd: float
+    tilt: float
+    tilt_sd: float
     shift: float
     shift_sd: float
     significant: bool
-    unseen_turn: float
+    unseen_tilt: float
     unseen_shift: float
 
 
@@ -145,7 +145,7 @@ class MeanLine(ArrayRecord):
     Attributes
     ----------
     line : LineEstimate
-        As expressed it is the mean of `AxisPath`; in each body, the mean of the places the axis takes in that body.
+        As expressed it is the mean of `AxisPath`; in each body, the mean of the axis' positions in that body.
     axis_sd, point_sd, axis_cone, point_radius, skin_cone, skin_radius : float
         As those of `FittedJoint`.
     decided_by : {"A", "B", "J"} or None

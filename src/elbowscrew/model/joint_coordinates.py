@@ -12,7 +12,8 @@ MovingJoint = Literal["hinge", "screw_hinge", "two_axes", "ball"]
 """Types of joint that have angles of their own."""
 MOVING_JOINTS: Final[tuple[MovingJoint, ...]] = get_args(MovingJoint)
 _SHARED: Final = {"hinge": 9, "screw_hinge": 10, "two_axes": 12, "ball": 6}
-_ANGLES: Final = {"hinge": 1, "screw_hinge": 1, "two_axes": 2, "ball": 3}
+JOINT_ANGLES: Final[dict[str, int]] = {"hinge": 1, "screw_hinge": 1, "two_axes": 2, "ball": 3}
+"""How many angles each has."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -49,4 +50,4 @@ class JointCoordinates(ArrayRecord):
     @property
     def angles(self) -> int:
         """How many angles a pose has: of a ball the components of its rotation vector."""
-        return _ANGLES[self.type]
+        return JOINT_ANGLES[self.type]

@@ -45,9 +45,9 @@ class FitSummary(EstimateSummary):
     axis_cone95_deg: float | None
     """Half-angle of the cone that holds the direction with 95 %."""
     point_sd_mm: float | None
-    """Standard deviation of the axis' place, both components together."""
+    """Standard deviation of the axis' position, both components together."""
     point_radius95_mm: float | None
-    """Radius of the circle across the axis that holds its place with 95 %."""
+    """Radius of the circle across the axis that holds its position with 95 %."""
     sensitivity_deg_per_deg: float | None
     """Degrees that the axis turns for each degree that a cluster turns on its bone with the motion."""
     pitch_mm_per_rad: float | None
@@ -87,16 +87,16 @@ class WanderSummary(TypedDict):
 
 
 class MeanAxisSummary(EstimateSummary):
-    """Mean over the range of an axis that wanders; in each body, the mean of the places it takes in that body."""
+    """Mean over the range of an axis that wanders; in each body, the mean of its positions in that body."""
 
     axis_sd_deg: float | None
     """Standard deviation of the direction, both components together."""
     axis_cone95_deg: float | None
     """Half-angle of the cone that holds the direction with 95 %."""
     point_sd_mm: float | None
-    """Standard deviation of the axis' place, both components together."""
+    """Standard deviation of the axis' position, both components together."""
     point_radius95_mm: float | None
-    """Radius of the circle across the axis that holds its place with 95 %."""
+    """Radius of the circle across the axis that holds its position with 95 %."""
     decided_by: Literal["A", "B", "J"] | None
     """What the interval stands on, in a letter."""
     interval_method: str | None
@@ -127,7 +127,7 @@ class JointLineSummary(EstimateSummary):
     cone95_deg: float | None
     """Half-angle of the cone that holds the direction with 95 %."""
     radius95_mm: float | None
-    """Radius of the circle across the axis that holds its place with 95 %."""
+    """Radius of the circle across the axis that holds its position with 95 %."""
     range_deg: float | None
     """Rotation about it, from the 5 % to the 95 % quantile."""
     angle_sd_deg: float | None
@@ -228,12 +228,12 @@ class DispersionSummary(TypedDict):
     direction_max_deg: float | None
     direction_excursion_deg: float
     """Largest angle between two of the axes."""
-    place_median_mm: float | None
-    place_rms_mm: float | None
-    place_95_mm: float | None
+    position_median_mm: float | None
+    position_rms_mm: float | None
+    position_95_mm: float | None
     """95th percentile."""
-    place_max_mm: float | None
-    place_excursion_mm: float
+    position_max_mm: float | None
+    position_excursion_mm: float
     """Largest distance between two of the axes."""
 
 
@@ -266,7 +266,7 @@ class RepeatabilitySummary(TypedDict):
     axis_sd_deg: float | None
     """Standard deviation of the direction of the axis from cycle to cycle."""
     point_sd_mm: float | None
-    """Standard deviation of its place."""
+    """Standard deviation of its position."""
     theta_max_sd_deg: float | None
     """Standard deviation of the largest angle."""
 
@@ -286,7 +286,7 @@ class AnatomySummary(TypedDict):
 
 
 class PoseSummary(TypedDict):
-    """A pose: unit quaternion, scalar first, and place."""
+    """A pose: unit quaternion, scalar first, and position."""
 
     quaternion: Quaternion
     position_mm: Vector

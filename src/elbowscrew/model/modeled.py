@@ -196,8 +196,8 @@ class KeyframeSet(TableRecord):
             return np.full((self.frame.size, 20), np.nan)
         axis, point = np.full((2, 3), np.nan), np.full((2, 3), np.nan)
         axis[: len(self.joint.axis)], point[: len(self.joint.point)] = self.joint.axis, self.joint.point
-        quat, place = pose_from_dual_quat(self.joint.end)
-        row = np.concatenate([axis[0], point[0], axis[1], point[1], [self.joint.pitch], quat, place])
+        quat, position = pose_from_dual_quat(self.joint.end)
+        row = np.concatenate([axis[0], point[0], axis[1], point[1], [self.joint.pitch], quat, position])
         return np.tile(row, (self.frame.size, 1))
 
 

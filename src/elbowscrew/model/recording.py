@@ -34,7 +34,7 @@ class TrackingLoss(IntEnum):
     FROZEN = 4
     """The pose repeats the one before to the last digit."""
     INVALID = 5
-    """No pose can be so: a quaternion far from unit length, a place kilometers away."""
+    """No pose can be so: a quaternion far from unit length, a position kilometers away."""
     LEAP = 6
     """The pose leaps out of the motion and back: a flip, a swap or a spike."""
 
@@ -64,21 +64,21 @@ class QualityWarning:
 def invalid_warning(body: str, frames: int) -> QualityWarning:
     """Say that a body has poses that cannot be."""
     message = (
-        f"body {body!r} has in {frames} frames a quaternion far from unit length or a place over "
+        f"body {body!r} has in {frames} frames a quaternion far from unit length or a position over "
         f"{_FARTHEST_M / 1000:g} km away: taken as lost"
     )
     return QualityWarning(code="invalid-pose", message=message)
 
 
 def out_of_reach(position: Float) -> Bool:
-    """Places (..., 3), in meters, that no camera sees, as they are over 10 km away: shape (...); none where NaN."""
+    """Positions (..., 3), in meters, that no camera sees, as they are over 10 km away: shape (...); none where NaN."""
     farther: Bool = np.any(np.abs(position) > _FARTHEST_M, axis=-1)
     return farther
 
 
-def invalid_marker_warning(owner: str, places: int) -> QualityWarning:
-    """Say that markers have places that cannot be."""
-    message = f"{owner} has {places} places over {_FARTHEST_M / 1000:g} km away: taken as not seen"
+def invalid_marker_warning(owner: str, positions: int) -> QualityWarning:
+    """Say that markers have positions that cannot be."""
+    message = f"{owner} has {positions} positions over {_FARTHEST_M / 1000:g} km away: taken as not seen"
     return QualityWarning(code="invalid-marker", message=message)
 
 

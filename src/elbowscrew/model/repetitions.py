@@ -96,7 +96,7 @@ class Repeatability(TableRecord):
     cmc : float
         Coefficient of multiple correlation within a day.
     axis_sd, point_sd : float
-        Standard deviations of the cycles' axes about their mean: direction (rad), and place (m) at the distal body.
+        Standard deviations of the cycles' axes about their mean: direction (rad), and position (m) at the distal body.
     top_sd : float
         Of the largest angle, radians.
     """

@@ -78,7 +78,7 @@ class ScrewMotion(TableRecord):
     angle_sd, slide_sd : ndarray, shape (N,)
         Standard deviations (rad, m) from the noise of both bodies' poses; NaN where it is not known.
     axis_sd, point_sd : ndarray, shape (N,)
-        Of the direction (rad) and of the place across the axis at `axis_point` (m), both components together.
+        Of the direction (rad) and of the position across the axis at `axis_point` (m), both components together.
     axis_cone, point_radius : ndarray, shape (N,)
         Half-angle (rad) of the cone, and radius (m) of the circle, that hold 95 %.
     """
@@ -129,8 +129,8 @@ class MeanAxis(ArrayRecord):
         rest counts no more than the angle it is at.
     weighted_dispersion : float
         RMS angle of the axes from the mean axis, with its weights, radians.
-    excursion, place_excursion : float
-        Largest angle (rad) between two of the axes, and largest distance (m) between two of their places in that plane.
+    excursion, position_excursion : float
+        Largest angle (rad) between two of the axes, and largest distance (m) between their positions in that plane.
     """
 
     direction: Float
@@ -140,7 +140,7 @@ class MeanAxis(ArrayRecord):
     dispersion: float
     weighted_dispersion: float
     excursion: float
-    place_excursion: float
+    position_excursion: float
 
     @property
     def spread95(self) -> tuple[float, float]:

@@ -161,7 +161,7 @@ class JointAxisSummary(LineSummary):
     axis_cone95_deg: float | None
     """Half-angle of the cone that holds the direction with 95 %."""
     point_radius95_mm: float | None
-    """Radius of the circle across the axis that holds its place with 95 %."""
+    """Radius of the circle across the axis that holds its position with 95 %."""
     pitch_mm_per_rad: float
     """Slide for each radian; 0 for a hinge."""
     interval_method: str | None
@@ -299,7 +299,7 @@ class ModelSummary(TypedDict):
 
 
 class LandmarkSummary(TypedDict):
-    """A landmark as it was asked for: by markers, or by its place in the frame of a body."""
+    """A landmark as it was asked for: by markers, or by its position in the frame of a body."""
 
     markers: NotRequired[list[str]]
     body: NotRequired[LandmarkFrame]

@@ -99,7 +99,7 @@ def rms_displacement(pose_a: Float, pose_b: Float, points: BodyPoints) -> Float:
 def point_coordinates(pose: Float, points: BodyPoints) -> Float:
     """Twelve coordinates of a pose between which the Euclidean distance is the RMS displacement of the points.
 
-    ``[R L, R c + d]`` with ``S = L L^T``: the places of the centroid and of three spokes that spread as the points do.
+    ``[R L, R c + d]`` with ``S = L L^T``: positions of the centroid and of three spokes that spread as the points do.
 
     Parameters
     ----------

@@ -96,7 +96,7 @@ def plot_axis_directions(ax: Axes, analysis: Analysis | TrialView) -> Axes:
     return ax
 
 
-def plot_axis_places(ax: Axes, analysis: Analysis | TrialView) -> Axes:
+def plot_axis_positions(ax: Axes, analysis: Analysis | TrialView) -> Axes:
     """Draw where each axis pierces the plane across the mean axis nearest the distal body, from the mean axis."""
     view = view_of(analysis)
     unit = view.settings.length_unit
@@ -108,8 +108,8 @@ def plot_axis_places(ax: Axes, analysis: Analysis | TrialView) -> Axes:
     rows, direction, point = rows[crossing], direction[crossing], point[crossing]
     offset = length_in(piercing(direction, point, mean.direction, mean.center) - mean.center, unit)
     _scatter(ax, view, rows, [offset @ across for across in mean.across])
-    ax.set_xlabel(f"Place toward {mean.names[0]} ({unit})")
-    ax.set_ylabel(f"Place toward {mean.names[1]} ({unit})")
+    ax.set_xlabel(f"Position toward {mean.names[0]} ({unit})")
+    ax.set_ylabel(f"Position toward {mean.names[1]} ({unit})")
     return ax
 
 

@@ -50,7 +50,7 @@ def euler_parameters_figure(analysis: Analysis | TrialView, *, width_mm: float =
 
 
 def axis_figure(analysis: Analysis | TrialView, *, width_mm: float = WIDTH_MM) -> Figure:
-    """Make the figure of the axes in space, of their directions and of their places."""
+    """Make the figure of the axes in space, of their directions and of their positions."""
     view = view_of(analysis)
     if width_mm < NARROW_MM:
         figure = style.new_figure(width_mm, 160.0)
@@ -65,10 +65,10 @@ def axis_figure(analysis: Analysis | TrialView, *, width_mm: float = WIDTH_MM) -
     space = cast(Axes3D, figure.add_subplot(cells[0], projection="3d"))
     axis.plot_axes_in_space(space, view)
     directions = axis.plot_axis_directions(figure.add_subplot(cells[1]), view)
-    places = axis.plot_axis_places(figure.add_subplot(cells[2]), view)
+    positions = axis.plot_axis_positions(figure.add_subplot(cells[2]), view)
     bar = figure.colorbar(axis.color_scale(view), cax=figure.add_subplot(cells[3]), orientation="horizontal")
     bar.set_label(f"Angle θ ({view.settings.angle_unit})")
-    for ax, letter in ((space, "a"), (directions, "b"), (places, "c")):
+    for ax, letter in ((space, "a"), (directions, "b"), (positions, "c")):
         ax.set_title(letter, loc="left")
     space.set_title(f"axes in the {view.settings.express_in} frame", loc="center", fontweight="normal")
     space.legend(loc="upper center", bbox_to_anchor=(0.5, -0.05), ncols=2)

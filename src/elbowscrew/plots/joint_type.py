@@ -11,6 +11,7 @@ from matplotlib.ticker import MaxNLocator
 from mpl_toolkits.mplot3d.art3d import Line3DCollection
 from mpl_toolkits.mplot3d.axes3d import Axes3D
 
+from elbowscrew.choices import JOINT_TYPE_WORDS
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.sensitivity import NORMAL_95
 from elbowscrew.model import Analysis
@@ -35,10 +36,6 @@ _LOOKS: Final[tuple[dict[str, Any], ...]] = (
 _BANDS: Final = ("#BBBBBB", "#9CC9E8", "#F3C09B")
 _AROUND: Final = 24
 _ALONG: Final = 41
-_NAMES: Final = {
-    "hinge": "Hinge", "screw_hinge": "Screw-hinge", "two_axes": "Two axes", "ball": "Ball", "rigid": "Rigid joint",
-    "free": "Free: no joint of rotations alone", "undetermined": "Joint undetermined",
-}  # fmt: skip
 
 
 def joint_figure(analysis: Analysis | TrialView, *, width_mm: float = WIDTH_MM) -> Figure:
@@ -79,7 +76,7 @@ def joint_text(analysis: Analysis | TrialView) -> str:
     view = view_of(analysis)
     found, two = view.joint_summary["joint_type"], view.joint_summary["two_axes"]
     status = "" if found["status"] is None else f" ({'as stated' if found['status'] == 'forced' else found['status']})"
-    told = f"{_NAMES[found['type']]}{status}"
+    told = f"Joint: {JOINT_TYPE_WORDS[found['type']]}{status}"
     if two is None or two["angle_between_deg"] is None:
         return told
     unit, length = view.settings.angle_unit, view.settings.length_unit
@@ -101,9 +98,9 @@ def plot_joint_in_body(ax: Axes3D, analysis: Analysis | TrialView, body: JointIn
         ends = length_in(axis.ends(half), unit)
         ax.plot(*ends.T, linewidth=1.5, label=axis.name, **_LOOKS[k])
         shown.append(ends)
-        if axis.places.size:
+        if axis.lines.size:
             pieces = [
-                length_in(place + half * np.outer([-0.8, 0.8], direction), unit) for direction, place in axis.places
+                length_in(point + half * np.outer([-0.8, 0.8], direction), unit) for direction, point in axis.lines
             ]
             ax.add_collection3d(Line3DCollection(pieces, colors=_LOOKS[k]["color"], linewidths=0.5, alpha=0.45))
             shown += pieces
@@ -254,7 +251,7 @@ def plot_joint_angles(ax: Axes, analysis: Analysis | TrialView) -> Axes:
 
 
 def plot_joint_residual(ax: Axes, analysis: Analysis | TrialView) -> Axes:
-    """Draw what the joint leaves of each pose, rotation and place, over time."""
+    """Draw what the joint leaves of each pose, rotation and position, over time."""
     view, angles = _with_angles(analysis)
     settings = view.settings
     rotation = angle_in(angles.residual_rotation, settings.angle_unit)

@@ -129,5 +129,5 @@ class MarkerBuilder:
         return Marker(name=self._name, position=self._position.finish())
 
     def warnings(self) -> list[QualityWarning]:
-        """Tell of places that cannot be."""
+        """Tell of positions that cannot be."""
         return [invalid_marker_warning(f"marker {self._name!r}", self._far)] if self._far else []

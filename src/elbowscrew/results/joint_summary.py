@@ -71,11 +71,11 @@ def dispersion_summary(analysis: Analysis) -> DispersionSummary:
         "direction_95_deg": statistic(_high, deviation),
         "direction_max_deg": statistic(np.nanmax, deviation),
         "direction_excursion_deg": float(np.degrees(mean.excursion)),
-        "place_median_mm": statistic(np.nanmedian, distance),
-        "place_rms_mm": statistic(rms, distance),
-        "place_95_mm": statistic(_high, distance),
-        "place_max_mm": statistic(np.nanmax, distance),
-        "place_excursion_mm": 1000.0 * mean.place_excursion,
+        "position_median_mm": statistic(np.nanmedian, distance),
+        "position_rms_mm": statistic(rms, distance),
+        "position_95_mm": statistic(_high, distance),
+        "position_max_mm": statistic(np.nanmax, distance),
+        "position_excursion_mm": 1000.0 * mean.position_excursion,
     }
 
 

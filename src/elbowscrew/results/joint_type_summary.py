@@ -109,11 +109,11 @@ def _wander(wander: AxisWander | None) -> WanderSummary | None:
     if wander is None:
         return None
     return {
-        "size_deg": known(_DEGREES * wander.turn),
-        "size_sd_deg": known(_DEGREES * wander.turn_sd),
+        "size_deg": known(_DEGREES * wander.tilt),
+        "size_sd_deg": known(_DEGREES * wander.tilt_sd),
         "size_mm": known(_MILLIMETERS * wander.shift),
         "size_sd_mm": known(_MILLIMETERS * wander.shift_sd),
-        "unseen_deg": known(_DEGREES * wander.unseen_turn),
+        "unseen_deg": known(_DEGREES * wander.unseen_tilt),
         "unseen_mm": known(_MILLIMETERS * wander.unseen_shift),
         "significant": wander.significant,
     }

@@ -19,6 +19,7 @@ from elbowscrew.geometry.dual_quaternion import dual_quat_from_pose
 from elbowscrew.joints import joint_called
 from elbowscrew.model import Analysis, Keyframes, ModelPhases, MovementPhases, Repetitions
 from elbowscrew.model.joint_axis import AxisPath
+from elbowscrew.model.joint_coordinates import JOINT_ANGLES
 from elbowscrew.model.joint_summary_types import JointSummary, PoseSummary, Vector
 from elbowscrew.model.joint_type import JointAngles
 from elbowscrew.model.summary_types import AnalysisSummary, ModelSummary, MovementSummary
@@ -36,7 +37,6 @@ _SCREW: Final = (
 _MODEL: Final = ("phase", "angle", "euler_parameters", "angle_error", "rms_displacement")
 _ANGLES: Final = tuple(field.name for field in fields(JointAngles))
 _PATH: Final = tuple(field.name for field in fields(AxisPath))
-_ANGLES_OF: Final[dict[str, int]] = {"hinge": 1, "screw_hinge": 1, "two_axes": 2, "ball": 3}
 _REPETITIONS: Final = tuple(field.name for field in fields(Repetitions))
 UNREADABLE: Final = (KeyError, TypeError, ValueError, IndexError, AttributeError, ArithmeticError)
 """What a result that somebody edited raises where its numbers do not go together."""
@@ -173,7 +173,7 @@ def _view(summary: AnalysisSummary, joint: JointSummary, settings: Settings, rea
         repetition_curve=read.curve,
         mean_direction=np.array(motion["mean_axis"]["direction"], dtype=np.float64),
         mean_point=_millimeters(motion["mean_axis"]["point_mm"]),
-        spread95=_region(dispersion["direction_95_deg"], dispersion["place_95_mm"]),
+        spread95=_region(dispersion["direction_95_deg"], dispersion["position_95_mm"]),
         joint_direction=np.array(line["direction"], dtype=np.float64),
         joint_point=_millimeters(line["point_mm"]),
         confidence95=None if fit is None else _region(fit["axis_cone95_deg"], fit["point_radius95_mm"]),
@@ -183,7 +183,7 @@ def _view(summary: AnalysisSummary, joint: JointSummary, settings: Settings, rea
 
 
 def _angle_table(joint: JointSummary) -> tuple[tables.Column, ...]:
-    return tables.JOINT_ANGLE_COLUMNS[_ANGLES_OF[joint["joint_type"]["type"]]]
+    return tables.JOINT_ANGLE_COLUMNS[JOINT_ANGLES[joint["joint_type"]["type"]]]
 
 
 def _pose(pose: PoseSummary) -> Float:

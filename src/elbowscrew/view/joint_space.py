@@ -15,7 +15,7 @@ from elbowscrew.view.trial_view import TrialView
 
 End = Literal["proximal", "distal"]
 
-_PLACES: Final = 7
+_CARRIED: Final = 7
 _SHORTEST: Final = 0.03  # m
 
 ANGLE_NAMES: Final = {
@@ -29,14 +29,14 @@ ANGLE_NAMES: Final = {
 class AxisInBody(NamedTuple):
     """An axis in one body, meters: how it lies there at the reference, and where the other axis carries it.
 
-    `places` (K, 2, 3) are its direction and point at K angles about the other axis; none where it is fixed in this
+    `lines` (K, 2, 3) are its direction and point at K angles about the other axis; none where it is fixed in this
     body. `known` holds 95 %; None where the axis is not determined.
     """
 
     name: str
     direction: Float
     point: Float
-    places: Float
+    lines: Float
     known: Region | None
 
     def ends(self, half: float) -> Float:
@@ -101,7 +101,7 @@ def _meters(millimeters: Any) -> Float:
 
 
 def _semi_axes(proximal: Float, reference: Float, end: End) -> Float:
-    """The ellipsoid as the body sees it, that of the proximal body's place."""
+    """The ellipsoid as the body sees it, that in the proximal body."""
     if end == "proximal":
         return proximal
     return rotate(pose_from_dual_quat(conjugate(reference))[0], proximal)
@@ -124,8 +124,8 @@ def _axes(view: TrialView, end: End) -> tuple[AxisInBody, ...]:
         # In the distal body the first axis goes round the second, the other way.
         about, moving, sense = (0, 1, 1.0) if end == "proximal" else (1, 0, -1.0)
         angle = view.joint_angles.angle[:, about]
-        turns = sense * np.linspace(np.nanmin(angle), np.nanmax(angle), _PLACES)
-        axes[moving] = axes[moving]._replace(places=carried(axes[moving], axes[about], turns))
+        turns = sense * np.linspace(np.nanmin(angle), np.nanmax(angle), _CARRIED)
+        axes[moving] = axes[moving]._replace(lines=carried(axes[moving], axes[about], turns))
     return tuple(axes)
 
 

@@ -41,7 +41,7 @@ class Region(NamedTuple):
     radius: float
 
     def reach(self, along: Float) -> Float:
-        """How far from the axis it reaches: place and tilt err independently of each other."""
+        """How far from the axis it reaches: position and direction err independently of each other."""
         reach: Float = np.hypot(self.radius, np.tan(min(self.angle, _STEEPEST)) * along)
         return reach
 

@@ -124,8 +124,8 @@ def test_the_mean_axis_and_the_size_are_within_their_errors() -> None:
         assert axis.wander is not None
         off = away(axis.mean_axis.line.direction, axis.mean_axis.line.point, true_line(0.5 * TOP))
         held += off[0] <= axis.mean_axis.axis_cone
-        sizes.append(axis.wander.turn)
-        wide.append(axis.wander.turn_sd)
+        sizes.append(axis.wander.tilt)
+        wide.append(axis.wander.tilt_sd)
     assert held >= 34  # 38 of 40 at 95 %, less three standard deviations
     assert np.std(sizes) == pytest.approx(np.mean(wide), rel=0.4)
     assert np.mean(sizes) == pytest.approx(TURN, abs=np.radians(0.1))

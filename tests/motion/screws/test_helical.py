@@ -101,7 +101,7 @@ def test_the_excursion_is_the_largest_of_all_distances(cloud: str) -> None:
     reach = -(points @ mean.direction) / (directions @ mean.direction)
     places = points + reach[:, None] * directions
     farthest = np.linalg.norm(places[:, None] - places[None], axis=2).max()
-    assert mean.place_excursion == pytest.approx(farthest, rel=1e-9, abs=1e-12)
+    assert mean.position_excursion == pytest.approx(farthest, rel=1e-9, abs=1e-12)
 
 
 def test_a_rest_counts_for_the_dispersion_no_more_than_the_angle_it_is_at() -> None:

@@ -180,8 +180,8 @@ def anatomical_motion(
 ) -> tuple[AnatomicalMotion, tuple[QualityWarning, ...]]:
     """Angles of the elbow in every frame, and its screw axes beside the epicondyle line.
 
-    The epicondyles belong to the humerus. The forearm's frame needs them, too: it takes their places at the reference
-    and keeps them fixed in the forearm.
+    The epicondyles belong to the humerus. The forearm's frame needs them, too: it takes their positions at the
+    reference and keeps them fixed in the forearm.
 
     Parameters
     ----------
@@ -214,7 +214,7 @@ def anatomical_motion(
     distal_isb = distal_frame(points["US"], points["RS"], EL, EM, landmarks.side)
     for frame, names in ((humerus, "GH, EL and EM"), (distal_isb, "US, RS and the middle of EL and EM")):
         if not np.isfinite(frame).all():
-            msg = f"{landmarks.source}: {names} lie nearly on one line, so that they give no plane; check their places"
+            msg = f"{landmarks.source}: {names} lie nearly on one line and give no plane; check their positions"
             raise SettingError(msg)
     angles = elbow_angles(
         multiply(multiply(conjugate(humerus), joint.dual_quat_proximal_distal), distal_isb), landmarks.side

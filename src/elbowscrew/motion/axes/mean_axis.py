@@ -58,7 +58,7 @@ def mean_axis_of(angle: Float, line: Float, near: Float) -> MeanAxis:
     deviation = direction_between(line, plain)
     # Where each axis pierces the plane across the mean axis at `near`: the same in whatever frame it is described.
     center = point + ((near - point) @ direction) * direction
-    place = piercing(line[:, :3], np.cross(line[:, :3], line[:, 3:]), direction, center) - center
+    position = piercing(line[:, :3], np.cross(line[:, :3], line[:, 3:]), direction, center) - center
     chosen = np.flatnonzero(known)
     chosen = evenly_thinned(chosen, _MOST_COMPARED)
     weights = np.sin(0.5 * angle[known]) ** 2
@@ -69,9 +69,9 @@ def mean_axis_of(angle: Float, line: Float, near: Float) -> MeanAxis:
         dispersion=_dispersion_by_angle(angle[known], line[known, :3]),
         weighted_dispersion=float(np.sqrt(weights @ off**2 / weights.sum())),
         deviation=deviation,
-        distance=length(place),
+        distance=length(position),
         excursion=float(2.0 * np.arcsin(min(0.5 * _largest_distance(line[chosen, :3]), 1.0))),
-        place_excursion=_largest_distance(place[chosen]),
+        position_excursion=_largest_distance(position[chosen]),
     )
 
 

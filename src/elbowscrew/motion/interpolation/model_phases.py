@@ -103,8 +103,8 @@ def _phases_between(
     if bounds.size < 2 or bounds[0] >= bounds[-1]:
         bounds = known[[0, -1]].astype(np.int64)
         return ModelPhases(bound_rows=bounds, law_rows=bounds[None])
-    places = np.flatnonzero(kept)
-    starts, stops = begin[places[:-1]], end[places[1:] - 1]
+    parts = np.flatnonzero(kept)
+    starts, stops = begin[parts[:-1]], end[parts[1:] - 1]
     rest = np.maximum(_SHORTEST_REST_S, _REST_SHARE * (stops - starts))
     time = elapsed - elapsed[0]
     eases = np.column_stack([starts - time[bounds[:-1]] >= rest, time[bounds[1:]] - stops >= rest])
@@ -113,7 +113,7 @@ def _phases_between(
     laws = np.where(eases, rows.clip(laws[:, :1], laws[:, 1:]), laws)
     empty = laws[:, 0] >= laws[:, 1]
     laws[empty] = np.column_stack([bounds[:-1], bounds[1:]])[empty]
-    law_sd = None if sd is None else np.column_stack([sd[0][places[:-1]], sd[1][places[1:] - 1]])
+    law_sd = None if sd is None else np.column_stack([sd[0][parts[:-1]], sd[1][parts[1:] - 1]])
     return ModelPhases(bound_rows=bounds.astype(np.int64), law_rows=laws.astype(np.int64), law_sd_s=law_sd)
 
 

@@ -132,7 +132,7 @@ class JointSeries(NamedTuple):
 
 
 class PoseTrack(NamedTuple):
-    """Poses, and the places of the body's points in them and in the model's poses of the same frames.
+    """Poses, and the positions of the body's points in them and in the model's poses of the same frames.
 
     Attributes
     ----------

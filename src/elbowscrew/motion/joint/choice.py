@@ -138,8 +138,8 @@ class _Contest:
         fit = self[name].fit
         pieces = influence_pieces(fit, self.poses)
         angle = fit.mechanism.frames[:, 0]
-        place = (angle - angle.min()) / max(float(np.ptp(angle)), _TINY)
-        waves = np.cos(np.pi * np.arange(_WAVES) * place[:, None])
+        share = (angle - angle.min()) / max(float(np.ptp(angle)), _TINY)
+        waves = np.cos(np.pi * np.arange(_WAVES) * share[:, None])
         columns = (pieces.whitener[:, :, :, None] * waves[:, None, None, :]).reshape(*pieces.whitened.shape, -1)
         design = np.concatenate([pieces.design, columns], axis=2)
         return _heldout_variance(design, pieces.whitened, float(fit.weight.sum()))

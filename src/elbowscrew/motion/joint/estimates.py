@@ -84,10 +84,10 @@ def line_errors(
     frame = multiply(joint.dual_quat_lab_proximal, pose) if express_in == "lab" else pose
     # A tilt (a, b) moves the line by (b, -a) d at a distance d along it from the pose's origin.
     along = (line.point - pose_from_dual_quat(frame)[1]) @ transform_lines(frame, Z_LINE)[:3]
-    place = shift + along * np.stack([tilt[1], -tilt[0]])
+    across = shift + along * np.stack([tilt[1], -tilt[0]])
     known = bool(np.isfinite(covariance).all())
     cone = interval.radius(tilt) if known else float("nan")
-    radius = interval.radius(place) if known else float("nan")
+    radius = interval.radius(across) if known else float("nan")
     if express_in == "lab" and noise.proximal is not None:
         carried = pose_radii(noise.proximal.covariance, line.direction_proximal, line.point_proximal)
         cone, radius = float(np.hypot(cone, carried[0])), float(np.hypot(radius, carried[1]))
@@ -97,9 +97,9 @@ def line_errors(
         axis_cone=cone,
         point_radius=radius,
         axis_sd=cone * _sd_of_radius(tilt @ covariance @ tilt.T),
-        point_sd=radius * _sd_of_radius(place @ covariance @ place.T),
+        point_sd=radius * _sd_of_radius(across @ covariance @ across.T),
         skin_cone=interval.skin_radius(tilt),
-        skin_radius=interval.skin_radius(place),
+        skin_radius=interval.skin_radius(across),
     )
 
 

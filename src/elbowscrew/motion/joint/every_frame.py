@@ -156,20 +156,20 @@ class _NearestWeights:
             whitener = poses.whitener @ adjoint(mechanism.residual_frame)
             own = whitener @ fit.mechanism.on(part).linear(poses.joint).own
             parts.append(fit.own_covariance[part] @ np.swapaxes(own, -1, -2) @ whitener)
-        return cls(cKDTree(_place(fit.mechanism.frames)), np.concatenate(parts), fit.own_covariance)
+        return cls(cKDTree(_neighborhood(fit.mechanism.frames)), np.concatenate(parts), fit.own_covariance)
 
     def stepped(self, mechanism: Mechanism, frames: Everywhere, rows: Index) -> OwnNumbers:
         """One step from the closed form."""
         at = mechanism.placed(frames.joint[rows])
         linear = at.linear(frames.joint[rows])
-        nearest = self.tree.query(_place(at.frames))[1]
+        nearest = self.tree.query(_neighborhood(at.frames))[1]
         step = np.einsum("fki,fi->fk", self.weight[nearest], linear.residual)
         moved = at.moved(np.zeros(linear.shared.shape[2]), step)
         residual = linear.residual - np.einsum("fik,fk->fi", linear.own, step)
         return OwnNumbers(moved.frames, self.covariance[nearest], residual)
 
 
-def _place(own: Float) -> Float:
+def _neighborhood(own: Float) -> Float:
     """Where frames are, by their angles (F, k) or rotations (F, 8), so that a whole turn is no distance."""
     if own.shape[1] == _DUAL_QUAT:
         return rotation_matrix_from_quat(own[:, :4]).reshape(-1, 9)

@@ -250,7 +250,7 @@ def pose_radii(covariance: Float, direction: Float, point: Float) -> tuple[float
     Returns
     -------
     tuple of float
-        Of the direction (rad) and of the place across it (m), 95 %.
+        Of the direction (rad) and of the position across it (m), 95 %.
     """
     across = np.linalg.svd(direction[None])[2][1:]
     turn, shift = _cross(direction), np.concatenate([_cross(point), np.eye(3)], axis=1)

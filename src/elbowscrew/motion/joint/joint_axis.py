@@ -136,7 +136,7 @@ class BodyMarkers(NamedTuple):
     ----------
     segment : {"proximal", "distal"}
     shape : ndarray, shape (M, 3)
-        Their places in the body.
+        Their positions in the body.
     motion : MarkerMotion or None
         How they move among themselves.
     rms : ndarray, shape (N,), or None

@@ -7,7 +7,7 @@ from typing import Final
 
 import numpy as np
 
-from elbowscrew.choices import StatedJoint
+from elbowscrew.choices import JOINT_TYPE_WORDS, StatedJoint
 from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat
 from elbowscrew.joints import side_of
 from elbowscrew.model import JointAxis, MeanAxis, QualityWarning, RigidBody
@@ -211,12 +211,12 @@ def _doubts_of_type(joint_axis: JointAxis, joint_type: JointType | None) -> list
     stated, code = joint_type.status == "forced", "stated-joint"
     if stated and joint_type.type in ("hinge", "screw_hinge") and joint_axis.unexplained > LARGEST_UNEXPLAINED:
         message = (
-            f"the joint is stated to be a {joint_type.type.replace('_', '-')}, but one axis leaves "
+            f"the joint is stated to be {JOINT_TYPE_WORDS[joint_type.type]}, but one axis leaves "
             f"{100.0 * joint_axis.unexplained:.0f} % as much rotation as there is about it: no axis of this motion is "
             "that joint's; leave --joint-type out to see which joint it is"
         )
     elif any(candidate.type == joint_type.type and not candidate.valid for candidate in joint_type.candidates):
-        what = "two axes" if joint_type.type == "two_axes" else "a ball joint"
+        what = JOINT_TYPE_WORDS[joint_type.type]
         message = f"the joint is stated to be {what}, but the motion does not determine it: it has no angles here"
     elif joint_type.two_axes is not None and not all(line.determined for line in joint_type.two_axes.lines):
         told = (

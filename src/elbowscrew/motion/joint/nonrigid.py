@@ -186,8 +186,8 @@ def _bins_of(angles: Float) -> tuple[Index, int]:
     bins = np.zeros(len(angles), dtype=np.int64)
     for angle in angles.T:
         span = float(np.ptp(angle))
-        place = (angle - angle.min()) / (span if span > 0.0 else 1.0)
-        bins = parts * bins + np.minimum((parts * place).astype(np.int64), parts - 1)
+        share = (angle - angle.min()) / (span if span > 0.0 else 1.0)
+        bins = parts * bins + np.minimum((parts * share).astype(np.int64), parts - 1)
     return bins, parts ** angles.shape[1]
 
 

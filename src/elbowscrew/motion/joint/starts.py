@@ -189,8 +189,8 @@ def _parallel_starts(joint: Float) -> list[TwoAxesMechanism]:
     h, g = mean_rotation_pair(joint)
     A, F = line_pose(h, np.zeros(3)), line_pose(g, np.zeros(3))
     turn = np.exp(1j * angle_about_z(dq.multiply(dq.multiply(dq.conjugate(A), joint), F)))
-    place = dq.pose_from_dual_quat(dq.multiply(dq.conjugate(A), joint))[1]
-    z = place[:, 0] + 1j * place[:, 1]
+    position = dq.pose_from_dual_quat(dq.multiply(dq.conjugate(A), joint))[1]
+    z = position[:, 0] + 1j * position[:, 1]
     middle = z.mean()
     z = z - middle
     linear = [2.0 * np.conj(z) * turn, -2.0 * np.conj(z), -2.0 * turn]

@@ -169,7 +169,7 @@ def _near_zero(angle: Float) -> Float:
 def _oriented(at: TwoAxesMechanism, *, left: bool) -> TwoAxesMechanism:
     """Axis 1 with its largest excursion positive; axis 2 toward the joint from the distal body, of a left side away.
 
-    The origins are put on the feet of the common normal, where the places of both axes are of interest; of parallel
+    The origins are put on the feet of the common normal, where the positions of both axes are of interest; of parallel
     axes, which have none, and whose second is given the sense of its excursion, nearest the bodies' origins.
     """
     angle = _near_zero(at.frames)

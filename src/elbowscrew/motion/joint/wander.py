@@ -23,11 +23,9 @@ class Wander(NamedTuple):
 
     Attributes
     ----------
-    turn, shift : float
-        How far the axis turns (rad) and moves across itself at the line's origin (m) over the whole range.
-    turn_radius, shift_radius : float
-        That hold the errors of both with 95 %.
-    unseen_turn, unseen_shift : float
+    tilt, shift : float
+        How far the axis tilts (rad) and moves across itself at the line's origin (m) over the whole range.
+    unseen_tilt, unseen_shift : float
         A wander up to these would not be told from noise.
     significant : bool
         Whether one of the two is beyond its 99.73 % radius.
@@ -47,11 +45,9 @@ class Wander(NamedTuple):
         What the poses leave a hinge by there for each unit of the last four of `step`.
     """
 
-    turn: float
+    tilt: float
     shift: float
-    turn_radius: float
-    shift_radius: float
-    unseen_turn: float
+    unseen_tilt: float
     unseen_shift: float
     significant: bool
     step: Float
@@ -71,17 +67,17 @@ class Wander(NamedTuple):
     @property
     def mean_distal_rows(self) -> Float:
         """Rows (4, P + 4) of tilt and shift of the mean line in the distal body, by the numbers."""
-        place = np.linspace(-1.0, 1.0, len(self.grid))
-        return self._distal_rows(np.mean(place[:, None, None] * self._turned(self.grid), axis=0))
+        share = np.linspace(-1.0, 1.0, len(self.grid))
+        return self._distal_rows(np.mean(share[:, None, None] * self._turned(self.grid), axis=0))
 
     def reference_rows(self, angle: Float, reference_angle: float) -> Float:
         """Rows (..., 4, P + 4) of the line at angles (...) in the distal body as it stands at a reference angle."""
-        place = np.asarray((np.asarray(angle) - self.middle) / self.half_range)[..., None, None]
+        share = np.asarray((np.asarray(angle) - self.middle) / self.half_range)[..., None, None]
         rows = list(_TILT_SHIFT)
         summed = np.stack(
             [np.interp(reference_angle, self.grid, part) for part in self.summed.reshape(len(self.grid), -1).T]
         ).reshape(6, 4)
-        return self._distal_rows(place * self._turned(np.array([reference_angle]))[0] - summed[rows])
+        return self._distal_rows(share * self._turned(np.array([reference_angle]))[0] - summed[rows])
 
     def _turned(self, angle: Float) -> Float:
         """Tilts and shifts (K, 4, 4) on the distal side of those on the proximal side, at angles (K,)."""
@@ -93,26 +89,12 @@ class Wander(NamedTuple):
         rows[..., -4:] = of_wander
         return rows
 
-    def proximal_line_pose(self, proximal: Float, angle: Float) -> Float:
-        """Pose (..., 8) whose z axis is the line in the proximal body at angles (...), radians.
-
-        Parameters
-        ----------
-        proximal : ndarray, shape (8,)
-            The hinge's own, A of `LineFit`.
-        angle : ndarray, shape (...)
-        """
-        place = (np.asarray(angle) - self.middle) / self.half_range
-        moved = np.zeros((*place.shape, 6))
-        moved[..., _TILT_SHIFT] = self.step[:4] + place[..., None] * self.step[-4:]
-        return dq.normalize(dq.multiply(proximal, dq.exp(0.5 * moved)))
-
     def error_rows(self, angle: Float) -> Float:
         """Rows (..., 4, P + 4) that make the error of tilt and shift at angles (...) of that of the numbers."""
-        place = (np.asarray(angle) - self.middle) / self.half_range
-        rows = np.zeros((*place.shape, 4, len(self.step)))
+        share = (np.asarray(angle) - self.middle) / self.half_range
+        rows = np.zeros((*share.shape, 4, len(self.step)))
         rows[..., range(4), range(4)] = 1.0
-        rows[..., range(4), range(len(self.step) - 4, len(self.step))] = place[..., None]
+        rows[..., range(4), range(len(self.step) - 4, len(self.step))] = share[..., None]
         return rows
 
 
@@ -151,8 +133,8 @@ def wander_of_axis(
     grid = np.linspace(low, high, _GRID)
     columns = _columns(grid, fit.pitch)
     change = np.diff(columns, axis=0)
-    place = np.linspace(-1.0, 1.0, _GRID)
-    wave = 0.5 * (place[1:] + place[:-1])
+    share = np.linspace(-1.0, 1.0, _GRID)
+    wave = 0.5 * (share[1:] + share[:-1])
     summed = np.concatenate([np.zeros((1, 6, 4)), np.cumsum(wave[:, None, None] * change, axis=0)])
     summed = summed - summed.mean(axis=0)
     flat = summed.reshape(_GRID, -1).T
@@ -165,15 +147,12 @@ def wander_of_axis(
     tilt, shift = own[-4:-2], own[-2:]
     sizes = [float(np.linalg.norm(rows @ step)) for rows in (tilt, shift)]
     sure = [interval.radius(rows, SURE) for rows in (tilt, shift)]
-    usual = [interval.radius(rows) for rows in (tilt, shift)]
     if not 2.0 * sure[0] < _TELLS_NOTHING:
         return None
     return Wander(
-        turn=2.0 * sizes[0],
+        tilt=2.0 * sizes[0],
         shift=2.0 * sizes[1],
-        turn_radius=2.0 * usual[0],
-        shift_radius=2.0 * usual[1],
-        unseen_turn=2.0 * sure[0],
+        unseen_tilt=2.0 * sure[0],
         unseen_shift=2.0 * sure[1],
         significant=any(size > limit for size, limit in zip(sizes, sure, strict=True)),
         step=step,

@@ -55,15 +55,15 @@ def told_wander(
     towards : ndarray, shape (6,)
         A line in the proximal body that gives the axis its sense.
     express_in : {"distal", "proximal", "lab"}
-        The distal body is the one at the reference, whose place to the proximal one is the model's there.
+        The distal body is the one at the reference, which stands to the proximal one as the model says there.
     """
     wander = AxisWander(
-        turn=found.turn,
-        turn_sd=_size_sd(found, slice(-4, -2)),
+        tilt=found.tilt,
+        tilt_sd=_size_sd(found, slice(-4, -2)),
         shift=found.shift,
         shift_sd=_size_sd(found, slice(-2, None)),
         significant=found.significant,
-        unseen_turn=found.unseen_turn,
+        unseen_tilt=found.unseen_tilt,
         unseen_shift=found.unseen_shift,
     )
     if not found.significant:

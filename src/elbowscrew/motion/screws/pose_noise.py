@@ -90,7 +90,7 @@ def covariance_from_markers(offsets: Float, marker_noise: float) -> Float:
     Returns
     -------
     ndarray, shape (6, 6)
-        Of the rotation vector (rad) and of the origin's place, in the body's frame. For markers about their centroid
+        Of the rotation vector (rad) and of the origin's position, in the body's frame. For markers about their centroid
         the rotation's part is that of Woltring 1985.
     """
     count = len(offsets)
@@ -111,8 +111,8 @@ def _from_marker_noise(body: RigidBody, marker_noise: float, source: str, settin
         )
     # Of the cluster nothing is known but its size: as many points as a common cluster has, spread alike in space.
     radius = DEFAULT_RADIUS if settings.radius_mm is None else settings.radius_mm / 1000.0
-    turn, place = marker_noise**2 / (_ASSUMED_MARKERS * np.array([2.0 / 3.0 * radius**2, 1.0]))
-    covariance = np.diag([turn] * 3 + [place] * 3)
+    rotation, position = marker_noise**2 / (_ASSUMED_MARKERS * np.array([2.0 / 3.0 * radius**2, 1.0]))
+    covariance = np.diag([rotation] * 3 + [position] * 3)
     return PoseNoise(covariance=covariance, source=f"{source}, markers assumed", marker_noise=marker_noise)
 
 

@@ -206,7 +206,7 @@ def _longest(runs: list[slice]) -> int:
 class _Spectrum(NamedTuple):
     """A run of poses by frequencies: continued beyond its ends, and seen from its own first pose.
 
-    Seen from there, digits go to the motion and not to the place in the laboratory.
+    Seen from there, digits go to the motion and not to the position in the laboratory.
     """
 
     first: Float

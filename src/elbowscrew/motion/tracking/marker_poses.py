@@ -95,7 +95,7 @@ def _motion(pose: Float, seen: Float, shape: Float) -> MarkerMotion:
 def cluster_shape(seen: Float) -> Float | None:
     """Shape of a marker cluster, shape (M, 3), about its centroid and turned as in the first whole frame.
 
-    Each marker's place is its median over the frames that see all of them, so that a frame with a marker gone astray
+    Each marker's position is its median over the frames that see all of them, so that a frame with a marker gone astray
     does not bend the shape.
 
     Parameters
