@@ -10,7 +10,7 @@ from typing import Any, Final
 from pydantic import ValidationError
 
 from elbowscrew.declaring import option_name
-from elbowscrew.errors import UsageError
+from elbowscrew.errors import UsageError, shown
 from elbowscrew.opening import read_toml
 from elbowscrew.settings import LISTS, SETTINGS, Settings
 
@@ -90,8 +90,8 @@ def _sentence(location: str, fault: Any, known: list[str]) -> str:
     if fault["type"] == "extra_forbidden":
         close = difflib.get_close_matches(key, known, n=1)
         hint = f"did you mean {close[0]!r}?" if close else f"possible keys: {', '.join(known)}"
-        return f"{location}: unknown key {key!r}; {hint}"
+        return f"{location}: unknown key {shown(key)}; {hint}"
     message = str(fault["msg"]).removeprefix("Value error, ").replace("Input should", "should")
     if not key:
         return f"{location}: {message}"
-    return f"{location}: {key}: {message}, found {fault['input']!r}"
+    return f"{location}: {key}: {message}, found {shown(fault['input'])}"

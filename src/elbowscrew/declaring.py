@@ -11,6 +11,8 @@ from typing import Annotated, Any, Final, Literal, get_args, get_origin
 from pydantic import BeforeValidator, Field
 from pydantic.fields import FieldInfo
 
+from elbowscrew.errors import shown
+
 _UNIT_SUFFIXES: Final = ("_deg_s", "_rad_s", "_m_s", "_deg", "_mm", "_hz", "_s", "_percent")
 
 FORMER_NAMES: Final = {
@@ -62,7 +64,7 @@ def _degrees(value: object) -> object:
     try:
         return math.degrees(float(number)) if unit == "rad" else float(number)
     except ValueError as error:
-        msg = f"expected degrees or an angle with its unit, as in 2deg, found {value!r}"
+        msg = f"expected degrees or an angle with its unit, as in 2deg, found {shown(value)}"
         raise ValueError(msg) from error
 
 
@@ -75,7 +77,7 @@ def _millimeters(value: object) -> object:
     try:
         return float(text.removesuffix(unit)) * (1000.0 if unit == "m" else 1.0)
     except ValueError as error:
-        msg = f"expected millimeters or a length with its unit, as in 2mm, found {value!r}"
+        msg = f"expected millimeters or a length with its unit, as in 2mm, found {shown(value)}"
         raise ValueError(msg) from error
 
 

@@ -17,6 +17,25 @@ found and what to do next.
 
 from __future__ import annotations
 
+_LONGEST_VALUE = 80
+_LONGEST_MESSAGE = 2000
+
+
+def shown(value: object) -> str:
+    """Representation of a value that is at fault, for a message: in brief, and whatever it is."""
+    try:
+        text = repr(value)
+    except (ValueError, RecursionError):  # a whole number of more digits than Python writes, or lists without end
+        return f"a {type(value).__name__} too large to be shown"
+    return text if len(text) <= _LONGEST_VALUE else f"{text[:_LONGEST_VALUE]}…"
+
+
+def shortened(message: str) -> str:
+    """Cut a message that names something without end: its begin tells the place, its end what to do."""
+    if len(message) <= _LONGEST_MESSAGE:
+        return message
+    return f"{message[: _LONGEST_MESSAGE * 3 // 4]} … {message[-_LONGEST_MESSAGE // 4 :]}"
+
 
 class ElbowscrewError(Exception):
     """Base of all errors that a file, a setting or a disk can cause.

@@ -43,6 +43,7 @@ from elbowscrew.declaring import (
     declared,
     setting,
 )
+from elbowscrew.errors import shown
 from elbowscrew.joints import JointName, ends_called, joints_of
 
 STILL: Final = "none"
@@ -276,10 +277,10 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
             try:
                 value = float(value)
             except ValueError as error:
-                msg = f"expected a cut-off in hertz, auto or none, found {value!r}"
+                msg = f"expected a cut-off in hertz, auto or none, found {shown(value)}"
                 raise ValueError(msg) from error
         if isinstance(value, int | float) and not 0.0 < value < math.inf:
-            msg = f"expected a cut-off above 0 Hz, found {value:g}"
+            msg = f"expected a cut-off above 0 Hz, found {shown(value)}"
             raise ValueError(msg)
         return value
 

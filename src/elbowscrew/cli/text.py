@@ -1,5 +1,7 @@
 """Text that may come from files: nothing of it may speak to the terminal."""
 
+from elbowscrew.errors import shortened
+
 
 class NobodyReads(Exception):  # noqa: N818 - no error: whoever read our output has read enough
     """Standard output was closed by its reader."""
@@ -11,5 +13,5 @@ def printable(text: str) -> str:
 
 
 def one_line(text: str) -> str:
-    """Fold white space, line ends included, to single blanks, and make the rest printable."""
-    return printable(" ".join(text.split()))
+    """Fold white space, line ends included, to single blanks, make the rest printable, and cut it if it has no end."""
+    return printable(shortened(" ".join(text.split())))

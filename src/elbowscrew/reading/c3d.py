@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import signal
 import subprocess
 import sys
 from importlib.util import find_spec
@@ -19,6 +20,7 @@ from elbowscrew.model import QualityWarning, Recording, RigidBody, Source, inval
 from elbowscrew.quantities import METERS
 from elbowscrew.reading import c3d_worker
 from elbowscrew.reading.builders import MarkerBuilder
+from elbowscrew.reading.c3d_sizes import check_sizes
 from elbowscrew.reading.clock import is_rate
 from elbowscrew.reading.options import ASK_FOR_MARKERS, ReadOptions, stated_unit
 from elbowscrew.reading.source import sha256_of
@@ -99,6 +101,7 @@ def _open(path: Path) -> _Content:
     command = [sys.executable, "-P", c3d_worker.__file__, str(path)]
     reason = "the file is damaged"
     try:
+        check_sizes(path)
         done = subprocess.run(  # noqa: S603
             command, capture_output=True, check=True, timeout=_LONGEST_OPENING_S, env=guarded_environment()
         )
@@ -114,7 +117,10 @@ def _open(path: Path) -> _Content:
             return content
     except subprocess.CalledProcessError as error:
         told = error.stderr.decode("utf-8", "replace").strip().splitlines()
-        reason = told[-1] if told and error.returncode > 0 else reason
+        if error.returncode == -getattr(signal, "SIGXCPU", 0):
+            reason = "it takes longer than a file of its size may"
+        elif told and error.returncode > 0:
+            reason = told[-1]
     except subprocess.TimeoutExpired:
         reason = f"it is not open after {_LONGEST_OPENING_S} s"
     except (OSError, ValueError, KeyError, TypeError) as error:

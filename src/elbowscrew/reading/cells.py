@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from elbowscrew.errors import RecordingError
 from elbowscrew.reading.source import TextSource
 
-_NUMBER: Final = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
+_NUMBER: Final = re.compile(r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
 
 
 def parse_number(text: str) -> float:

@@ -98,8 +98,8 @@ def frame_rate(path: Path, stated: str, frame: NDArray[np.int64], time_s: Float)
 def cut_warnings(source: TextSource, stated: str, rows: int) -> list[QualityWarning]:
     """Warnings of a file that may have been cut: by its own count of frames, and by its last line."""
     found = []
-    if stated.isdecimal() and int(stated) != rows:
-        message = f"the file states {stated} frames and has {rows}"
+    if stated.isdecimal() and float(stated) != rows:
+        message = f"the file states {stated[:20]} frames and has {rows}"
         found.append(QualityWarning(code="frame-count", message=message))
     if not source.ends_with_newline:
         message = "the last line has no line end: the file, and with it the last number, may have been cut"

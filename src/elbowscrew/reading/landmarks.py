@@ -6,12 +6,11 @@ import difflib
 import os
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from reprlib import repr as brief
 from typing import Any, Final, get_args
 
 import numpy as np
 
-from elbowscrew.errors import UsageError
+from elbowscrew.errors import UsageError, shown
 from elbowscrew.model.anatomy import LANDMARKS, Landmark, LandmarkFrame, Landmarks, Side
 from elbowscrew.opening import read_toml
 
@@ -56,10 +55,10 @@ def read_landmarks(path: str | os.PathLike[str]) -> Landmarks:
     if "side" not in table:
         faults.append('side is missing: write side = "right" or side = "left" at the top')
     elif table["side"] not in _SIDES:
-        faults.append(f"side: expected {_either(_SIDES)}, found {brief(table['side'])}")
+        faults.append(f"side: expected {_either(_SIDES)}, found {shown(table['side'])}")
     given = table.get("landmarks", {})
     if not isinstance(given, dict):
-        faults.append(f"landmarks: expected a table, [landmarks] on a line of its own, found {brief(given)}")
+        faults.append(f"landmarks: expected a table, [landmarks] on a line of its own, found {shown(given)}")
         given = {}
     faults += _unknown(given, LANDMARKS, "landmark")
     missing = [f"{name} ({what})" for name, what in LANDMARKS.items() if name not in given]
@@ -95,7 +94,7 @@ def _landmark(name: str, value: object, faults: list[str]) -> Landmark | None:
     given = value if isinstance(value, list) else [value]
     markers = tuple(marker for marker in given if isinstance(marker, str) and marker.strip())
     if not markers or len(markers) < len(given):
-        faults.append(f"{location}: expected {_EXPECTED}, found {brief(value)}")
+        faults.append(f"{location}: expected {_EXPECTED}, found {shown(value)}")
         return None
     return Landmark(markers=markers)
 
@@ -108,12 +107,12 @@ def _coordinate_faults(table: Mapping[str, Any]) -> list[str]:
     if not isinstance(mm, list) or len(mm) != 3 or any(type(x) not in (int, float) for x in mm):
         faults.append(f"mm: expected three numbers, [x, y, z], found {_found(table, 'mm')}")
     elif not all(abs(x) <= _FARTHEST_MM for x in mm):
-        faults.append(f"mm: expected numbers within {_FARTHEST_MM / 1000:g} m of the origin, found {brief(mm)}")
+        faults.append(f"mm: expected numbers within {_FARTHEST_MM / 1000:g} m of the origin, found {shown(mm)}")
     return faults
 
 
 def _found(table: Mapping[str, Any], key: str) -> str:
-    return brief(table[key]) if key in table else "none"
+    return shown(table[key]) if key in table else "none"
 
 
 def _unknown(table: Mapping[str, Any], known: Iterable[str], what: str) -> list[str]:
@@ -124,7 +123,7 @@ def _unknown(table: Mapping[str, Any], known: Iterable[str], what: str) -> list[
         if key not in names:
             close = difflib.get_close_matches(key.casefold(), folded, n=1)
             hint = f"did you mean {folded[close[0]]!r}?" if close else f"possible: {', '.join(names)}"
-            faults.append(f"unknown {what} {brief(key)}; {hint}")
+            faults.append(f"unknown {what} {shown(key)}; {hint}")
     return faults
 
 

@@ -15,7 +15,7 @@ from elbowscrew.reading.options import ASK_FOR_MARKERS, ReadOptions
 from elbowscrew.reading.source import TextSource
 
 _HEADER_LINES: Final = 25
-_LAST_NUMBER: Final = re.compile(r"\d+$", re.ASCII)
+_LAST_NUMBER: Final = re.compile(r"(?<!\d)\d{1,9}$", re.ASCII)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

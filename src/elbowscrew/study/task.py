@@ -10,7 +10,7 @@ from typing import Final
 
 from elbowscrew._process import collect_garbage
 from elbowscrew._version import __version__
-from elbowscrew.errors import ElbowscrewError, OutputError, UsageError
+from elbowscrew.errors import ElbowscrewError, OutputError, UsageError, shortened
 from elbowscrew.model import Landmarks
 from elbowscrew.results.staging import remove_damaged
 from elbowscrew.results.summary import library_versions
@@ -79,7 +79,7 @@ def analyze_trial(task: TrialTask) -> Failure | None:
     except ElbowscrewError as error:
         # What the disk does not take of one trial it will not take of the next; a folder of the user's is one trial's.
         full = isinstance(error, OutputError) and isinstance(error.__cause__, OSError)
-        message = str(error).replace(str(task.path), task.label)
+        message = shortened(str(error).replace(str(task.path), task.label))
         return Failure(error_class=type(error).__name__, message=message, exit_code=error.exit_code, stops_all=full)
     except MemoryError:
         message = f"{task.label}: not enough memory; take fewer --workers, or export fewer columns"

@@ -25,7 +25,7 @@ _WORDS: Final = re.compile(
     r"format version|rigid ?body|rotation|position|pathfiletype|capture|quaternion|marker|righthanded|frame|time|take",
     re.IGNORECASE,
 )
-_NUMBER: Final = re.compile(r"\s*[-+]?\d*[.,]?\d+([eE][-+]?\d+)?\s*")
+_NUMBER: Final = re.compile(r"\s*[-+]?(\d+([.,]\d+)?|[.,]\d+)([eE][-+]?\d+)?\s*")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -93,7 +93,8 @@ def find_trials(
 def natural_key(text: str) -> tuple[list[tuple[int, str]], str]:
     """Sort key that puts ``trial 2`` before ``trial 10``; the text itself decides between equals."""
     parts = re.split(r"([0-9]+)", text.casefold())
-    return [(int(part), "") if k % 2 else (-1, part) for k, part in enumerate(parts)], text
+    numbers = [part.lstrip("0") for part in parts]  # in their order, however many digits they have
+    return [(len(numbers[k]), numbers[k]) if k % 2 else (-1, part) for k, part in enumerate(parts)], text
 
 
 class _Search:
