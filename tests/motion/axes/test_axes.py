@@ -10,7 +10,7 @@ from elbowscrew import Recording, RigidBody, Settings, analyze, simulate_trial
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry import line_through
 from elbowscrew.model import HelicalSteps
-from elbowscrew.motion.axes.instantaneous import instantaneous_motion
+from elbowscrew.motion.axes.instantaneous import instantaneous_motion, twists
 
 
 def steps_of(step_deg: float, *, noise_mm: float = 0.0, seed: int = 0) -> HelicalSteps:
@@ -58,7 +58,7 @@ def test_the_instantaneous_axis_of_a_screw_motion_is_its_line_at_any_speed() -> 
     D = np.where((np.arange(241) == 100)[:, None], np.nan, D) * np.where(np.arange(241) % 7 < 3, -1.0, 1.0)[:, None]
     frame = np.arange(241)
     known = np.isfinite(D[:, 0])
-    found = instantaneous_motion(D, known, frame, time, time, 120.0, 0.25, -LINE[:3], margin=1, lowpass_hz=60.0)
+    found = instantaneous_motion(twists(D, known, time, 120.0, 1), frame, time, 0.25, -LINE[:3], lowpass_hz=60.0)
     rate = -(np.pi * np.cos(np.pi * time) + 0.6 * time)
     given = np.isfinite(found.axis_direction[:, 0])
     assert not given[[0, 99, 100, 101, 240]].any()
@@ -73,18 +73,9 @@ def test_the_instantaneous_axis_of_a_screw_motion_is_its_line_at_any_speed() -> 
 
 def test_a_body_at_rest_has_no_instantaneous_axis() -> None:
     pose = np.broadcast_to(START, (50, 8))
-    found = instantaneous_motion(
-        pose,
-        np.ones(50, dtype=np.bool_),
-        np.arange(50),
-        np.arange(50) / 100,
-        np.arange(50) / 100,
-        100.0,
-        0.25,
-        LINE[:3],
-        margin=1,
-        lowpass_hz=50.0,
-    )
+    time = np.arange(50) / 100
+    twist = twists(pose, np.ones(50, dtype=np.bool_), time, 100.0, 1)
+    found = instantaneous_motion(twist, np.arange(50), time, 0.25, LINE[:3], lowpass_hz=50.0)
     assert np.isnan(found.axis_direction).all()
     assert np.isnan(found.slide_velocity).all()
     assert np.nanmax(np.abs(found.angular_velocity)) < 1e-12

@@ -17,53 +17,61 @@ from elbowscrew.motion.smoothing.smoothing import inside
 _BLOCK: Final = 16384
 
 
-def instantaneous_motion(
-    displacement: Float,
-    measured: NDArray[np.bool_],
-    frame: NDArray[np.int64],
-    time_s: Float,
-    elapsed: Float,
-    rate_hz: float,
-    min_rate: float,
-    sense: Float,
-    margin: int,
-    lowpass_hz: float | None,
-) -> InstantaneousMotion:
-    """Instantaneous helical axis of every frame, from the poses on either side of it.
+def twists(displacement: Float, known: NDArray[np.bool_], elapsed: Float, rate_hz: float, margin: int) -> Float:
+    """Twist of every frame, shape (N, 6), rad/s and m/s, from the poses on either side of it.
 
-    The twist is that of the screw that leads from the pose before to the pose after, over the time between them: exact
+    It is that of the screw that leads from the pose before to the pose after, over the time between them: exact
     for a steady screw motion. It is not given near a gap, where a filter leaves most of the noise.
 
     Parameters
     ----------
     displacement : ndarray, shape (N, 8)
         Smooth: the twist of unfiltered poses is mostly noise.
-    measured : ndarray of bool, shape (N,)
-    frame : ndarray of int64, shape (N,)
-    time_s, elapsed : ndarray, shape (N,)
-        The file's times and the even clock, seconds.
+    known : ndarray of bool, shape (N,)
+        Where it was measured.
+    elapsed : ndarray, shape (N,)
+        Seconds.
     rate_hz : float
-    min_rate : float
-        Angular velocity (rad/s) below which there is no axis.
-    sense : ndarray, shape (3,)
-        Direction about which a positive angular velocity turns.
     margin : int
         Frames to either side that must be measured, too; 1 at least.
-    lowpass_hz : float or None
-        Cut-off of the filter that the poses went through.
 
     References
     ----------
     The twist ``2 Q' Q*``; Woltring 1994, Human Movement Science 13.
     """
-    count = len(displacement)
-    twist = np.full((count, 6), np.nan)
-    usable = np.isfinite(displacement[:, 0]) & measured
-    inner = np.flatnonzero(inside(usable, elapsed, rate_hz, margin))
+    twist = np.full((len(displacement), 6), np.nan)
+    inner = np.flatnonzero(inside(np.isfinite(displacement[:, 0]) & known, elapsed, rate_hz, margin))
     for rows in np.array_split(inner, -(-inner.size // _BLOCK) or 1):
         span = elapsed[rows + 1] - elapsed[rows - 1]
         step = dq.multiply(displacement[rows + 1], dq.conjugate(displacement[rows - 1]))
         twist[rows] = 2.0 * dq.log(dq.canonical(step)) / span[:, None]
+    return twist
+
+
+def instantaneous_motion(
+    twist: Float,
+    frame: NDArray[np.int64],
+    time_s: Float,
+    min_rate: float,
+    sense: Float,
+    lowpass_hz: float | None,
+) -> InstantaneousMotion:
+    """Instantaneous helical axis of every frame, from its twist.
+
+    Parameters
+    ----------
+    twist : ndarray, shape (N, 6)
+        `twists` of the frames: rad/s and m/s.
+    frame : ndarray of int64, shape (N,)
+    time_s : ndarray, shape (N,)
+        The file's times, seconds.
+    min_rate : float
+        Angular velocity (rad/s) below which there is no axis.
+    sense : ndarray, shape (3,)
+        Direction about which a positive angular velocity turns.
+    lowpass_hz : float or None
+        Cut-off of the filter that the poses went through.
+    """
     screw = instantaneous_screw(twist)
     sign = np.where(np.nan_to_num(screw.line[:, :3]) @ sense < 0.0, -1.0, 1.0)
     gated = ~(screw.rate >= min_rate)

@@ -11,14 +11,15 @@ from elbowscrew.errors import SettingError
 from elbowscrew.geometry import quaternion
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_quaternion import conjugate, multiply, pose_from_dual_quat
-from elbowscrew.model import HelicalSteps, InstantaneousMotion, MeanAxis, QualityWarning
+from elbowscrew.model import HelicalSteps, InstantaneousMotion, MeanAxis, QualityWarning, RigidBody
 from elbowscrew.motion.axes.helical_steps import helical_steps
-from elbowscrew.motion.axes.instantaneous import instantaneous_motion
+from elbowscrew.motion.axes.instantaneous import instantaneous_motion, twists
 from elbowscrew.motion.axes.mean_axis import mean_axis_of
 from elbowscrew.motion.screws.measurement import Measurement
 from elbowscrew.motion.screws.relative import IDENTITY, expressed
 from elbowscrew.motion.screws.sense import rotation_noise
-from elbowscrew.motion.smoothing.smoothing import Smoothing
+from elbowscrew.motion.smoothing.resampling import linear_at
+from elbowscrew.motion.smoothing.smoothing import Smoothing, inside
 from elbowscrew.motion.tracking.clock import other_rate
 from elbowscrew.settings import Settings
 
@@ -65,35 +66,40 @@ def measured_instantaneous_motion(
     that away from what is told. Warnings say what a filter for this alone left out beside the noise, and why no frame
     has an axis where none has.
     """
-    D, smoothing = measured.displacement, measured.smoothing
+    proximal, distal, smoothing = _as_recorded(measured)
+    D, known = measured.displacement, measured.joint.measured
     warnings: tuple[QualityWarning, ...] = ()
     other = other_rate(smoothing.elapsed, smoothing.rate_hz)
     if other is not None:
         smoothing = smoothing._replace(cutoff_hz=None)
         D = np.full_like(D, np.nan)
-    elif smoothing.cutoff_hz is None:
-        smoothing = twist_smoothing(measured, settings)
-        D = smoothed_displacement(measured, smoothing)
-        warnings = _left_out(measured, D, smoothing.cutoff_hz or np.inf)
+    elif distal is not measured.distal or smoothing.cutoff_hz is None:
+        raw = _since_reference(proximal, distal, measured)
+        known = np.isfinite(raw[:, 0])
+        chosen = smoothing._replace(cutoff_hz=smoothing.cutoff_hz or twist_cutoff(measured, settings))
+        D = _since_reference(*chosen.apply(proximal, distal), measured)
+        if smoothing.cutoff_hz is None:
+            warnings = _left_out(raw[known, :4], D[known, :4], chosen.cutoff_hz or np.inf)
+        smoothing = chosen
+    twist = twists(
+        expressed(D, measured.joint, measured.express_in), known, smoothing.elapsed, smoothing.rate_hz, smoothing.margin
+    )
+    if smoothing.elapsed is not measured.elapsed:
+        twist = linear_at(twist, smoothing.elapsed, measured.elapsed, smoothing.rate_hz)
     motion = instantaneous_motion(
-        expressed(D, measured.joint, measured.express_in),
-        measured.joint.measured,
+        twist,
         measured.screw.frame,
         measured.screw.time_s,
-        measured.elapsed,
-        smoothing.rate_hz,
         settings.min_rate_rad_s,
         measured.sense.direction,
-        margin=smoothing.margin,
         lowpass_hz=smoothing.cutoff_hz,
     )
     return motion, warnings + _without_axes(motion, settings.min_rate_rad_s, smoothing.rate_hz, other)
 
 
-def _left_out(measured: Measurement, filtered: Float, cutoff_hz: float) -> tuple[QualityWarning, ...]:
-    """Warn where the filter took more out of the rotation than its noise."""
-    raw = measured.displacement[measured.joint.measured, :4]
-    off = quaternion.multiply(quaternion.conjugate(filtered[measured.joint.measured, :4]), raw)
+def _left_out(raw: Float, filtered: Float, cutoff_hz: float) -> tuple[QualityWarning, ...]:
+    """Warn where the filter took more out of the rotations (N, 4) than their noise."""
+    off = quaternion.multiply(quaternion.conjugate(filtered), raw)
     square = 4.0 * np.sum(off[:, 1:] ** 2, axis=1)  # a small rotation
     square = square[np.isfinite(square)]
     if not square.size:
@@ -131,20 +137,44 @@ def _without_axes(
     return (QualityWarning(code="no-instantaneous-axis", message=f"no frame has an instantaneous axis: {reason}"),)
 
 
-def twist_smoothing(measured: Measurement, settings: Settings) -> Smoothing:
-    """Filter that a twist needs: at the cut-off of residual analysis, without a ceiling, so that speeds are kept."""
-    smoothing = measured.smoothing
+def _as_recorded(measured: Measurement) -> tuple[RigidBody | None, RigidBody, Smoothing]:
+    """Give the bodies on the clock they were recorded on, where a filter can work there, and the filter.
+
+    What was put on another clock has nothing more to say between the frames, less noise there, and less of what is
+    fast: neither a cut-off nor a speed may be taken from that. Filtered already are only those of the same clock.
+    """
+    was = measured.unfiltered
+    known = was.distal.tracked if was.proximal is None else was.distal.tracked & was.proximal.tracked
+    if (
+        was.elapsed is measured.elapsed
+        or other_rate(was.elapsed, was.rate_hz) is not None
+        or not inside(known, was.elapsed, was.rate_hz, 1).any()
+    ):
+        return measured.proximal, measured.distal, measured.smoothing
+    smoothing = measured.smoothing._replace(elapsed=was.elapsed, rate_hz=was.rate_hz, broken_rows=was.broken_rows)
+    return was.proximal, was.distal, smoothing
+
+
+def twist_cutoff(measured: Measurement, settings: Settings) -> float:
+    """Cut-off (Hz) that a twist needs: that of residual analysis, without a ceiling, so that speeds are kept."""
+    proximal, distal, smoothing = _as_recorded(measured)
     try:
-        found = smoothing.automatic(measured.proximal, measured.distal, settings).cutoff_hz or _TWIST_HZ
+        found = smoothing.automatic(proximal, distal, settings).cutoff_hz or _TWIST_HZ
     except SettingError:  # too few frames to tell motion from noise
         found = _TWIST_HZ
     low, high = (share * smoothing.rate_hz for share in _POSSIBLE_SHARES)
-    return smoothing._replace(cutoff_hz=float(np.clip(found, low, high)))
+    return float(np.clip(found, low, high))
 
 
-def smoothed_displacement(measured: Measurement, smoothing: Smoothing) -> Float:
-    """Displacements (N, 8) since the reference, of the bodies as a filter leaves them."""
-    proximal, distal = smoothing.apply(measured.proximal, measured.distal)
+def smoothed_displacement(measured: Measurement, cutoff_hz: float) -> Float:
+    """Displacements (N, 8) since the reference, of the bodies as a filter leaves them on the clock of the analysis."""
+    smoothing = measured.smoothing
+    low, high = (share * smoothing.rate_hz for share in _POSSIBLE_SHARES)
+    smoothing = smoothing._replace(cutoff_hz=float(np.clip(cutoff_hz, low, high)))
+    return _since_reference(*smoothing.apply(measured.proximal, measured.distal), measured)
+
+
+def _since_reference(proximal: RigidBody | None, distal: RigidBody, measured: Measurement) -> Float:
     proximal_pose = IDENTITY if proximal is None else proximal.dual_quat_lab_body
     return multiply(conjugate(measured.joint.reference), multiply(conjugate(proximal_pose), distal.dual_quat_lab_body))
 

@@ -12,7 +12,7 @@ from elbowscrew.choices import BLEND_NAMES, CLOSED_LAWS, KEYFRAME_SOURCES, KNOT_
 from elbowscrew.errors import SettingError, UsageError
 from elbowscrew.geometry.arrays import Bool, Float
 from elbowscrew.model import ModelPhases
-from elbowscrew.motion.axes.measured import smoothed_displacement, twist_smoothing
+from elbowscrew.motion.axes.measured import smoothed_displacement, twist_cutoff
 from elbowscrew.motion.screws.measurement import Measurement
 from elbowscrew.settings import Settings
 
@@ -113,14 +113,13 @@ def _lowpass(
     recorded: SourcePoses, measured: Measurement, _plan: ComparisonPlan, settings: Settings
 ) -> list[SourcePoses]:
     """Filter the bodies; the displacements keep the signs of the unfiltered ones."""
-    smoothing = twist_smoothing(measured, settings)
-    if isinstance(settings.lowpass_hz, float):
-        smoothing = smoothing._replace(cutoff_hz=settings.lowpass_hz)
-    pose = smoothed_displacement(measured, smoothing)
+    given = settings.lowpass_hz
+    cutoff_hz = given if isinstance(given, float) else twist_cutoff(measured, settings)
+    pose = smoothed_displacement(measured, cutoff_hz)
     flipped = np.sum(pose[:, :4] * measured.displacement[:, :4], axis=1) < 0.0
     pose = np.where(flipped[:, None], -pose, pose)
     pose = np.where(np.isfinite(pose), pose, measured.displacement)
-    name = f"lowpass {float(smoothing.cutoff_hz or np.inf):.3g} Hz"
+    name = f"lowpass {cutoff_hz:.3g} Hz"
     return [SourcePoses(name, pose, recorded.usable, recorded.phases)]
 
 

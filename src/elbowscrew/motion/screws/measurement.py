@@ -45,12 +45,15 @@ class Unfiltered(NamedTuple):
     elapsed : ndarray, shape (M,)
         Their own clock, seconds.
     rate_hz : float
+    broken_rows : ndarray of int
+        Rows that a body reaches by a leap.
     """
 
     proximal: RigidBody | None
     distal: RigidBody
     elapsed: Float
     rate_hz: float
+    broken_rows: NDArray[np.intp]
 
 
 class Measurement(NamedTuple):
@@ -127,7 +130,7 @@ def measure(recording: Recording, settings: Settings) -> Measurement:
     warnings += doubts
     elapsed = tracked.elapsed
     noise = JointNoise.of(proximal, distal, recording.rate_hz, settings)
-    unfiltered = Unfiltered(proximal, distal, elapsed, recording.rate_hz)
+    unfiltered = Unfiltered(proximal, distal, elapsed, recording.rate_hz, broken_rows)
     own_hz, wanted_hz, none_broken = recording.rate_hz, settings.resample_hz, np.empty(0, dtype=np.intp)
     if wanted_hz is not None and settings.lowpass_hz is not None and other_rate(elapsed, own_hz) is not None:
         # A filter needs an even clock: here as fast as the recording ever is, so that nothing folds before the filter.

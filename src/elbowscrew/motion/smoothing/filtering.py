@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowscrew.errors import SettingError
-from elbowscrew.geometry.arrays import Float, Index
+from elbowscrew.geometry.arrays import Bool, Float, Index
 from elbowscrew.geometry.dual_quaternion import conjugate, continuous_signs, multiply, normalize
 from elbowscrew.motion.difference import points_from_radius, rms_displacement
 
@@ -34,6 +34,10 @@ _FEWEST_FOR_NOISE: Final = 20
 # The density of white noise is the same at all frequencies; where it falls below this share it is none.
 _WHITE: Final = 0.3
 _NO_NOISE_M: Final = 1e-9
+
+# Below the uppermost frequencies noise is what has a density as flat as this over an octave; not looked for below 4 Hz.
+_FLAT: Final = 0.6
+_LOWEST_NOISE_HZ: Final = 4.0
 _BLOCK: Final = 65_536
 
 
@@ -138,7 +142,7 @@ def automatic_cutoff(
     Returns
     -------
     float
-        Hz, from 1 (a body at rest) to 0.4 of the rate (poses whose residual still falls there as noise does not, or
+        Hz, from 1 (a body at rest) to 0.4 of the rate (poses whose residual falls nowhere as that of noise does, or
         is below a nanometer).
 
     Raises
@@ -176,9 +180,8 @@ def automatic_cutoff(
         square[k] = np.mean(np.concatenate(errors) ** 2)
     gain, gain_square = np.transpose([_white_gains(rate_hz, cutoff_hz) for cutoff_hz in grid])
     hidden = 2.0 * gain - gain_square
-    noise = grid >= _NOISE_SHARE * rate_hz
-    density = square[noise] / (1.0 - hidden[noise])
-    if density[-1] < max(_WHITE * density[0], _NO_NOISE_M**2):
+    noise = _noise_band(grid, square, hidden, _NOISE_SHARE * rate_hz)
+    if noise is None:
         return float(highest_hz)
     whole = np.polyfit(hidden[noise], square[noise], 1)[1]
     above = int(np.argmax(square <= whole))
@@ -186,6 +189,30 @@ def automatic_cutoff(
         return _LOWEST_HZ
     between = np.log(square[[above, above - 1]])
     return float(np.exp(np.interp(np.log(whole), between, np.log(grid[[above, above - 1]]))))
+
+
+def _noise_band(grid: Float, square: Float, hidden: Float, lowest_hz: float) -> Bool | None:
+    """Cut-offs of the grid between which the residual is that of white noise; None where there are none.
+
+    They are the uppermost. Where frames were repeated or put in between, by whatever exported the file or to fill
+    gaps, the noise ends below these: then it is looked for an octave at a time, each half an octave lower, and taken
+    where it is densest.
+    """
+    noise = grid >= lowest_hz
+    density = square[noise] / (1.0 - hidden[noise])
+    if density[-1] >= max(_WHITE * density[0], _NO_NOISE_M**2):
+        return noise
+    found, densest = None, _NO_NOISE_M**2
+    while lowest_hz > _LOWEST_NOISE_HZ:
+        lowest_hz /= np.sqrt(2.0)
+        first, middle, last = np.searchsorted(grid, lowest_hz * np.array([1.0, np.sqrt(2.0), 2.0])) - [0, 0, 1]
+        lower, upper = (
+            (square[one] - square[other]) / (hidden[other] - hidden[one])
+            for one, other in ((first, middle), (middle, last))
+        )
+        if densest < min(lower, upper) and _FLAT * max(lower, upper) < min(lower, upper):
+            found, densest = (grid >= grid[first]) & (grid <= grid[last]), max(lower, upper)
+    return found
 
 
 def _spread(runs: list[slice], fewest: int) -> list[slice]:

@@ -82,6 +82,20 @@ def resample_recording(
     )
 
 
+def linear_at(values: Float, elapsed: Float, wanted: Float, rate_hz: float) -> Float:
+    """Values (N, ...) of one clock at the times of another; NaN beside a NaN and where frames are missing between.
+
+    Parameters
+    ----------
+    values : ndarray, shape (N, ...)
+    elapsed, wanted : ndarray, shape (N,) and (K,)
+        Seconds.
+    rate_hz : float
+        Frames per second of the values.
+    """
+    return _linear(values, _neighbors(elapsed, wanted, rate_hz, None))
+
+
 def _frame_count(recording: Recording, elapsed: Float, rate_hz: float) -> int:
     duration_s = float(elapsed[-1]) if elapsed.size else 0.0
     possible = 0.0 < rate_hz < np.inf
