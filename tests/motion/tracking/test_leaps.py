@@ -366,3 +366,28 @@ def test_a_motion_without_rotation_cannot_be_analyzed() -> None:
     still = RigidBody.from_quaternions("b", np.tile([1.0, 0, 0, 0], (30, 1)), shift)
     with pytest.raises(AnalysisError, match="no rotation"):
         analyze(Recording.from_bodies([still], rate_hz=100))
+
+
+@pytest.mark.parametrize("lost", [28, 33, 36, 40, 60, 72])
+@pytest.mark.parametrize("after", [60, 300])
+def test_a_body_that_goes_on_turning_over_a_gap_has_not_leapt(lost: int, after: int) -> None:
+    # 500 deg/s: half a turn in 36 frames.
+    pose = dual_quat_from_screw(np.radians(5.0 * np.arange(400.0)), 0.0, [0.0, 0.6, 0.8], [0.1, 0.0, 0.0])
+    pose[after : after + lost] = np.nan
+    found, codes = checked(pose)
+    assert found.tracked.sum() == 400 - lost
+    assert codes == []
+
+
+def test_a_body_that_comes_back_turned_round_after_a_gap_at_rest_has_leapt() -> None:
+    pose = flipped(series(200), slice(120, 200))
+    pose[100:120] = np.nan
+    assert checked(pose)[1] == ["leap"]
+
+
+def test_a_leap_is_told_by_its_size_and_by_the_limits_that_it_breaks() -> None:
+    one = body(flipped(series(200), slice(0, 30)))
+    taken = Recording.from_bodies([one], rate_hz=100.0)
+    (warning,) = check_tracking(one, taken, elapsed_time(taken), Settings()).warnings
+    assert "leaps out of its motion by up to 180 deg" in warning.message
+    assert "120 deg and 0.5 m within 0.1 s" in warning.message

@@ -22,13 +22,16 @@ _SENTINEL_DISTANCE_M: Final = 0.02
 _LONGEST_LEAD: Final = 2.0
 
 # What a body may do between two poses: its speed limits, with a floor for noise and a cap that a flip or a swap breaks
-# however long the time between them is, up to where it may be anywhere.
+# however long the time between them is, up to where it may be anywhere. Over a gap it may turn as far as it would at
+# the speed of the frames beside it, and a share more: a crank goes on turning.
 _TURN_FLOOR: Final = np.radians(5.0)
 _DISTANCE_FLOOR_M: Final = 0.02
 _SHORT_STEP_S: Final = 0.1
 _LARGEST_TURN: Final = (np.radians(120.0), np.radians(150.0))
 _LARGEST_DISTANCE_M: Final = (0.5, 1.0)
 _LONGEST_STEP_S: Final = 2.0
+_ROOM_OVER_GAP: Final = 1.25
+_STEPS_BESIDE: Final = 5
 
 # A single pose this far out, whose neighbors are near each other, is a spike below any limit of speed.
 _SPIKE_TURN: Final = np.radians(15.0)
@@ -183,11 +186,12 @@ def _without_leaps(
     lost = np.sort(np.concatenate([spikes, outside]))
     fast = steps.steady_turn(steady, leaps)
     arrivals = steady[leaps + 1]
-    limits = f"limits {settings.max_turn_deg_s:g} deg/s and {settings.max_speed_m_s:g} m/s: --max-turn, --max-speed"
+    limits = steps.limits(settings)
     if lost.size:
-        before = known[np.maximum(np.searchsorted(known, lost) - 1, 0)]
+        beyond = np.sort(np.concatenate([arrivals, spikes]))  # where an excursion begins or ends
+        before = known[np.searchsorted(known, beyond) - 1]
         message = (
-            f"body {body.name!r} leaps out of its motion{steps.told(before, lost)}: {_frames(lost, recording)} "
+            f"body {body.name!r} leaps out of its motion{steps.told(before, beyond)}: {_frames(lost, recording)} "
             f"taken as lost ({limits}){_if_it_is_real(fast)}"
         )
         warnings.append(frames_warning("leap", message, lost, recording))
@@ -207,6 +211,7 @@ class _Steps:
 
     def __init__(self, pose: Float, elapsed: Float, period_s: float, settings: Settings) -> None:
         self._pose, self._elapsed, self._period_s = pose, elapsed, period_s
+        self._known = np.flatnonzero(np.isfinite(pose).all(axis=1))
         self._turn_limit, self._speed_limit = np.radians(settings.max_turn_deg_s), settings.max_speed_m_s
 
     def possible(self, start: Index, end: Index) -> Bool:
@@ -217,13 +222,35 @@ class _Steps:
         time_s = np.maximum(np.abs(self._elapsed[end] - self._elapsed[start]), self._period_s)
         turn, distance = self._between(start, end)
         short = time_s <= _SHORT_STEP_S
-        largest_turn = np.where(short, *_LARGEST_TURN)
+        largest_turn: Float = np.asarray(_LARGEST_TURN)[np.where(short, 0, 1)]
+        over_gap = np.flatnonzero(~short & (turn > largest_turn))
+        largest_turn[over_gap] = np.maximum(
+            largest_turn[over_gap], _ROOM_OVER_GAP * self._turn_beside(start[over_gap], end[over_gap], time_s[over_gap])
+        )
         largest_distance = np.where(short, *_LARGEST_DISTANCE_M)
         near: Bool = (turn <= np.minimum(self._turn_limit * time_s + _TURN_FLOOR, largest_turn)) & (
             distance <= np.minimum(self._speed_limit * time_s + _DISTANCE_FLOOR_M, largest_distance)
         )
         possible: Bool = near | (time_s > _LONGEST_STEP_S)
         return possible
+
+    def limits(self, settings: Settings) -> str:
+        """Say what a step may be at most."""
+        turns, distances = np.degrees(_LARGEST_TURN), _LARGEST_DISTANCE_M
+        return (
+            f"limits {settings.max_turn_deg_s:g} deg/s (--max-turn) and {settings.max_speed_m_s:g} m/s (--max-speed), "
+            f"and {turns[0]:.0f} deg and {distances[0]:g} m within {_SHORT_STEP_S:g} s, {turns[1]:.0f} deg, or what "
+            f"the speed beside a gap makes of it, and {distances[1]:g} m within {_LONGEST_STEP_S:g} s"
+        )
+
+    def _turn_beside(self, start: Index, end: Index, time_s: Float) -> Float:
+        """Turn (rad) over a gap at the mean speed of the frames before and after it."""
+        speed = np.zeros(start.size)
+        for row, away in ((start, -_STEPS_BESIDE), (end, _STEPS_BESIDE)):
+            other = self._known[np.clip(np.searchsorted(self._known, row) + away, 0, self._known.size - 1)]
+            apart = np.maximum(np.abs(self._elapsed[row] - self._elapsed[other]), self._period_s)
+            speed += 0.5 * angle_between(self._pose[row], self._pose[other]) / apart
+        return speed * time_s
 
     def spikes(self, known: Index) -> Index:
         """Rows of single poses far out of two neighbors that are near each other."""
