@@ -177,3 +177,45 @@ def test_a_rest_does_not_rule_the_dispersion() -> None:
     assert whole["axis_dispersion_deg"] == pytest.approx(alone["axis_dispersion_deg"], abs=0.1)
     of_frames = np.array([one["axis_dispersion_all_frames_deg"] for one in (whole, alone)], dtype=np.float64)
     assert abs(np.diff(of_frames)) > 0.5
+
+
+def swing(top_deg: float) -> Recording:
+    """A hinge out to an angle and back, minimum jerk, once."""
+    share = 1.0 - np.abs(np.linspace(-1.0, 1.0, 301))
+    angle = np.radians(top_deg * share**3 * (10.0 - 15.0 * share + 6.0 * share**2))
+    return recording_of(rotation(angle, AXIS))
+
+
+@pytest.mark.parametrize(
+    ("top_deg", "method", "told"),
+    [
+        (170.0, "dlb", False),
+        (200.0, "dlb", True),
+        (355.0, "sdlb", True),
+        (355.0, "sclerp", False),
+        (355.0, "joint", False),
+    ],
+)
+def test_a_blend_over_more_than_half_a_turn_is_told_with_what_helps(top_deg: float, method: str, told: bool) -> None:
+    found = analyze(swing(top_deg), Settings.model_validate({"method": method}))
+    messages = [one.message for one in found.warnings if one.code == "keyframes-too-far-apart"]
+    assert bool(messages) == told
+    if told:
+        assert f"turns by {top_deg:.0f} deg" in messages[0]
+        assert "--method sclerp or joint; or keyframes less than half a turn apart (--keyframes" in messages[0]
+    else:
+        assert np.degrees(np.nanmax(found.interpolated.angle_error)) < 15.0
+
+
+@pytest.mark.parametrize("method", ["dlb", "sclerp", "joint"])
+def test_whole_turns_between_keyframes_are_told_of_by_every_method(method: str) -> None:
+    crank = recording_of(rotation(np.radians(np.linspace(0.0, 1500.0, 301)), AXIS))
+    (message,) = (
+        one.message
+        for one in analyze(crank, Settings.model_validate({"method": method})).warnings
+        if one.code == "keyframes-too-far-apart"
+    )
+    assert "turns by 1500 deg, more than a whole turn" in message
+    close = analyze(crank, Settings(keyframes=tuple(range(0, 301, 20)), law="linear"))
+    assert "keyframes-too-far-apart" not in {one.code for one in close.warnings}
+    assert np.degrees(np.nanmax(close.interpolated.angle_error)) < 5.0

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import replace
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,6 +32,8 @@ from elbowscrew.motion.interpolation.segment_errors import JointSeries
 from elbowscrew.motion.movements.boundaries import Movements
 from elbowscrew.motion.screws.measurement import Measurement
 from elbowscrew.settings import Settings
+
+_LINEAR_BLENDS: Final = ("dlb", "sdlb")
 
 
 class JointModel(NamedTuple):
@@ -106,7 +109,7 @@ def build_model(
         selection=selection,
         poses=poses,
         points=points,
-        warnings=_warnings(keyframes, inversions, measured, poses),
+        warnings=_warnings(keyframes, inversions, measured, poses) + _turns_apart(keyframes, measured, method),
     )
 
 
@@ -194,6 +197,38 @@ def _inversion_rows(phases: ModelPhases, angle: Float, settings: Settings) -> ND
         return inner
     step = np.diff(angle[phases.bound_rows])
     return inner[step[1:] * step[:-1] < 0.0]
+
+
+def _turns_apart(keyframes: Keyframes, measured: Measurement, method: str) -> tuple[QualityWarning, ...]:
+    """Warn of keyframes so far apart that the way between them is not that of the motion.
+
+    Poses do not know whole turns; and a linear blend of two poses more than half a turn apart, along the motion, leaps
+    most of it in the middle.
+    """
+    rows, blended = keyframes.row, method in _LINEAR_BLENDS
+    turns = np.array([_range(measured.course[a : b + 1]) for a, b in itertools.pairwise(rows.tolist())])
+    far = np.flatnonzero(turns > (np.pi if blended else 2.0 * np.pi))
+    if not far.size:
+        return ()
+    widest = far[np.argmax(turns[far])]
+    first, last = keyframes.frame[[widest, widest + 1]].tolist()
+    several = f" ({far.size} pairs of keyframes are so far apart)" if far.size > 1 else ""
+    closer = "keyframes less than half a turn apart (--keyframes, or --tolerance MM, which chooses them)"
+    if turns[widest] > 2.0 * np.pi:
+        why, help_ = "more than a whole turn, which two poses do not tell", closer
+    else:
+        why = f"more than half a turn, most of which {method} leaps in the middle"
+        help_ = f"--method sclerp or joint; or {closer}"
+    message = (
+        f"from keyframe {first} to {last} the joint turns by {np.degrees(turns[widest]):.0f} deg, {why}{several}: the "
+        f"model is wrong between them, and its error says nothing about the joint; what helps is {help_}"
+    )
+    return (QualityWarning(code="keyframes-too-far-apart", message=message),)
+
+
+def _range(values: Float) -> float:
+    known = values[np.isfinite(values)]
+    return float(np.ptp(known)) if known.size else 0.0
 
 
 def _warnings(
