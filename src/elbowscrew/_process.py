@@ -5,7 +5,11 @@ from __future__ import annotations
 import gc
 import logging
 import os
+from contextlib import chdir
+from pathlib import Path
 from typing import Final
+
+_HERE: Final = Path(__file__).parent
 
 # A figure makes a hundred thousand objects, and each full collection looks at all of the modules' objects again.
 _OBJECTS_BETWEEN_COLLECTIONS: Final = 200_000
@@ -14,7 +18,11 @@ _OBJECTS_BETWEEN_COLLECTIONS: Final = 200_000
 def set_up_process() -> None:
     """Let figures go to files without windows or words of their own, and collect garbage less often."""
     os.environ["MPLBACKEND"] = "agg"  # whatever the notebook or the shell prefers
+    os.environ["MATPLOTLIBRC"] = str(_HERE / "matplotlibrc")
     logging.getLogger("matplotlib").setLevel(logging.ERROR)  # its words on fonts and caches are not the result
+    if os.path.lexists("matplotlibrc"):
+        with chdir(_HERE):  # a file of this name in the current folder comes before all others, be it a pipe
+            import matplotlib  # noqa: F401
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")  # a search through all that is installed, for none
     gc.set_threshold(_OBJECTS_BETWEEN_COLLECTIONS)
 

@@ -64,11 +64,13 @@ _RC: Final[dict[Any, Any]] = {
     "svg.fonttype": "path",
     "svg.hashsalt": "elbowscrew",
 }
+# Without the backend: to set it is to load it.
+_DEFAULTS: Final[dict[Any, Any]] = {key: value for key, value in mpl.rcParamsDefault.items() if key != "backend"}
 
 
 def publication_style() -> AbstractContextManager[None]:
-    """Matplotlib settings of the figures, for a ``with`` block."""
-    return mpl.rc_context(dict(_RC))
+    """Matplotlib settings of the figures, all of them and none of the user's, for a ``with`` block."""
+    return mpl.rc_context({**_DEFAULTS, **_RC})
 
 
 def new_figure(width_mm: float, height_mm: float) -> Figure:
