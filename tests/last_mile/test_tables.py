@@ -237,6 +237,7 @@ def of_repetitions(told: Told) -> set[str]:
         rows_of.append(
             [
                 np.ptp(theta[rows][np.isfinite(theta[rows])]),
+                np.nanmax(theta[rows]),
                 screw["slide_mm"].iloc[rows].max() - screw["slide_mm"].iloc[rows].min(),
                 highest(speed[max(start, given[0]) : top + 1]),
                 highest(-speed[top : min(end, given[-1]) + 1]),
@@ -245,10 +246,14 @@ def of_repetitions(told: Told) -> set[str]:
                 *(np.cross(real, dual) / size**2),
             ]
         )
-        # The largest angle is theta at the inversion, between its frame and a neighbor.
-        beside = theta[max(top - 1, 0) : top + 2]
-        assert np.nanmin(beside) - 1e-9 <= one["theta_max_deg"] <= np.nanmax(beside) + 1e-9
-    names = ["theta_range_deg", "slide_range_mm", "outward_speed_deg_s", "back_speed_deg_s", "theta_start_deg"]
+    names = [
+        "theta_range_deg",
+        "theta_max_deg",
+        "slide_range_mm",
+        "outward_speed_deg_s",
+        "back_speed_deg_s",
+        "theta_start_deg",
+    ]
     if len(table):
         seen |= near(table, [*names, *AXIS, *POINT], np.array(rows_of), 1e-6)
     else:
@@ -256,7 +261,7 @@ def of_repetitions(told: Told) -> set[str]:
     axes = vectors(table, "axis")
     middle = axes.sum(axis=0)
     seen |= near(table, ["axis_deviation_deg"], angle_between(axes, np.broadcast_to(middle, axes.shape)), 1e-6)
-    return seen | {"start_frame", "inversion_frame", "end_frame", "theta_max_deg"}
+    return seen | {"start_frame", "inversion_frame", "end_frame"}
 
 
 def of_cycles(told: Told) -> set[str]:

@@ -47,7 +47,8 @@ class Repetitions(TableRecord):
     incomplete : ndarray of bool, shape (R,)
         Whether the recording begins or ends on the way.
     start_angle, top_angle, angle_range : ndarray, shape (R,)
-        Radians; the range is that of the cycle.
+        Theta at the start, the largest theta of the cycle's frames, and their range, radians; NaN where they may lie
+        among lost frames.
     slide_range : ndarray, shape (R,)
         Largest less smallest slide where there is an axis, meters.
     outward_speed, back_speed : ndarray, shape (R,)

@@ -27,7 +27,13 @@ from elbowscrew.motion.joint.measured import (
 )
 from elbowscrew.motion.movements.measured import cut_warnings, measured_cuts
 from elbowscrew.motion.movements.phases import movement_phases
-from elbowscrew.motion.movements.repetitions import cycle_curves_of, repeatability_of, repetitions_of, speed_warnings
+from elbowscrew.motion.movements.repetitions import (
+    angle_warnings,
+    cycle_curves_of,
+    repeatability_of,
+    repetitions_of,
+    speed_warnings,
+)
 from elbowscrew.motion.screws.measurement import Measurement, measure
 from elbowscrew.settings import Settings
 
@@ -81,7 +87,7 @@ def analyze(recording: Recording, settings: Settings | None = None, *, landmarks
     joint_axis = axis_of_type(joint_axis, joint_type)
     instantaneous, axes_doubts = measured_instantaneous_motion(measured, wanted)
     velocity, near = instantaneous.angular_velocity, pose_from_dual_quat(measured.change)[1]
-    cuts = measured_cuts(measured, wanted)
+    cuts = measured_cuts(measured, wanted, joint_type)
     model = build_model(measured, cuts.movements, wanted, joint_type)
     warnings = (
         measured.warnings
@@ -96,6 +102,7 @@ def analyze(recording: Recording, settings: Settings | None = None, *, landmarks
     )
     if sense.signed and np.isfinite(velocity).any():
         warnings += speed_warnings(repetitions)
+    warnings += angle_warnings(repetitions)
     curves = cycle_curves_of(cuts.cycles, screw.angle, elapsed)
     cycles = cuts.cycles.start_s
     if (

@@ -22,6 +22,8 @@ from elbowscrew.model import (
     Recording,
     Selection,
 )
+from elbowscrew.model.joint_type import JointType
+from elbowscrew.motion.axes.measured import measured_mean_axis
 from elbowscrew.motion.interpolation.joint_model import Interpolation, ModelJoint, interpolation_called
 from elbowscrew.motion.interpolation.keyframe_selection import select_keyframes
 from elbowscrew.motion.interpolation.keyframe_sources import ComparisonPlan, SourcePoses, keyframe_sources_of
@@ -31,6 +33,8 @@ from elbowscrew.motion.interpolation.model_building import body_points, phases_o
 from elbowscrew.motion.interpolation.model_errors import model_errors
 from elbowscrew.motion.interpolation.modeling import FROM_NEIGHBORS, ModeledPoses, model_motion
 from elbowscrew.motion.interpolation.segment_errors import BASES, JointSeries
+from elbowscrew.motion.joint.measured import measured_joint_axis, measured_joint_type
+from elbowscrew.motion.movements.course import course_of_frames
 from elbowscrew.motion.movements.measured import measured_cuts
 from elbowscrew.motion.screws.measurement import Measurement, measure
 from elbowscrew.settings import Settings
@@ -77,9 +81,11 @@ def compare(recording: Recording, settings: Settings | None = None, plan: Compar
     wanted, plan = settings or Settings(), plan or ComparisonPlan()
     raw = wanted.model_copy(update={"lowpass_hz": None, "resample_hz": None, "keyframes": None, "tolerance_mm": None})
     measured = measure(recording, raw)
-    phases = phases_of(measured, measured_cuts(measured, raw).movements, raw)
+    joint_type = measured_joint_type(measured, measured_joint_axis(measured, measured_mean_axis(measured), raw), raw)
+    course = course_of_frames(measured, joint_type)
+    phases = phases_of(measured, course, measured_cuts(measured, raw, joint_type).movements, raw)
     points = body_points(measured.distal, raw)
-    joint = _joint(measured, raw) if "joint" in plan.methods else None
+    joint = _joint(measured, joint_type) if "joint" in plan.methods else None
     rows: list[dict[str, Any]] = []
     laws: dict[str, tuple[PhaseLaw, ...]] = {}
     for source in keyframe_sources_of(measured, phases, plan, wanted):
@@ -109,10 +115,10 @@ def compare(recording: Recording, settings: Settings | None = None, plan: Compar
     )
 
 
-def _joint(measured: Measurement, settings: Settings) -> ModelJoint | str:
+def _joint(measured: Measurement, joint_type: JointType | None) -> ModelJoint | str:
     """Give the joint whose angles are interpolated, or why there is none."""
     try:
-        return ModelJoint.of(measured, settings)
+        return ModelJoint.of(measured, joint_type)
     except SettingError as error:
         return str(error)
 

@@ -11,14 +11,11 @@ from elbowscrew.errors import SettingError
 from elbowscrew.geometry.arrays import Float, Index
 from elbowscrew.model.joint_coordinates import MOVING_JOINTS, JointCoordinates
 from elbowscrew.model.joint_type import JointType
-from elbowscrew.motion.axes.measured import measured_mean_axis
 from elbowscrew.motion.interpolation.modeling import METHODS, Method, joint_method
 from elbowscrew.motion.joint.coordinates import joint_angles_of
 from elbowscrew.motion.joint.joint_axis import assumed_noise
-from elbowscrew.motion.joint.measured import measured_joint_axis, measured_joint_type
 from elbowscrew.motion.screws.measurement import Measurement
 from elbowscrew.motion.screws.uncertainty import joint_covariance
-from elbowscrew.settings import Settings
 
 
 class Interpolation(NamedTuple):
@@ -61,17 +58,14 @@ class ModelJoint(NamedTuple):
     measured: Measurement
 
     @classmethod
-    def of(cls, measured: Measurement, settings: Settings, found: JointType | None = None) -> ModelJoint:
-        """Take the joint that was found, or find it.
+    def of(cls, measured: Measurement, found: JointType | None) -> ModelJoint:
+        """Take the joint that was found.
 
         Raises
         ------
         SettingError
             If it has no angles of its own.
         """
-        if found is None:
-            axis = measured_joint_axis(measured, measured_mean_axis(measured), settings)
-            found = measured_joint_type(measured, axis, settings)
         coordinates = None if found is None or not found.has_angles else found.coordinates
         if found is None or coordinates is None:
             raise _without_angles("undetermined" if found is None else found.type)

@@ -30,6 +30,7 @@ from elbowscrew.motion.interpolation.model_phases import model_phases, one_phase
 from elbowscrew.motion.interpolation.modeling import ModeledPoses, model_motion
 from elbowscrew.motion.interpolation.segment_errors import JointSeries
 from elbowscrew.motion.movements.boundaries import Movements
+from elbowscrew.motion.movements.course import course_of_frames
 from elbowscrew.motion.screws.measurement import Measurement
 from elbowscrew.settings import Settings
 
@@ -69,18 +70,18 @@ def build_model(
         If there is a pose in one frame only.
     """
     frame, elapsed, pose = measured.screw.frame, measured.elapsed, measured.displacement
+    course = course_of_frames(measured, joint_type)
     method = settings.model_method
-    joint = ModelJoint.of(measured, settings, joint_type) if method == "joint" else None
+    joint = ModelJoint.of(measured, joint_type) if method == "joint" else None
     coordinates, make, known = interpolation_called(method, pose, joint)
     points = body_points(measured.distal, settings)
     rows = None
     if settings.keyframes is not None:
-        angle = measured.course
-        rows, inversion_row = rows_of_frames(angle, frame, settings.keyframes, settings.inversion)
-        phases = phases_of_keyframes(rows, angle, inversion_row)
+        rows, inversion_row = rows_of_frames(course, frame, settings.keyframes, settings.inversion)
+        phases = phases_of_keyframes(rows, course, inversion_row)
     else:
-        phases = phases_of(measured, movements, settings)
-    inversions = _inversion_rows(phases, measured.course, settings)
+        phases = phases_of(measured, course, movements, settings)
+    inversions = _inversion_rows(phases, course, settings)
     if settings.tolerance_mm is not None and settings.model_law == "linear":
         phases = one_phase(_measured_rows(measured))  # time itself needs no turns
     laws = model_laws(measured, phases, points, settings.model_law, settings.law_peak)
@@ -113,10 +114,10 @@ def build_model(
     )
 
 
-def phases_of(measured: Measurement, movements: Movements, settings: Settings) -> ModelPhases:
-    """Phases of the model, as the settings say."""
+def phases_of(measured: Measurement, course: Float, movements: Movements, settings: Settings) -> ModelPhases:
+    """Phases of the model, as the settings say; the course is that of the frames (N,)."""
     return model_phases(
-        measured.course,
+        course,
         measured.screw.frame,
         measured.elapsed,
         movements,

@@ -56,8 +56,7 @@ def model_phases(
     if known.size < 2:
         msg = "only one frame of the recording has a pose: there is no motion to model"
         raise AnalysisError(msg)
-    begin, end = movements.stroke_begin_s, movements.stroke_end_s
-    middle = 0.5 * (end[:-1] + begin[1:])
+    begin, middle, end = movements.stroke_begin_s, movements.turn_s, movements.stroke_end_s
     given = None if inversion is None else _inversion_row(angle, frame, known, inversion)
     if choice == "whole" or not begin.size:
         turns = _known_rows(middle[movements.reverses], elapsed, known)

@@ -21,6 +21,7 @@ REASONS: Final[dict[str, str]] = {
     "fast": "the motion has faster parts than its rhythm, which the cuts do not follow",
     "gap": "it lies where there is no pose",
     "no-dominant-axis": "the rotation has no dominant axis",
+    "two-axes": "the joint seems to have two axes, and the cuts are on the rotation about the direction between",
     "unsigned": "theta is to have no sense (--signed no)",
 }
 """Why a boundary is uncertain: codes and words."""
@@ -84,6 +85,8 @@ class Movements:
         Whether a stroke is outward.
     reverses : ndarray of bool, shape (K - 1,)
         Whether the motion turns back between a stroke and the next, or only stops.
+    turn_s : ndarray, shape (K - 1,)
+        When it does: where cycles turn or meet, as they do; else in the middle between the strokes' feet.
     """
 
     onset_s: Float
@@ -98,6 +101,7 @@ class Movements:
     stroke_end_sd_s: Float
     outward: Bool
     reverses: Bool
+    turn_s: Float
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -150,7 +154,7 @@ def no_movements() -> Movements:
     return Movements(
         onset_s=none, offset_s=none, onset_sd_s=none, offset_sd_s=none, onset_reasons=(), offset_reasons=(),
         stroke_begin_s=none, stroke_end_s=none,
-        stroke_begin_sd_s=none, stroke_end_sd_s=none, outward=flags, reverses=flags,
+        stroke_begin_sd_s=none, stroke_end_sd_s=none, outward=flags, reverses=flags, turn_s=none,
     )  # fmt: skip
 
 

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowscrew.geometry.arrays import Float
-from elbowscrew.motion.movements.boundaries import Cuts, Movements, in_gap, long_gaps, no_cycles, no_movements
-from elbowscrew.motion.movements.cycles import cycles_of, flanks_of
+from elbowscrew.motion.movements.boundaries import Cuts, Cycles, Movements, in_gap, long_gaps, no_cycles, no_movements
+from elbowscrew.motion.movements.cycles import Flanks, cycles_of, flanks_of
 from elbowscrew.motion.movements.rests import Strokes, strokes_of
 from elbowscrew.motion.movements.swings import fast_content, noise_of, swings_of
 
@@ -66,9 +66,10 @@ def cut(
     gaps = long_gaps(elapsed, known)
     flanks = flanks_of(swings, strokes)
     fast = bool(flanks.tops.size) and fast_content(swings, flanks.median_rise)
+    cycles = cycles_of(swings, flanks, gaps, fast=fast)
     return Cuts(
-        cycles=cycles_of(swings, flanks, gaps, fast=fast),
-        movements=_movements(strokes, swings.rate_hz, gaps, fast=fast),
+        cycles=cycles,
+        movements=_movements(strokes, swings.rate_hz, _turns(strokes, flanks, cycles, swings.rate_hz), gaps, fast=fast),
         cutoff_hz=swings.cutoff_hz,
         noise=swings.noise,
         least_swing=swings.least,
@@ -84,7 +85,18 @@ def _even(twist: Float, elapsed: Float, rate_hz: float, known: NDArray[np.intp])
     return np.interp(np.arange(count) / rate_hz, time[known], twist[known])
 
 
-def _movements(strokes: Strokes, rate_hz: float, gaps: Float, *, fast: bool) -> Movements:
+def _turns(strokes: Strokes, flanks: Flanks, cycles: Cycles, rate_hz: float) -> Float:
+    """Times between strokes (K - 1,): those of the cycles' inversions and of the cuts between them, where these are."""
+    turns = 0.5 * (strokes.end[:-1] + strokes.begin[1:]) / rate_hz
+    joined = np.flatnonzero(np.diff(flanks.tops) == 2)
+    cuts = 0.5 * (cycles.end_s[joined] + cycles.start_s[joined + 1])
+    samples = flanks.reversals[np.concatenate([flanks.tops, flanks.tops[joined] + 1])]
+    at = np.searchsorted(strokes.bounds[1:-1], samples)
+    turns[at] = np.concatenate([cycles.inversion_s, cuts])
+    return turns
+
+
+def _movements(strokes: Strokes, rate_hz: float, turns: Float, gaps: Float, *, fast: bool) -> Movements:
     parts = strokes.movements()
     first, last = parts.T
     begin, end = strokes.begin / rate_hz, strokes.end / rate_hz
@@ -121,4 +133,5 @@ def _movements(strokes: Strokes, rate_hz: float, gaps: Float, *, fast: bool) -> 
         stroke_end_sd_s=strokes.end_sd / rate_hz,
         outward=strokes.outward,
         reverses=strokes.reverses,
+        turn_s=turns,
     )

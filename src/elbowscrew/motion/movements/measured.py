@@ -8,67 +8,50 @@ from typing import Final
 import numpy as np
 
 from elbowscrew.errors import SettingError
-from elbowscrew.geometry import quaternion
 from elbowscrew.geometry.arrays import Float
-from elbowscrew.geometry.dual_quaternion import conjugate, multiply
 from elbowscrew.model import QualityWarning
+from elbowscrew.model.joint_type import JointType
 from elbowscrew.motion.movements.boundaries import REASONS, Cuts, Cycles, Reasons, no_cycles
+from elbowscrew.motion.movements.course import measured_course, mixes_two_axes, two_axes_of
 from elbowscrew.motion.movements.cuts import cut
 from elbowscrew.motion.movements.swings import FEWEST_FOR_NOISE, swings_of
 from elbowscrew.motion.screws.measurement import Measurement, rotation_noise_of
-from elbowscrew.motion.screws.sense import sense_of
 from elbowscrew.settings import Settings
 
 # Times that differ by less are the same: they may have been written with six decimals.
 _SAME_S: Final = 1e-6
 
 
-def measured_cuts(measured: Measurement, settings: Settings) -> Cuts:
-    """Cut a measured motion on its unfiltered twist, or take the cycles that were given.
+def measured_cuts(measured: Measurement, settings: Settings, joint_type: JointType | None = None) -> Cuts:
+    """Cut a measured motion on its unfiltered course (`measured_course`), or take the cycles that were given.
 
-    The noise is the one that is stated (`Settings.marker_noise_mm`), else that of the twist's third differences, and of
-    recordings too short for these the one that is known otherwise.
+    The noise of a twist is the one that is stated (`Settings.marker_noise_mm`), else that of its third differences, and
+    of recordings too short for these the one that is known otherwise; the noise of an angle 1 is always its own.
 
     Raises
     ------
     SettingError
         If a given cycle does not lie in the recording.
     """
-    twist = measured_twist(measured, settings)
+    course = measured_course(measured, settings, joint_type)
+    first_angle = two_axes_of(joint_type) is not None
     elapsed, rate_hz = measured.unfiltered.elapsed, measured.unfiltered.rate_hz
     least = None if settings.cycle_swing_deg is None else float(np.radians(settings.cycle_swing_deg))
     # The residuals of the markers are no measure of white noise: most of them may be constant, as that of a cluster
     # which is not quite what it was calibrated as.
-    known = settings.marker_noise_mm is not None or np.isfinite(twist).sum() <= FEWEST_FOR_NOISE
-    noise = rotation_noise_of(measured.joint, measured.noise) if known else None
-    cuts = cut(twist, elapsed, rate_hz, noise, least_swing=least)
-    if not measured.sense.signed:
+    known = settings.marker_noise_mm is not None or np.isfinite(course).sum() <= FEWEST_FOR_NOISE
+    noise = rotation_noise_of(measured.joint, measured.noise) if known and not first_angle else None
+    cuts = cut(course, elapsed, rate_hz, noise, least_swing=least)
+    if mixes_two_axes(joint_type) and not first_angle:
+        cuts = _all_doubted(cuts, "two-axes")
+    elif not measured.sense.signed and not first_angle:
         cuts = _all_doubted(cuts, "unsigned" if settings.signed == "no" else "no-dominant-axis")
     if settings.no_cycles:
         return replace(cuts, cycles=no_cycles())
     if settings.cycles is not None:
         first = float(measured.recording.time_s[0])
-        return replace(cuts, cycles=_given(np.array(settings.cycles) - first, first, twist, elapsed))
+        return replace(cuts, cycles=_given(np.array(settings.cycles) - first, first, course, elapsed))
     return cuts
-
-
-def measured_twist(measured: Measurement, settings: Settings) -> Float:
-    """Rotation about the leading direction of the joint's rotations, radians, shape (M,); NaN where there is no pose.
-
-    It is the twist ``2 atan2(v.u, w)`` of the unfiltered poses since the reference, on their own clock, with u the
-    dominant or leading direction (`Sense.twist`), and positive as theta is.
-    """
-    bodies = measured.unfiltered
-    relative = bodies.distal.dual_quat_lab_body
-    if bodies.proximal is not None:
-        relative = multiply(conjugate(bodies.proximal.dual_quat_lab_body), relative)
-    known = np.flatnonzero(np.isfinite(relative).all(axis=1))
-    if not known.size:
-        return np.full(len(relative), np.nan)
-    wanted = measured.elapsed[measured.joint.reference_row]
-    reference = known[int(np.argmin(np.abs(bodies.elapsed[known] - wanted)))]
-    turned = quaternion.multiply(quaternion.conjugate(relative[reference, :4]), relative[:, :4])
-    return sense_of(turned, bodies.elapsed, int(reference), signed=settings.signed).twist
 
 
 def _all_doubted(cuts: Cuts, code: str) -> Cuts:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from elbowscrew.geometry._small_angle import divide, length
 from elbowscrew.geometry.arrays import Float
@@ -13,10 +14,12 @@ from elbowscrew.motion.axes.mean_axis import mean_line_of
 from elbowscrew.motion.difference import direction_between, piercing
 from elbowscrew.motion.movements.boundaries import Cycles
 from elbowscrew.motion.movements.phases import nearest_rows
+from elbowscrew.motion.movements.unseen import Gaps, gaps_of
 
 _POINTS: Final = 101
 _CYCLES_TOLD: Final = 6
 _ABOVE_LEAST: Final = 1.5
+_HIDDEN_SHARE: Final = 0.02  # of the range of a cycle: less than this does not make its largest angle unknown
 _FAST_SHARE: Final = 0.5  # of the highest speed; beside slower frames the highest one is not looked for
 
 
@@ -35,20 +38,26 @@ def repetitions_of(
         rad/s and seconds.
     least_rate : float
         Angular velocities under it (rad/s) are not given.
+
+    Returns
+    -------
+    Repetitions
+        The largest angle and the range are those of the frames from start to end; NaN where the angle may have gone
+        farther in a gap.
     """
     count = cycles.start_s.size
     time = elapsed - elapsed[0]
     start, top, end = (nearest_rows(elapsed, seconds) for seconds in cycles.times_s.T)
     direction, point = np.full((count, 3), np.nan), np.full((count, 3), np.nan)
-    slide_range, span = np.full(count, np.nan), np.full(count, np.nan)
+    slide_range, highest, span = np.full((3, count), np.nan)
     speed = np.full((count, 2), np.nan)
     moving = np.flatnonzero(np.isfinite(angular_velocity))
     given = (int(moving[0]), int(moving[-1])) if moving.size else (0, 0)
+    gaps = gaps_of(screw.angle, time)
     for k, (first, turn, last) in enumerate(zip(start.tolist(), top.tolist(), end.tolist(), strict=True)):
         rows = slice(first, last + 1)
         known = first + np.flatnonzero(screw.valid[rows] & np.isfinite(line[rows]).all(axis=1))
-        angles = screw.angle[rows][np.isfinite(screw.angle[rows])]
-        span[k] = np.ptp(angles) if angles.size else np.nan
+        highest[k], span[k] = _largest(screw.angle, first, last, gaps)
         out, back = angular_velocity[first : turn + 1], -angular_velocity[turn : last + 1]
         # What the filter leaves out at the ends of the recording is not lost in it.
         out, back = out[max(given[0] - first, 0) :], back[: max(given[-1] + 1 - turn, 0)]
@@ -69,8 +78,8 @@ def repetitions_of(
         end_time_sd_s=cycles.end_sd_s,
         duration_s=cycles.end_s - cycles.start_s,
         incomplete=cycles.incomplete,
-        start_angle=_angle_at(cycles.start_s, screw.angle, time),
-        top_angle=_angle_at(cycles.inversion_s, screw.angle, time),
+        start_angle=_between_frames(cycles.start_s, screw.angle, time),
+        top_angle=highest,
         angle_range=span,
         slide_range=slide_range,
         outward_speed=speed[:, 0],
@@ -197,10 +206,16 @@ def _between_frames(seconds: Float, angle: Float, time: Float) -> Float:
     return np.where(part >= 1.0, after_angle, found)
 
 
-def _angle_at(seconds: Float, angle: Float, time: Float) -> Float:
-    """Angle at times (K,), across gaps by straight lines."""
-    known = np.isfinite(angle)
-    return np.interp(seconds, time[known], angle[known]) if known.any() else np.full(seconds.size, np.nan)
+def _largest(angle: Float, first: int, last: int, gaps: Gaps) -> tuple[float, float]:
+    """Largest angle of the rows from first to last, and their range; NaN where it may be larger in a gap."""
+    known = angle[first : last + 1][np.isfinite(angle[first : last + 1])]
+    if not known.size:
+        return float("nan"), float("nan")
+    highest, span = float(known.max()), float(np.ptp(known))
+    here = (gaps.before < last) & (gaps.after > first)
+    more = gaps.highest[here].max(initial=-np.inf) > highest + _HIDDEN_SHARE * span
+    less = gaps.lowest[here].min(initial=np.inf) < highest - span - _HIDDEN_SHARE * span
+    return float("nan") if more else highest, float("nan") if more or less else span
 
 
 def _mean_direction(directions: Float) -> Float:
@@ -229,16 +244,31 @@ def _point_spread(directions: Float, points: Float, near: Float) -> float:
 
 def speed_warnings(repetitions: Repetitions) -> tuple[QualityWarning, ...]:
     """Say in which cycles the highest speed is not given, of a motion that has speeds."""
-    missing = np.isnan(repetitions.outward_speed) | np.isnan(repetitions.back_speed)
-    if not missing.any():
+    numbers = repetitions.number[np.isnan(repetitions.outward_speed) | np.isnan(repetitions.back_speed)]
+    if not numbers.size:
         return ()
-    numbers = repetitions.number[missing].tolist()
-    told = ", ".join(map(str, numbers[:_CYCLES_TOLD])) + (" and others" if len(numbers) > _CYCLES_TOLD else "")
     message = (
-        f"the highest speed of a stroke is left empty in cycle{'s' if len(numbers) > 1 else ''} {told}: it may lie "
-        "where no speed is known, about lost frames (instantaneous.csv)"
+        f"the highest speed of a stroke is left empty in {_cycles_called(numbers)}: it may lie where no speed is "
+        "known, about lost frames (instantaneous.csv)"
     )
-    return (QualityWarning(code="speeds-unknown", message=message, count=len(numbers)),)
+    return (QualityWarning(code="speeds-unknown", message=message, count=numbers.size),)
+
+
+def angle_warnings(repetitions: Repetitions) -> tuple[QualityWarning, ...]:
+    """Say in which cycles the largest angle or the range is not given."""
+    numbers = repetitions.number[np.isnan(repetitions.angle_range)]
+    if not numbers.size:
+        return ()
+    message = (
+        f"the largest theta or its range is left empty in {_cycles_called(numbers)}: by the speeds beside the lost "
+        "frames the angle goes farther among them"
+    )
+    return (QualityWarning(code="angles-unknown", message=message, count=numbers.size),)
+
+
+def _cycles_called(numbers: NDArray[np.int64]) -> str:
+    told = ", ".join(map(str, numbers[:_CYCLES_TOLD].tolist())) + (" and others" if numbers.size > _CYCLES_TOLD else "")
+    return f"cycle{'s' if numbers.size > 1 else ''} {told}"
 
 
 def _highest(speed: Float, least_rate: float) -> float:

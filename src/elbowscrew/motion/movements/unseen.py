@@ -1,0 +1,72 @@
+"""What a motion may do where there is no pose: how far it may go in a gap, by its speeds at the gap's two ends."""
+
+from __future__ import annotations
+
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from elbowscrew.geometry.arrays import Float, Index
+
+_SLOPE_FRAMES: Final = 5
+_SLOPE_S: Final = 0.05
+
+
+class Gaps(NamedTuple):
+    """Stretches without a pose between two that are known, shape (G,) each.
+
+    Attributes
+    ----------
+    before, after : ndarray of int64
+        Rows of the poses beside the gap.
+    before_slope, after_slope : ndarray
+        Change a second of the series there.
+    highest, lowest : ndarray
+        How far the series goes in between if it is slowed down evenly: half-way from the higher, or lower, end to where
+        the tangents at the two ends meet.
+    """
+
+    before: Index
+    after: Index
+    before_slope: Float
+    after_slope: Float
+    highest: Float
+    lowest: Float
+
+
+def gaps_of(series: Float, time: Float) -> Gaps:
+    """Find the gaps of a series (N,), NaN where it is not known, over times (N,) in seconds."""
+    known = np.flatnonzero(np.isfinite(series))
+    at = np.flatnonzero(np.diff(known) > 1)
+    before, after = known[at], known[at + 1]
+    slopes = np.zeros((2, at.size))
+    for k, place in enumerate(at.tolist()):
+        slopes[0, k] = _slope(series, time, known, place, -1)
+        slopes[1, k] = _slope(series, time, known, place + 1, 1)
+    low, high = np.sort([series[before], series[after]], axis=0)
+    span = time[after] - time[before]
+    turn = slopes[0] - slopes[1]
+    meets = np.divide(series[after] - series[before] - slopes[1] * span, turn, out=np.zeros(at.size), where=turn != 0.0)
+    tip = series[before] + slopes[0] * meets
+    inside = (meets > 0.0) & (meets < span)
+    return Gaps(
+        before=before.astype(np.int64),
+        after=after.astype(np.int64),
+        before_slope=slopes[0],
+        after_slope=slopes[1],
+        highest=np.where(inside, 0.5 * (high + np.maximum(tip, high)), high),
+        lowest=np.where(inside, 0.5 * (low + np.minimum(tip, low)), low),
+    )
+
+
+def _slope(series: Float, time: Float, known: Index, place: int, way: int) -> float:
+    """Slope by least squares of the known values from one on, five of them and a twentieth of a second, gaps apart."""
+    rows = known[place : place + 64] if way > 0 else known[max(place - 63, 0) : place + 1][::-1]
+    run = int(np.argmax(np.abs(np.diff(rows)) > 1)) + 1 if (np.abs(np.diff(rows)) > 1).any() else rows.size
+    rows = rows[:run]
+    near = np.abs(time[rows] - time[rows[0]]) <= _SLOPE_S
+    rows = rows[: max(int(near.sum()), _SLOPE_FRAMES)]
+    if rows.size < 2:
+        return 0.0
+    centered = time[rows] - time[rows].mean()
+    return float(centered @ series[rows] / (centered @ centered))
