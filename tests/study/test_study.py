@@ -199,8 +199,8 @@ def test_an_output_that_cannot_be_written_is_exit_6(tmp_path: Path) -> None:
 
 def test_a_scheduler_that_is_not_there_is_wrong_usage(tmp_path: Path) -> None:
     write_trials(tmp_path / "in", 1)
-    done = batch("in", *FAST, "--scheduler", "nonsense", folder=tmp_path, code=2)
-    assert "--scheduler nonsense: no Dask scheduler answers there" in done.stderr
+    done = batch("in", *FAST, "--scheduler", "127.0.0.1:1", folder=tmp_path, code=2)
+    assert "--scheduler 127.0.0.1:1: no Dask scheduler answers there" in done.stderr
     assert done.stderr.splitlines()[-1].startswith("elbowscrew: error: ")
 
 

@@ -49,10 +49,20 @@ def batch(
         typer.Option(
             metavar="ADDRESS",
             rich_help_panel=_WORK,
-            help="Dask scheduler, tcp://host:port or local-cluster.",
+            help="Dask scheduler: tcp://host:port, tls://host:port or local-cluster.",
             show_default="this machine's cores",
         ),
     ] = None,
+    wait: Annotated[
+        float,
+        typer.Option(
+            min=0.0,
+            max=1e6,
+            metavar="SECONDS",
+            rich_help_panel=_WORK,
+            help="Wait so long for a cluster's first worker.",
+        ),
+    ] = 10.0,
     restart: Annotated[
         bool,
         typer.Option(
@@ -88,7 +98,7 @@ def batch(
 
     of_cluster = scheduler is not None and scheduler != LOCAL_CLUSTER
     count = workers or (_HANDED_TO_CLUSTER if of_cluster else available_cores())
-    executor = open_executor(scheduler, count)
+    executor = open_executor(scheduler, count, wait)
     study = find_trials(paths, recursive=recursive, follow_symlinks=follow_symlinks, exclude=output)
     render_study.skipped_files(study.skipped, verbose=verbose)
     with shown_progress(quiet=quiet, verbose=verbose) as report:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 import multiprocessing
 import os
+import re
 import sys
 import warnings
 from collections.abc import Callable, Iterator
@@ -24,31 +25,42 @@ LOCAL_CLUSTER: Final = "local-cluster"
 OpenExecutor = Callable[[], AbstractContextManager[Executor]]
 """Gives a new executor; leaving its context by an error ends the work in hand."""
 
+_LOOPBACK: Final = "127.0.0.1"
 _LONGEST_CLOSE_S: Final = 5.0
 _LONGEST_WAIT: Final = "15s"
+_ADDRESS: Final = re.compile(r"((tcp|tls|ws|wss)://)?[^\s/:]+:\d{1,5}|((tcp|tls|ws|wss)://)?\[[\da-fA-F:]+\]:\d{1,5}")
+
+WAIT_S: Final = 10.0
+"""Seconds that a cluster has to show its first worker: without any it would be waited for without end."""
 
 
-def open_executor(scheduler: str | None, workers: int) -> OpenExecutor:
+def open_executor(scheduler: str | None, workers: int, wait_s: float = WAIT_S) -> OpenExecutor:
     """Choose the executor: of this machine if there is no scheduler.
 
     Parameters
     ----------
     scheduler : str or None
-        Address of a Dask scheduler (``tcp://host:port``), or ``local-cluster`` for one started here.
+        Address of a Dask scheduler (``tcp://host:port``, or ``tls://host:port`` with the certificates that Dask's
+        configuration names), or ``local-cluster`` for one started here.
     workers : int
         Processes on this machine.
+    wait_s : float
+        Seconds to wait for the first worker of a cluster.
 
     Raises
     ------
     UsageError
-        If a scheduler is asked for and Dask is not installed.
+        If a scheduler is asked for and Dask is not installed, or the address cannot be one.
     """
     if scheduler is None:
         return partial(_local_pool, workers)
+    if scheduler != LOCAL_CLUSTER and not _ADDRESS.fullmatch(scheduler):
+        msg = f"--scheduler {scheduler}: expected tcp://host:port, tls://host:port or {LOCAL_CLUSTER}"
+        raise UsageError(msg)
     if find_spec("distributed") is None:
         msg = "--scheduler needs dask.distributed; install it with: pip install 'elbowscrew[cluster]'"
         raise UsageError(msg)
-    return partial(_cluster, scheduler, workers)
+    return partial(_cluster, scheduler, workers, wait_s)
 
 
 def available_cores() -> int:
@@ -79,7 +91,7 @@ def _local_pool(workers: int) -> Iterator[Executor]:
 
 
 @contextmanager
-def _cluster(scheduler: str, workers: int) -> Iterator[Executor]:
+def _cluster(scheduler: str, workers: int, wait_s: float) -> Iterator[Executor]:
     dask: Any = import_module("dask")
     distributed: Any = import_module("distributed")
     quiet = {
@@ -96,13 +108,31 @@ def _cluster(scheduler: str, workers: int) -> Iterator[Executor]:
         try:
             if scheduler == LOCAL_CLUSTER:
                 cluster = distributed.LocalCluster(
-                    n_workers=workers, threads_per_worker=1, dashboard_address=":0", silence_logs=logging.CRITICAL
+                    n_workers=workers,
+                    threads_per_worker=1,
+                    host=_LOOPBACK,
+                    # Even without a dashboard there is a server of numbers, and nothing asks who wants to see them.
+                    scheduler_kwargs={"dashboard": False, "dashboard_address": f"{_LOOPBACK}:0"},
+                    dashboard=False,
+                    silence_logs=logging.CRITICAL,
                 )
             else:
                 cluster = None
             client = distributed.Client(cluster or scheduler, timeout=_LONGEST_WAIT)
         except (OSError, ValueError, TimeoutError) as error:
             msg = f"--scheduler {scheduler}: no Dask scheduler answers there ({error}); give tcp://host:port"
+            raise UsageError(msg) from error
+        except TypeError as error:
+            msg = (
+                f"--scheduler {scheduler}: its certificates are missing ({error}); name them in Dask's configuration, "
+                "distributed.comm.tls.ca-file and .client.key and .cert"
+            )
+            raise UsageError(msg) from error
+        try:
+            client.wait_for_workers(1, timeout=wait_s)
+        except TimeoutError as error:
+            client.close()
+            msg = f"--scheduler {scheduler}: no worker after {wait_s:g} s; start some, or give --wait SECONDS"
             raise UsageError(msg) from error
         executor = client.get_executor(pure=False, retries=0)
         try:
