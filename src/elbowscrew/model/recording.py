@@ -76,6 +76,12 @@ def out_of_reach(position: Float) -> Bool:
     return farther
 
 
+def at_origin(position: Float) -> Bool:
+    """Positions (..., 3) at the very origin, which some systems write for a marker not seen: shape (...)."""
+    origin: Bool = (position == 0.0).all(axis=-1)
+    return origin
+
+
 def invalid_marker_warning(owner: str, positions: int) -> QualityWarning:
     """Say that markers have positions that cannot be."""
     message = f"{owner} has {positions} positions over {_FARTHEST_M / 1000:g} km away: taken as not seen"

@@ -13,6 +13,7 @@ from elbowscrew.model import (
     QualityWarning,
     RigidBody,
     TrackingLoss,
+    at_origin,
     invalid_marker_warning,
     invalid_warning,
     out_of_reach,
@@ -121,7 +122,7 @@ class MarkerBuilder:
     def append(self, position: Float) -> None:
         """Add frames: positions (n, 3) in meters."""
         far = out_of_reach(position)
-        self._position.append(np.where(far[:, None], np.nan, position))
+        self._position.append(np.where((far | at_origin(position))[:, None], np.nan, position))
         self._far += int(far.sum())
 
     def finish(self) -> Marker:

@@ -14,7 +14,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from elbowscrew._search_path import guarded_environment
-from elbowscrew.errors import NoBodiesError, RecordingError
+from elbowscrew.errors import RecordingError
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import QualityWarning, Recording, RigidBody, Source, invalid_warning, out_of_reach
 from elbowscrew.quantities import METERS
@@ -22,7 +22,7 @@ from elbowscrew.reading import c3d_worker
 from elbowscrew.reading.builders import MarkerBuilder
 from elbowscrew.reading.c3d_sizes import check_sizes
 from elbowscrew.reading.clock import is_rate
-from elbowscrew.reading.options import ASK_FOR_MARKERS, ReadOptions, stated_unit
+from elbowscrew.reading.options import ReadOptions, nothing_wanted, stated_unit
 from elbowscrew.reading.source import sha256_of
 
 ENDINGS: Final = (".c3d",)
@@ -69,9 +69,7 @@ def read(path: Path, options: ReadOptions) -> Recording:
     builders = _markers(content, METERS[unit], options)
     markers = tuple(marker.finish() for marker in builders)
     if not bodies and not markers:
-        names = ", ".join(content.labels("POINT")[:8]) or "none"
-        msg = f"{path}: no rigid bodies (rotations) in the file (markers: {names}); {ASK_FOR_MARKERS}"
-        raise NoBodiesError(msg)
+        raise nothing_wanted(path, "no rigid bodies (rotations) in the file", content.labels("POINT"), options)
     count = bodies[0].loss.size if bodies else len(markers[0].position)
     if not count or content.frames not in (0, count):
         msg = f"{path}: the file is cut: its header tells of {content.frames} frames, it has {count}; export it again"

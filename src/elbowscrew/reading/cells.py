@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import re
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -16,16 +17,16 @@ from elbowscrew.reading.source import TextSource
 _NUMBER: Final = re.compile(r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
 
 
-def parse_number(text: str) -> float:
-    """Read the number in a cell, NaN for a blank cell.
+def parse_number(text: str, *, nan_word: bool = False) -> float:
+    """Read the number in a cell, NaN for a blank cell, and with `nan_word` for the word "nan".
 
     Raises
     ------
     ValueError
-        For anything else, words such as "nan" and values beyond the range of a float included.
+        For anything else, other words and values beyond the range of a float included.
     """
     stripped = text.strip()
-    if not stripped:
+    if not stripped or (nan_word and stripped.casefold() == "nan"):
         return float("nan")
     if _NUMBER.fullmatch(stripped):
         value = float(stripped)
@@ -35,8 +36,31 @@ def parse_number(text: str) -> float:
     raise ValueError(msg)
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Shape:
+    """What lines may be: see `read_blocks`."""
+
+    width: int
+    exact: bool
+    group: int
+    nan_word: bool
+
+    def allows(self, count: int) -> bool:
+        """Whether a line may have so many cells."""
+        if self.group:
+            return count >= self.width and (count - self.width) % self.group == 0
+        return count == self.width or (count > self.width and not self.exact)
+
+
 def read_blocks(
-    source: TextSource, first_line: int, columns: Sequence[int], width: int, *, exact: bool = False
+    source: TextSource,
+    first_line: int,
+    columns: Sequence[int],
+    width: int,
+    *,
+    exact: bool = False,
+    group: int = 0,
+    nan_word: bool = False,
 ) -> Iterator[NDArray[np.float64]]:
     """Read some columns of the lines from `first_line` on, many lines at a time.
 
@@ -51,6 +75,10 @@ def read_blocks(
         Cells a whole line has ...
     exact : bool
         ... and no more; else at the least, as behind a header that a spreadsheet cut.
+    group : int
+        If not 0, any line may have more, in groups of so many cells.
+    nan_word : bool
+        Whether the word "nan" is a blank cell.
 
     Yields
     ------
@@ -63,16 +91,16 @@ def read_blocks(
         For a cell that is neither blank nor a number, or a line that has been cut; with line and column.
     """
     number = first_line + 1
+    shape = _Shape(width=width, exact=exact, group=group, nan_word=nan_word)
     for block in source.blocks(first_line):
-        width, values = _parse_block(source, block, number, columns, width, exact=exact)
-        exact = exact or len(values) > 0
+        shape, values = _parse_block(source, block, number, columns, shape)
         yield values
         number += len(block)
 
 
 def _parse_block(
-    source: TextSource, block: list[str], number: int, columns: Sequence[int], width: int, *, exact: bool
-) -> tuple[int, NDArray[np.float64]]:
+    source: TextSource, block: list[str], number: int, columns: Sequence[int], shape: _Shape
+) -> tuple[_Shape, NDArray[np.float64]]:
     """Parse a block at once where all its cells are plain numbers, else cell by cell; give the width found, too.
 
     A cell more or less would shift all that follow it: every line must have as many as the first, and that at least
@@ -82,12 +110,7 @@ def _parse_block(
     quoted = any('"' in line for line in block)
     counts = {line.count(delimiter) + 1 for line in block}
     mixed = source.decimal_comma and any("," in line for line in block) and any("." in line for line in block)
-    if (
-        not quoted
-        and not mixed
-        and len(counts) == 1
-        and ((found := counts.pop()) == width or (found > width and not exact))
-    ):
+    if not quoted and not mixed and (len(counts) == 1 or shape.group) and all(map(shape.allows, counts)):
         plain = [line.replace(",", ".") for line in block] if source.decimal_comma else block
         try:
             values = np.loadtxt(plain, delimiter=delimiter, usecols=columns, comments=None, ndmin=2)
@@ -95,6 +118,7 @@ def _parse_block(
             pass  # a blank or a faulty cell: the slow way tells which
         else:
             if values.shape[0] == len(block) and np.isfinite(values).all():
+                found = shape if shape.group else replace(shape, width=counts.pop(), exact=True)
                 return found, np.asarray(values, dtype=np.float64)
     rows = []
     marks: set[str] = set()
@@ -107,30 +131,33 @@ def _parse_block(
             raise RecordingError(msg) from error
         if not any(cell.strip() for cell in cells):
             continue
-        while len(cells) > width and exact and not cells[-1].strip():
+        while len(cells) > shape.width and (shape.exact or shape.group) and not cells[-1].strip():
             cells.pop()
-        if len(cells) < width or (exact and len(cells) != width):
+        if not shape.allows(len(cells)):
             msg = (
-                f"{location}: expected {width} cells, found {len(cells)}: the line is cut or its cells are shifted; "
-                "export the take again, or delete the line"
+                f"{location}: expected {shape.width} cells, found {len(cells)}: the line is cut or its cells are "
+                "shifted; export the take again, or delete the line"
             )
             raise RecordingError(msg)
-        width, exact = len(cells), True
-        rows.append(_numbers(source, cells, columns, location))
+        if not shape.group:
+            shape = replace(shape, width=len(cells), exact=True)
+        rows.append(_numbers(source, cells, columns, location, nan_word=shape.nan_word))
         if source.decimal_comma:
             marks |= {mark for column in columns for mark in ",." if mark in cells[column]}
             if len(marks) > 1:
                 msg = f"{location}: commas and points in numbers: which is the decimal mark is not certain; save again"
                 raise RecordingError(msg)
-    return width, np.array(rows, dtype=np.float64).reshape(len(rows), len(columns))
+    return shape, np.array(rows, dtype=np.float64).reshape(len(rows), len(columns))
 
 
-def _numbers(source: TextSource, cells: list[str], columns: Sequence[int], location: str) -> list[float]:
+def _numbers(
+    source: TextSource, cells: list[str], columns: Sequence[int], location: str, *, nan_word: bool
+) -> list[float]:
     row = []
     for column in columns:
         text = cells[column].replace(",", ".") if source.decimal_comma else cells[column]
         try:
-            row.append(parse_number(text))
+            row.append(parse_number(text, nan_word=nan_word))
         except ValueError as error:
             msg = f"{location}: column {column + 1}: {error}; export the take again, or blank the cell"
             raise RecordingError(msg) from error

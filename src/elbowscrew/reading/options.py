@@ -2,15 +2,25 @@
 
 from __future__ import annotations
 
+import difflib
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from elbowscrew.errors import RecordingError, SettingError
+from elbowscrew.errors import ElbowscrewError, NoBodiesError, SettingError
 from elbowscrew.model import marker_matches
 from elbowscrew.quantities import METERS
 
-_UNIT_NAMES: Final = {"meters": "m", "centimeters": "cm", "millimeters": "mm"}
+_UNIT_NAMES: Final = {
+    **dict.fromkeys(("meter", "meters", "metre", "metres"), "m"),
+    **dict.fromkeys(("centimeter", "centimeters", "centimetre", "centimetres"), "cm"),
+    **dict.fromkeys(("millimeter", "millimeters", "millimetre", "millimetres"), "mm"),
+}
+# Some systems keep only so many characters of the unit's name.
+_SHORTEST_CUT: Final = 4
+
+_NAMES_TOLD: Final = 24
 
 ASK_FOR_MARKERS: Final = "give --proximal-markers and --distal-markers"
 
@@ -39,24 +49,63 @@ class ReadOptions:
 
 
 def stated_unit(path: Path, stated: str, options: ReadOptions) -> str:
-    """Unit of length of a file, "m", "cm" or "mm": the one it states, or the one given if it states none.
+    """Unit of length of a file, "m", "cm" or "mm": the one it states, or the one given if it states none that is known.
 
     Raises
     ------
-    RecordingError
-        If it states one that is not known.
     SettingError
-        If neither is there, or both and they differ.
+        If there is neither one that is known nor one given, or both and they differ.
     """
-    text = stated.strip().casefold()
-    unit = _UNIT_NAMES.get(text, text)
-    if unit and unit not in METERS:
-        msg = f"{path}: unit of length: expected {', '.join(METERS)}, found {stated!r}; export the take again"
-        raise RecordingError(msg)
-    if unit and options.units not in (None, unit):
-        msg = f"--units {options.units}: the file states {stated} itself, which contradicts it; leave --units out"
+    unit = _known_unit(stated)
+    if unit is not None and options.units not in (None, unit):
+        msg = (
+            f"--units {options.units}: the file states {stated.strip()} itself, which contradicts it; leave --units out"
+        )
         raise SettingError(msg)
-    if not unit and options.units is None:
-        msg = f"{path}: the file does not state its unit of length; give --units m, cm or mm"
+    if unit is None and options.units is None:
+        what = (
+            f"states its unit of length as {stated[:40]!r}, which is not known"
+            if stated.strip()
+            else ("does not state its unit of length")
+        )
+        msg = f"{path}: the file {what}; give --units m, cm or mm"
         raise SettingError(msg)
     return unit or str(options.units)
+
+
+def _known_unit(stated: str) -> str | None:
+    text = stated.strip(" \t\0.").casefold()
+    if text in METERS:
+        return text
+    cut = len(text) >= _SHORTEST_CUT
+    found = {unit for name, unit in _UNIT_NAMES.items() if name == text or (cut and name.startswith(text))}
+    return found.pop() if len(found) == 1 else None
+
+
+def nothing_wanted(path: Path, what: str, names: Sequence[str], options: ReadOptions) -> ElbowscrewError:
+    """Say that a file has no rigid bodies and no marker that was asked for, whose names these are.
+
+    Parameters
+    ----------
+    path : Path
+    what : str
+        What was not found, as in "no rigid bodies in the file".
+    names : sequence of str
+        The markers that are there.
+    options : ReadOptions
+
+    Returns
+    -------
+    SettingError or NoBodiesError
+        The former if others were asked for.
+    """
+    told = ", ".join(names[:_NAMES_TOLD]) + (
+        f" and {len(names) - _NAMES_TOLD} more" if len(names) > _NAMES_TOLD else ""
+    )
+    if options.markers and names:
+        near = difflib.get_close_matches(options.markers[0], names, n=3)
+        mean = f"; did you mean {', '.join(near)}?" if near else ""
+        return SettingError(
+            f"{path}: no marker fits {', '.join(options.markers)}{mean}; the file has {told or 'no markers'}"
+        )
+    return NoBodiesError(f"{path}: {what} (markers: {told or 'none'}); {ASK_FOR_MARKERS}")

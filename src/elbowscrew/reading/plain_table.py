@@ -12,13 +12,13 @@ from typing import Final
 
 import numpy as np
 
-from elbowscrew.errors import NoBodiesError, RecordingError
+from elbowscrew.errors import RecordingError
 from elbowscrew.model import Recording, Source
 from elbowscrew.quantities import METERS
 from elbowscrew.reading.builders import ArrayBuilder, BodyBuilder, MarkerBuilder
 from elbowscrew.reading.cells import read_blocks
 from elbowscrew.reading.clock import check_frames, counted_rate, cut_warnings
-from elbowscrew.reading.options import ASK_FOR_MARKERS, ReadOptions
+from elbowscrew.reading.options import ReadOptions, nothing_wanted
 from elbowscrew.reading.source import TextSource
 
 _COLUMN: Final = re.compile(r"(?P<name>.+)_(?:(?P<euler>e[0-3])|(?P<axis>[xyz])_(?P<unit>m|cm|mm))")
@@ -37,9 +37,7 @@ def read(source: TextSource, options: ReadOptions) -> Recording:
     bodies = {name: parts for name, parts in columns.items() if set(parts) == set(_POSE)}
     markers = {name: parts for name, parts in columns.items() if set(parts) == set("xyz") and options.wants(name)}
     if not bodies and not markers:
-        seen = ", ".join(list(columns)[:8]) or "none"
-        msg = f"{source.path}:{line}: no rigid bodies in the table (markers: {seen}); {ASK_FOR_MARKERS}"
-        raise NoBodiesError(msg)
+        raise nothing_wanted(source.path, "no rigid bodies in the table", list(columns), options)
     wanted = sorted({0, 1}.union(*(parts.values() for parts in (*bodies.values(), *markers.values()))))
     index = {column: k for k, column in enumerate(wanted)}
     frames, times = ArrayBuilder(dtype=np.int64), ArrayBuilder()

@@ -41,7 +41,7 @@ class TextSource:
     ends_with_newline : bool
         False hints that the file may have been cut.
     delimiter : str
-        Comma, or what a spreadsheet put in its place: semicolon or tab.
+        Comma, semicolon or tab.
     """
 
     path: Path
@@ -205,11 +205,15 @@ def open_source(path: Path) -> TextSource:
 
 
 def _delimiter_of(head: bytes) -> str:
-    """Tell the delimiter by the first line with any content that more than one cell shows."""
-    for line in head.splitlines():
-        if line.startswith(b"PathFileType\t"):
-            return "\t"
-        counts = {mark: line.count(mark.encode()) for mark in (",", ";", "\t")}
+    """Tell the delimiter by the first line with any content that more than one cell shows.
+
+    A TRC file begins with a path, which may have any of them: there the line of the markers' names tells.
+    """
+    lines = head.splitlines()
+    if head.removeprefix(b"\xef\xbb\xbf").lstrip()[:12].lower() == b"pathfiletype":
+        lines = [line for line in lines if line.lstrip()[:5].lower() == b"frame"] or lines
+    for line in lines:
+        counts = {mark: line.count(mark.encode()) for mark in ("\t", ",", ";")}
         if any(counts.values()):
             return max(counts, key=lambda mark: counts[mark])
     return ","

@@ -12,7 +12,7 @@ from elbowscrew.geometry import FittedPose, fit_poses, fit_poses_dual_qr, nonrig
 from elbowscrew.geometry._blocks import evenly_thinned
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_quaternion import conjugate, transform_points
-from elbowscrew.model import MarkerMotion, Recording, RigidBody, TrackingLoss, marker_matches
+from elbowscrew.model import MarkerMotion, Recording, RigidBody, TrackingLoss, at_origin, marker_matches
 
 _REFINEMENTS: Final = 2
 _MOST_FRAMES: Final = 65_536
@@ -59,8 +59,7 @@ def body_from_markers(recording: Recording, name: str, patterns: tuple[str, ...]
         )
         raise SettingError(msg)
     seen = np.stack([marker.position for marker in chosen], axis=1)
-    # The very origin is what some systems write for a marker that they do not see.
-    seen = np.where((seen == 0.0).all(axis=2, keepdims=True), np.nan, seen)
+    seen = np.where(at_origin(seen)[..., None], np.nan, seen)
     shape = cluster_shape(seen)
     if shape is None:
         names = ", ".join(marker.name for marker in chosen)
