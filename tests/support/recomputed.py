@@ -340,7 +340,15 @@ def deviations(told: Told) -> tuple[Float, Float]:
     near = change_of(told)[1]
     center = middle + ((near - middle) @ direction) * direction
     off = angle_between(axis, np.broadcast_to(axis.mean(axis=0), axis.shape))
-    return off, np.linalg.norm(pierced(axis, point, direction, center) - center, axis=1)
+    return off, _told_positions(told) * np.linalg.norm(pierced(axis, point, direction, center) - center, axis=1)
+
+
+def _told_positions(told: Told) -> Float:
+    """Which axes have a position: none over 75 deg from the mean, and none at all where over 5 % are."""
+    axis, _, _ = axes_one_way(told)
+    direction, _ = mean_axis(told)
+    far = np.abs(axis @ direction) < np.cos(np.radians(75.0))
+    return np.where(far | (far.mean() > 0.05), np.nan, 1.0)
 
 
 def _motion(told: Told) -> dict[str, Any]:
@@ -708,6 +716,7 @@ def _dispersion(told: Told) -> dict[str, float]:
     direction, middle = mean_axis(told)
     near = change_of(told)[1]
     place = pierced(axis, point, direction, middle + ((near - middle) @ direction) * direction)
+    place = _told_positions(told)[:, None] * place
     place = place[np.isfinite(place).all(axis=1)]
     return {
         "direction_median_deg": median(off),
@@ -717,9 +726,9 @@ def _dispersion(told: Told) -> dict[str, float]:
         "direction_excursion_deg": float(2.0 * np.degrees(np.arcsin(0.5 * pdist(axis).max()))),
         "position_median_mm": median(distance),
         "position_rms_mm": rms(distance),
-        "position_95_mm": float(np.nanpercentile(distance, 95)),
+        "position_95_mm": float(np.percentile(distance[np.isfinite(distance)], 95)) if len(place) else float("nan"),
         "position_max_mm": most(distance),
-        "position_excursion_mm": float(pdist(place).max()),
+        "position_excursion_mm": float(pdist(place).max()) if len(place) else float("nan"),
     }
 
 

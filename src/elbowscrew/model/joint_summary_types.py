@@ -229,11 +229,12 @@ class DispersionSummary(TypedDict):
     direction_excursion_deg: float
     """Largest angle between two of the axes."""
     position_median_mm: float | None
+    """Positions are None where over 5 % of the axes are over 75 deg from their mean: they pierce the plane anywhere."""
     position_rms_mm: float | None
     position_95_mm: float | None
     """95th percentile."""
     position_max_mm: float | None
-    position_excursion_mm: float
+    position_excursion_mm: float | None
     """Largest distance between two of the axes."""
 
 

@@ -203,7 +203,7 @@ class MotionSummary(TypedDict):
     axis_dispersion_rms_deg: float | None
     axis_dispersion_max_deg: float | None
     axis_distance_rms_mm: float | None
-    """RMS distance of the axes from the mean axis."""
+    """RMS distance of the axes from the mean axis; None where over 5 % of them are over 75 deg from it."""
     single_axis: bool
     """Whether the motion has one axis at all."""
     joint_type: JointTypeSummary

@@ -11,6 +11,7 @@ from elbowscrew.model import Analysis, InterpolatedMotion, Landmarks, QualityWar
 from elbowscrew.motion.anatomy.anatomy import anatomical_motion, joint_of_landmarks, proximal_lines, side_doubts
 from elbowscrew.motion.axes.measured import (
     lines_one_way,
+    mean_axis_warnings,
     measured_instantaneous_motion,
     measured_mean_axis,
     measured_steps,
@@ -91,6 +92,7 @@ def analyze(recording: Recording, settings: Settings | None = None, *, landmarks
     model = build_model(measured, cuts.movements, wanted, joint_type)
     warnings = (
         measured.warnings
+        + mean_axis_warnings(mean, measured)
         + axes_doubts
         + cut_warnings(cuts)
         + model.warnings

@@ -17,6 +17,7 @@ from elbowscrew.choices import LengthUnit
 from elbowscrew.geometry._blocks import evenly_thinned
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import Analysis
+from elbowscrew.motion.axes.mean_axis import MOST_ACROSS
 from elbowscrew.motion.difference import piercing
 from elbowscrew.plots import style
 from elbowscrew.quantities import angle_in, length_in
@@ -104,7 +105,7 @@ def plot_axis_positions(ax: Axes, analysis: Analysis | TrialView) -> Axes:
     rows = evenly_thinned(np.flatnonzero(view.axis_known), _MOST_POINTS)
     direction, point = view.axis_direction[rows], view.axis_point[rows]
     along = direction @ mean.direction
-    crossing = np.abs(along) > 0.1  # an axis nearly in the plane pierces it far away or nowhere
+    crossing = np.abs(along) >= np.cos(MOST_ACROSS)  # an axis nearly in the plane pierces it far away or nowhere
     rows, direction, point = rows[crossing], direction[crossing], point[crossing]
     offset = length_in(piercing(direction, point, mean.direction, mean.center) - mean.center, unit)
     _scatter(ax, view, rows, [offset @ across for across in mean.across])

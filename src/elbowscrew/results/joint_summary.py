@@ -75,7 +75,7 @@ def dispersion_summary(analysis: Analysis) -> DispersionSummary:
         "position_rms_mm": statistic(rms, distance),
         "position_95_mm": statistic(_high, distance),
         "position_max_mm": statistic(np.nanmax, distance),
-        "position_excursion_mm": 1000.0 * mean.position_excursion,
+        "position_excursion_mm": statistic(np.max, np.array([1000.0 * mean.position_excursion])),
     }
 
 

@@ -133,3 +133,26 @@ def test_mean_axis_of_a_cone_is_its_middle_and_the_dispersion_its_half_angle() -
     offset = np.array([0.03, 0.0, 0.0])
     shifted[0, 3:] = np.cross(apex + offset, directions[0])
     assert mean_axis_of(np.ones(24), shifted, apex).distance[0] == pytest.approx(0.03, rel=0.1)
+
+
+@pytest.mark.parametrize(("apart", "told"), [(0.0, True), (70.0, True), (80.0, False), (90.0, False)])
+def test_axes_nearly_in_the_plane_across_their_mean_have_no_distance_from_it(apart: float, told: bool) -> None:
+    # One axis in ten is so far off, by small angles of rotation that hardly move the mean.
+    tilt = np.radians(np.where(np.arange(40) % 10 == 0, apart, 0.0))
+    angle = np.where(tilt > 0.0, 0.2, 2.0)
+    direction = np.column_stack([np.sin(tilt), np.zeros(40), np.cos(tilt)])
+    point = np.column_stack([np.zeros(40), np.full(40, 0.01), np.zeros(40)])
+    mean = mean_axis_of(angle, np.concatenate([direction, np.cross(point, direction)], axis=1), np.zeros(3))
+    assert np.isfinite(mean.distance).all() == told
+    assert np.isfinite(mean.distance).any() == told
+    assert np.isfinite(mean.position_excursion) == told
+    assert np.isfinite(mean.dispersion)
+
+
+def test_one_axis_in_a_hundred_across_the_mean_has_no_distance_and_takes_none_from_the_others() -> None:
+    tilt = np.radians(np.where(np.arange(100) == 7, 89.9, 0.0))
+    direction = np.column_stack([np.sin(tilt), np.zeros(100), np.cos(tilt)])
+    point = np.column_stack([np.zeros(100), np.zeros(100), np.full(100, 0.1)])
+    mean = mean_axis_of(np.ones(100), np.concatenate([direction, np.cross(point, direction)], axis=1), np.zeros(3))
+    assert np.flatnonzero(np.isnan(mean.distance)).tolist() == [7]
+    assert mean.position_excursion < 0.01

@@ -15,6 +15,10 @@ from elbowscrew.motion.difference import angle_of_lines, direction_between, pier
 _MOST_COMPARED: Final = 1000
 _STEP: Final = float(np.radians(1.0))
 _ROUNDING: Final = 1e-12
+_SHARE_ACROSS: Final = 0.05
+
+MOST_ACROSS: Final = float(np.radians(75.0))
+"""Largest angle of an axis from the mean one at which it has a distance from that."""
 
 
 def mean_line_of(angle: Float, line: Float) -> tuple[Float, Float]:
@@ -38,6 +42,8 @@ def mean_axis_of(angle: Float, line: Float, near: Float) -> MeanAxis:
 
     The direction noise of a finite axis grows as 1/sin(theta/2), so these are the inverse variances. The spread is
     told about the plain mean of the directions, every frame alike, as the literature does and so that it compares.
+    An axis more than 75 deg from the mean one has no distance from it: nearly in the plane across, it pierces that
+    anywhere or nowhere. Where more than 5 % of the axes are so far off, as a ball's are, no axis has.
 
     Parameters
     ----------
@@ -59,10 +65,12 @@ def mean_axis_of(angle: Float, line: Float, near: Float) -> MeanAxis:
     # Where each axis pierces the plane across the mean axis at `near`: the same in whatever frame it is described.
     center = point + ((near - point) @ direction) * direction
     position = piercing(line[:, :3], np.cross(line[:, :3], line[:, 3:]), direction, center) - center
-    chosen = np.flatnonzero(known)
-    chosen = evenly_thinned(chosen, _MOST_COMPARED)
     weights = np.sin(0.5 * angle[known]) ** 2
     off = angle_of_lines(line[known], direction)
+    position[np.flatnonzero(known)[off > MOST_ACROSS]] = np.nan
+    if np.mean(off > MOST_ACROSS) > _SHARE_ACROSS:
+        position[:] = np.nan
+    chosen = evenly_thinned(np.flatnonzero(known), _MOST_COMPARED)
     return MeanAxis(
         direction=direction,
         point=point,
@@ -71,7 +79,7 @@ def mean_axis_of(angle: Float, line: Float, near: Float) -> MeanAxis:
         deviation=deviation,
         distance=length(position),
         excursion=float(2.0 * np.arcsin(min(0.5 * _largest_distance(line[chosen, :3]), 1.0))),
-        position_excursion=_largest_distance(position[chosen]),
+        position_excursion=_largest_distance(position[chosen]) if np.isfinite(position).any() else float("nan"),
     )
 
 

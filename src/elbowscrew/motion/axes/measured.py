@@ -14,7 +14,8 @@ from elbowscrew.geometry.dual_quaternion import conjugate, multiply, pose_from_d
 from elbowscrew.model import HelicalSteps, InstantaneousMotion, MeanAxis, QualityWarning, RigidBody
 from elbowscrew.motion.axes.helical_steps import helical_steps
 from elbowscrew.motion.axes.instantaneous import instantaneous_motion, twists
-from elbowscrew.motion.axes.mean_axis import mean_axis_of
+from elbowscrew.motion.axes.mean_axis import MOST_ACROSS, mean_axis_of
+from elbowscrew.motion.difference import angle_of_lines
 from elbowscrew.motion.screws.measurement import Measurement
 from elbowscrew.motion.screws.relative import IDENTITY, expressed
 from elbowscrew.motion.screws.sense import rotation_noise
@@ -55,6 +56,20 @@ def measured_mean_axis(measured: Measurement) -> MeanAxis:
     """Take the mean over measured frames: a pose filled in says nothing that its neighbors do not."""
     lines = np.where(measured.joint.measured[:, None], lines_one_way(measured), np.nan)
     return mean_axis_of(measured.screw.angle, lines, pose_from_dual_quat(measured.change)[1])
+
+
+def mean_axis_warnings(mean: MeanAxis, measured: Measurement) -> tuple[QualityWarning, ...]:
+    """Say why the axes have no distances from their mean, where they have none."""
+    if np.isfinite(mean.distance).any():
+        return ()
+    lines = measured.line[measured.joint.measured]
+    off = angle_of_lines(lines[np.isfinite(lines).all(axis=1)], mean.direction)
+    message = (
+        f"{100.0 * np.mean(off > MOST_ACROSS):.0f} % of the axes are over {np.degrees(MOST_ACROSS):.0f} deg from their "
+        "mean, and nearly in the plane across it, which they pierce anywhere or nowhere: how far apart the axes lie "
+        "is left empty"
+    )
+    return (QualityWarning(code="axis-positions-undefined", message=message, severity="note"),)
 
 
 def measured_instantaneous_motion(
