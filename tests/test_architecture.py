@@ -14,7 +14,7 @@ from elbowscrew.choices import functions_named
 from elbowscrew.cli.analyze import analyze
 from elbowscrew.cli.batch import batch
 from elbowscrew.errors import ElbowscrewError
-from elbowscrew.joints import JOINT_NAMES
+from elbowscrew.joints import JOINTS
 from elbowscrew.motion.interpolation.laws import LAWS
 from elbowscrew.motion.interpolation.modeling import METHODS
 from elbowscrew.settings import SETTINGS
@@ -83,7 +83,7 @@ def test_a_setting_takes_the_names_of_its_registry() -> None:
     choices = {setting.field: set(setting.choices) for setting in SETTINGS}
     assert {*METHODS, "joint"} == choices["method"]
     assert {*LAWS, "empirical", "best"} == choices["law"]
-    assert set(JOINT_NAMES) == choices["joint"]
+    assert {joint.name for joint in JOINTS} == choices["joint"]
 
 
 def test_a_name_without_its_function_is_told() -> None:

@@ -35,6 +35,8 @@ BlendName = Literal["piecewise", "global"]
 """Phase by phase, or all poses at once."""
 KeyframeSource = Literal["raw", "lowpass", "decimated"]
 """What keyframes are taken from in a comparison."""
+JointName = Literal["elbow", "wrist", "knee", "ankle", "hip", "shoulder", "finger"]
+"""Joints; their words stand in `elbowscrew.joints`."""
 ExpressIn = Literal["distal", "proximal", "lab"]
 """Frames a screw is written in."""
 NoiseSource = Literal["residuals", "error-column", "still"]
@@ -65,6 +67,7 @@ KNOT_NAMES: Final[tuple[KnotName, ...]] = get_args(KnotName)
 BLEND_NAMES: Final[tuple[BlendName, ...]] = get_args(BlendName)
 KEYFRAME_SOURCES: Final[tuple[KeyframeSource, ...]] = get_args(KeyframeSource)
 NOISE_SOURCES: Final[tuple[NoiseSource, ...]] = get_args(NoiseSource)
+JOINT_NAMES: Final[tuple[JointName, ...]] = get_args(JointName)
 STATED_JOINTS: Final[tuple[StatedJoint, ...]] = get_args(StatedJoint)
 JOINT_TYPE_WORDS: Final[dict[str, str]] = {
     "rigid": "a rigid joint",

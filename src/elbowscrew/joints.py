@@ -12,9 +12,6 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Final, Literal
 
-JointName = Literal["elbow", "wrist", "knee", "ankle", "hip", "shoulder", "finger"]
-"""Names of the joints in `JOINTS`, for type checkers; a test holds the two together."""
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Segment:
@@ -42,7 +39,7 @@ class Joint:
     Attributes
     ----------
     name : str
-        As given to ``--joint``.
+        As given to ``--joint``: one of `JOINT_NAMES`, or ``joint``.
     proximal, distal : Segment
     angles : tuple of str
         Names of the rotations about the first, second and third axis of its anatomical sequence.
@@ -120,9 +117,6 @@ JOINTS: Final = tuple(
 """Every joint; one with several pairs of segments stands once for each, the common one first."""
 
 ELBOW: Final = next(joint for joint in JOINTS if joint.name == "elbow")
-
-JOINT_NAMES: Final = tuple(dict.fromkeys(joint.name for joint in JOINTS))
-"""What ``--joint`` takes."""
 
 _SEGMENTS: Final = tuple(dict.fromkeys(segment for joint in JOINTS for segment in (joint.proximal, joint.distal)))
 

@@ -22,6 +22,7 @@ from elbowscrew.choices import (
     ExportName,
     FigureFormat,
     FileUnit,
+    JointName,
     KnotName,
     LawName,
     LengthUnit,
@@ -30,7 +31,6 @@ from elbowscrew.choices import (
     RotationType,
     StatedJoint,
 )
-from elbowscrew.cycle_times import read_cycle_times
 from elbowscrew.declaring import (
     BODIES,
     FORMER_NAMES,
@@ -44,7 +44,6 @@ from elbowscrew.declaring import (
     setting,
 )
 from elbowscrew.errors import shown
-from elbowscrew.joints import JointName, ends_called, joints_of
 
 STILL: Final = "none"
 """The value of ``proximal`` that says: the file has no such body, it stands still."""
@@ -240,6 +239,8 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
     @classmethod
     def _frame(cls, value: object) -> object:
         """Take the three frames, and segments' words; which end a word means is known with the joint."""
+        from elbowscrew.joints import ends_called
+
         if not isinstance(value, str) or not (value in FRAMES or ends_called(value)):
             msg = f"expected {', '.join(FRAMES)}, or a segment's word, as forearm or shank"
             raise ValueError(msg)
@@ -247,6 +248,8 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
 
     @model_validator(mode="after")
     def _check_frame(self) -> Settings:
+        from elbowscrew.joints import ends_called, joints_of
+
         joints = joints_of(self.joint)
         if self.joint is not None and self.express_in not in FRAMES and not ends_called(self.express_in, joints):
             words = ", ".join(dict.fromkeys(end.short for one in joints for end in (one.proximal, one.distal)))
@@ -288,6 +291,8 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
     @classmethod
     def _cycle_times(cls, value: object) -> object:
         """Take the name of a file with the times, too."""
+        from elbowscrew.cycle_times import read_cycle_times
+
         return read_cycle_times(Path(value)) if isinstance(value, str | Path) else value
 
     @field_validator("skin_motion")

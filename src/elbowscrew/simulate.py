@@ -8,12 +8,12 @@ from typing import Any, Final, Literal, NamedTuple
 
 import numpy as np
 
-from elbowscrew.choices import SimulatedJointType, SimulatedLaw
+from elbowscrew.choices import JOINT_NAMES, JointName, SimulatedJointType, SimulatedLaw
 from elbowscrew.errors import UsageError
 from elbowscrew.geometry import pose_from_points, quaternion
 from elbowscrew.geometry.arrays import Bool, Float
 from elbowscrew.geometry.dual_quaternion import dual_quat_from_pose, multiply, transform_points
-from elbowscrew.joints import JOINT_NAMES, JointName, joints_of
+from elbowscrew.joints import joints_of
 from elbowscrew.model import Recording, RigidBody, TrackingLoss
 from elbowscrew.motion.interpolation.laws import LAWS
 from elbowscrew.simulated_joint import Geometry, JointCourse, ball, mirrors, odd_course, one_axis, two_axes

@@ -44,27 +44,22 @@ def settings_options(
                 given = {name: _value(setting, values.pop(name)) for name, setting in settings.items()}
                 command(given=given, **values)
 
+            made = [_parameter(name, one, defaults or {}) for name, one in settings.items()]
             parameters: list[inspect.Parameter] = []
             for parameter in inspect.signature(command, eval_str=True).parameters.values():
-                made = [_parameter(name, one, defaults or {}) for name, one in settings.items()]
                 parameters += made if parameter.name == "given" else [parameter]
-            return _signed(run, parameters)
+            run.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
+            run.__annotations__ = {}
+            return run
 
-        @wraps(command)
-        def listed(**values: Any) -> None:
-            command(given={}, **values)
+        def listed() -> None:
+            """Stand in the list of commands; the one that is asked for is made by `with_settings`."""
 
-        others = [one for one in inspect.signature(command, eval_str=True).parameters.values() if one.name != "given"]
+        listed.__name__, listed.__doc__ = command.__name__, command.__doc__
         listed.with_settings = with_settings  # type: ignore[attr-defined]
-        return _signed(listed, others)
+        return listed
 
     return decorated
-
-
-def _signed(function: Callable[..., None], parameters: list[inspect.Parameter]) -> Callable[..., None]:
-    function.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
-    function.__annotations__ = {}
-    return function
 
 
 def _parameter(name: str, setting: Setting, defaults: Mapping[str, str]) -> inspect.Parameter:

@@ -7,8 +7,7 @@ from typing import Annotated, Literal
 
 import typer
 
-from elbowscrew.choices import FileUnit, SimulatedJointType, SimulatedLaw
-from elbowscrew.joints import JointName
+from elbowscrew.choices import FileUnit, JointName, SimulatedJointType, SimulatedLaw
 
 _MOTION, _RECORDING, _OUTPUT = "Motion", "Recording", "Output"
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from elbowscrew._version import __version__
-from elbowscrew.choices import FRAMES
+from elbowscrew.choices import FRAMES, JOINT_NAMES
 from elbowscrew.errors import ResultError
-from elbowscrew.joints import JOINT_NAMES, ends_called, joints_of
+from elbowscrew.joints import ends_called, joints_of
 from elbowscrew.model.summary_types import Summary
 from elbowscrew.reading.source import sha256_of
 from elbowscrew.results.summary import landmarks_summary, library_versions, settings_summary

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import Final, NamedTuple
 
+from elbowscrew.choices import JOINT_NAMES
 from elbowscrew.errors import SettingError
-from elbowscrew.joints import GENERIC, JOINT_NAMES, Joint, joint_between, joints_of, segment_of, side_of
+from elbowscrew.joints import GENERIC, Joint, joint_between, joints_of, segment_of, side_of
 from elbowscrew.model import QualityWarning, Recording, RigidBody
 from elbowscrew.settings import STILL
 
