@@ -316,15 +316,15 @@ def texts_with_numbers(told: Told) -> Iterator[tuple[str, list[str]]]:
     yield rf"The {joint_axis} and the axes of", [str(min(axis_frames, 60))]
     yield rf"Axes of the frames about the {joint_axis}", [general(settings["min-angle"])]
     spread = joint["dispersion"]
+    positions = [dec(spread[f"position_{kind}_mm"]) for kind in ("median", "rms", "95", "max")]
+    positions.insert(2, "95")
     yield (
         "Dispersion of the frames’ axes",
         [
             *(dec(spread[f"direction_{kind}_deg"]) for kind in ("median", "rms")),
             "95",
             *(dec(spread[f"direction_{kind}_deg"]) for kind in ("95", "max")),
-            *(dec(spread[f"place_{kind}_mm"]) for kind in ("median", "rms")),
-            "95",
-            *(dec(spread[f"place_{kind}_mm"]) for kind in ("95", "max")),
+            *([] if spread["position_rms_mm"] is None else positions),
         ],
     )
     kind, two, ball = joint["joint_type"], joint["two_axes"], joint["ball"]
