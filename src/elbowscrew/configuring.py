@@ -92,6 +92,6 @@ def _sentence(location: str, fault: Any, known: list[str]) -> str:
         hint = f"did you mean {close[0]!r}?" if close else f"possible keys: {', '.join(known)}"
         return f"{location}: unknown key {shown(key)}; {hint}"
     message = str(fault["msg"]).removeprefix("Value error, ").replace("Input should", "should")
-    if not key:
-        return f"{location}: {message}"
+    if not key or fault["type"] == "value_error":  # our own checks say themselves what they found
+        return f"{location}: {key}: {message}" if key else f"{location}: {message}"
     return f"{location}: {key}: {message}, found {shown(fault['input'])}"

@@ -242,7 +242,7 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
         from elbowscrew.joints import ends_called
 
         if not isinstance(value, str) or not (value in FRAMES or ends_called(value)):
-            msg = f"expected {', '.join(FRAMES)}, or a segment's word, as forearm or shank"
+            msg = f"expected {', '.join(FRAMES)}, or a segment's word, as forearm or shank, found {shown(value)}"
             raise ValueError(msg)
         return value
 
@@ -266,7 +266,7 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
         """Take the types with a hyphen, too."""
         name = value.replace("-", "_") if isinstance(value, str) else value
         if name not in ("auto", *STATED_JOINTS):
-            msg = f"expected auto, {', '.join(STATED_JOINTS)}"
+            msg = f"expected auto, {', '.join(STATED_JOINTS)}, found {shown(value)}"
             raise ValueError(msg)
         return name
 
@@ -339,7 +339,7 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
     def _check_keyframes(self) -> Settings:
         frames = self.keyframes or ()
         if any(later <= earlier for earlier, later in itertools.pairwise(frames)):
-            msg = "keyframes must increase"
+            msg = f"keyframes must increase, each of them once, found {','.join(map(str, frames))}"
             raise ValueError(msg)
         if frames and self.inversion is not None and self.inversion not in frames[1:-1]:
             msg = (

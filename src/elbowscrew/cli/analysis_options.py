@@ -83,5 +83,5 @@ def _parameter(name: str, setting: Setting, defaults: Mapping[str, str]) -> insp
 def _value(setting: Setting, given: Any) -> Any:
     if given is None or not setting.several:
         return given
-    parts = options.parts(setting.option, given)
+    parts = options.parts(setting.option, given, once=setting.kind not in (int, float))
     return options.whole_numbers(setting.option, parts) if setting.kind is int else parts

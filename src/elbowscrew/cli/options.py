@@ -19,8 +19,10 @@ LandmarksFile = Annotated[
 ]
 
 
-def parts(option: str, given: Sequence[str] | None) -> tuple[str, ...] | None:
-    """Split a list at its commas, each part once; an option may be given more than once, and all it is given counts.
+def parts(option: str, given: Sequence[str] | None, *, once: bool = True) -> tuple[str, ...] | None:
+    """Split a list at its commas; an option may be given more than once, and all it is given counts.
+
+    Parts that are repeated are left out, unless each counts, as of numbers.
 
     Raises
     ------
@@ -29,7 +31,8 @@ def parts(option: str, given: Sequence[str] | None) -> tuple[str, ...] | None:
     """
     if not given:
         return None
-    found = tuple(dict.fromkeys(part.strip() for text in given for part in text.split(",") if part.strip()))
+    found = tuple(part.strip() for text in given for part in text.split(",") if part.strip())
+    found = tuple(dict.fromkeys(found)) if once else found
     if not found:
         msg = f"--{option}: expected one or more with commas between them, found {','.join(given)!r}"
         raise UsageError(msg)

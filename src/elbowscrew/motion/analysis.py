@@ -31,6 +31,7 @@ from elbowscrew.motion.movements.phases import movement_phases
 from elbowscrew.motion.movements.repetitions import (
     angle_warnings,
     cycle_curves_of,
+    given_warnings,
     repeatability_of,
     repetitions_of,
     speed_warnings,
@@ -94,7 +95,8 @@ def analyze(recording: Recording, settings: Settings | None = None, *, landmarks
         measured.warnings
         + mean_axis_warnings(mean, measured)
         + axes_doubts
-        + cut_warnings(cuts)
+        + cut_warnings(cuts, wanted)
+        + given_warnings(cuts.cycles)
         + model.warnings
         + joint_axis_warnings(joint_axis, joint_type, measured)
     )
@@ -103,7 +105,7 @@ def analyze(recording: Recording, settings: Settings | None = None, *, landmarks
         cuts.cycles, screw, lines_one_way(measured), listed_velocity, elapsed, wanted.min_rate_rad_s
     )
     if sense.signed and np.isfinite(velocity).any():
-        warnings += speed_warnings(repetitions)
+        warnings += speed_warnings(repetitions, cuts.cycles.sense)
     warnings += angle_warnings(repetitions)
     curves = cycle_curves_of(cuts.cycles, screw.angle, elapsed)
     cycles = cuts.cycles.start_s

@@ -41,6 +41,8 @@ class Cycles:
         Their standard deviations, by the noise and by what is not known of the law of motion at the foot.
     incomplete : ndarray of bool, shape (C,)
         Whether the recording begins or ends on the way: the joint comes less than 90 % of the way there.
+    sense : ndarray, shape (C,)
+        1 of a cycle out and back, -1 of one back and out, which only a given one can be, 0 of one without a swing.
     start_reasons, inversion_reasons, end_reasons : tuple of tuple of str
         Why the boundaries are uncertain, codes of `REASONS`; empty if they are not.
     """
@@ -52,6 +54,7 @@ class Cycles:
     inversion_sd_s: Float
     end_sd_s: Float
     incomplete: Bool
+    sense: Float
     start_reasons: tuple[Reasons, ...]
     inversion_reasons: tuple[Reasons, ...]
     end_reasons: tuple[Reasons, ...]
@@ -116,8 +119,8 @@ class Cuts:
         Cut-off of the filter that the cuts are found under, by the motion's own rhythm.
     noise : float
         Standard deviation of the rotation's white noise, radians.
-    least_swing : float
-        Least swing between turns, radians.
+    least_swing, excursion : float
+        Least swing between turns, and the largest angle less the smallest, radians.
     """
 
     cycles: Cycles
@@ -125,6 +128,7 @@ class Cuts:
     cutoff_hz: float
     noise: float
     least_swing: float
+    excursion: float
 
     def rows(self, seconds: Float, elapsed: Float) -> Float:
         """Fractional rows of a recording at such times; whole at its frames.
@@ -144,7 +148,7 @@ def no_cycles() -> Cycles:
     none = np.empty(0)
     return Cycles(
         start_s=none, inversion_s=none, end_s=none, start_sd_s=none, inversion_sd_s=none, end_sd_s=none,
-        incomplete=np.empty(0, dtype=np.bool_), start_reasons=(), inversion_reasons=(), end_reasons=(),
+        incomplete=np.empty(0, dtype=np.bool_), sense=none, start_reasons=(), inversion_reasons=(), end_reasons=(),
     )  # fmt: skip
 
 

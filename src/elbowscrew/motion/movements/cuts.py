@@ -58,7 +58,14 @@ def cut(
     """
     known = np.flatnonzero(np.isfinite(twist))
     if known.size < _FEWEST_SAMPLES:
-        return Cuts(cycles=no_cycles(), movements=no_movements(), cutoff_hz=np.nan, noise=np.nan, least_swing=np.nan)
+        return Cuts(
+            cycles=no_cycles(),
+            movements=no_movements(),
+            cutoff_hz=np.nan,
+            noise=np.nan,
+            least_swing=np.nan,
+            excursion=np.nan,
+        )
     even = _even(twist, elapsed, rate_hz, known)
     sigma = noise_of(twist) if noise is None else noise
     swings = swings_of(even, rate_hz, sigma, least_swing)
@@ -73,6 +80,7 @@ def cut(
         cutoff_hz=swings.cutoff_hz,
         noise=swings.noise,
         least_swing=swings.least,
+        excursion=float(np.ptp(swings.smooth)),
     )
 
 

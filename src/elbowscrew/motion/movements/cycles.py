@@ -159,6 +159,7 @@ def cycles_of(swings: Swings, flanks: Flanks, gaps: Float, *, fast: bool) -> Cyc
         inversion_sd_s=sd[:, 1],
         end_sd_s=sd[:, 2],
         incomplete=incomplete,
+        sense=np.ones(tops.size),
         start_reasons=reasons[0],
         inversion_reasons=reasons[1],
         end_reasons=reasons[2],

@@ -3,23 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Final
 
 import numpy as np
 
-from elbowscrew.errors import SettingError
-from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import QualityWarning
 from elbowscrew.model.joint_type import JointType
-from elbowscrew.motion.movements.boundaries import REASONS, Cuts, Cycles, Reasons, no_cycles
+from elbowscrew.motion.movements.boundaries import REASONS, Cuts, Reasons, no_cycles
 from elbowscrew.motion.movements.course import measured_course, mixes_two_axes, two_axes_of
 from elbowscrew.motion.movements.cuts import cut
-from elbowscrew.motion.movements.swings import FEWEST_FOR_NOISE, swings_of
+from elbowscrew.motion.movements.given import given_cycles
+from elbowscrew.motion.movements.swings import FEWEST_FOR_NOISE
 from elbowscrew.motion.screws.measurement import Measurement, rotation_noise_of
 from elbowscrew.settings import Settings
-
-# Times that differ by less are the same: they may have been written with six decimals.
-_SAME_S: Final = 1e-6
 
 
 def measured_cuts(measured: Measurement, settings: Settings, joint_type: JointType | None = None) -> Cuts:
@@ -50,7 +45,7 @@ def measured_cuts(measured: Measurement, settings: Settings, joint_type: JointTy
         return replace(cuts, cycles=no_cycles())
     if settings.cycles is not None:
         first = float(measured.recording.time_s[0])
-        return replace(cuts, cycles=_given(np.array(settings.cycles) - first, first, course, elapsed))
+        return replace(cuts, cycles=given_cycles(np.array(settings.cycles), first, course, elapsed, rate_hz))
     return cuts
 
 
@@ -77,8 +72,24 @@ def _all_doubted(cuts: Cuts, code: str) -> Cuts:
     )
 
 
-def cut_warnings(cuts: Cuts) -> tuple[QualityWarning, ...]:
-    """One warning that says which boundaries are uncertain and why; none if none is."""
+def cut_warnings(cuts: Cuts, settings: Settings) -> tuple[QualityWarning, ...]:
+    """Say which boundaries are uncertain and why, and where a stated swing leaves no cycle; nothing if nothing is."""
+    return _doubts(cuts) + _no_such_swing(cuts, settings)
+
+
+def _no_such_swing(cuts: Cuts, settings: Settings) -> tuple[QualityWarning, ...]:
+    if settings.cycle_swing_deg is None or settings.cycles is not None or settings.no_cycles:
+        return ()
+    if cuts.cycles.start_s.size or not np.isfinite(cuts.excursion):
+        return ()
+    message = (
+        f"the motion does not swing out and back by the {settings.cycle_swing_deg:g} deg of --cycle-swing: there is "
+        f"no cycle; all of it spans {np.degrees(cuts.excursion):.3g} deg"
+    )
+    return (QualityWarning(code="no-such-swing", message=message),)
+
+
+def _doubts(cuts: Cuts) -> tuple[QualityWarning, ...]:
     cycles, movements = cuts.cycles, cuts.movements
     found: dict[str, list[str]] = {}
     for kind, reasons in (
@@ -106,39 +117,3 @@ def cut_warnings(cuts: Cuts) -> tuple[QualityWarning, ...]:
 def _listed(boundaries: list[str]) -> str:
     shown = ", ".join(boundaries[:6])
     return shown if len(boundaries) <= 6 else f"{shown} and {len(boundaries) - 6} more"
-
-
-def _given(times: Float, first: float, twist: Float, elapsed: Float) -> Cycles:
-    """Cycles between times that were given, each with the largest rotation of the smoothed twist as its inversion."""
-    span = float(elapsed[-1] - elapsed[0])
-    before = 0.0
-    for start, end in times.tolist():
-        if not before - _SAME_S <= start < end <= span + _SAME_S:
-            msg = (
-                f"--cycles: a cycle from {start + first:g} to {end + first:g} s; expected one after the other, within "
-                f"the recording's {first:g} to {span + first:g} s"
-            )
-            raise SettingError(msg)
-        before = end
-    known = np.flatnonzero(np.isfinite(twist))
-    time = elapsed - elapsed[0]
-    rate_hz = 1.0 / float(np.median(np.diff(time)))
-    even = np.arange(round(span * rate_hz) + 1) / rate_hz
-    smooth = swings_of(np.interp(even, time[known], twist[known]), rate_hz).smooth
-    tops = []
-    for start, end in times.tolist():
-        inside = slice(int(np.searchsorted(even, start)), max(int(np.searchsorted(even, end, side="right")), 1))
-        tops.append(float(even[inside][int(np.argmax(smooth[inside]))]) if smooth[inside].size else 0.5 * (start + end))
-    none, unknown = ((),) * len(times), np.full(len(times), np.nan)
-    return Cycles(
-        start_s=times[:, 0],
-        inversion_s=np.array(tops),
-        end_s=times[:, 1],
-        start_sd_s=unknown,
-        inversion_sd_s=unknown,
-        end_sd_s=unknown,
-        incomplete=np.zeros(len(times), dtype=np.bool_),
-        start_reasons=none,
-        inversion_reasons=none,
-        end_reasons=none,
-    )

@@ -58,10 +58,12 @@ def repetitions_of(
         rows = slice(first, last + 1)
         known = first + np.flatnonzero(screw.valid[rows] & np.isfinite(line[rows]).all(axis=1))
         highest[k], span[k] = _largest(screw.angle, first, last, gaps)
-        out, back = angular_velocity[first : turn + 1], -angular_velocity[turn : last + 1]
+        way = float(cycles.sense[k])
+        before, after = way * angular_velocity[first : turn + 1], -way * angular_velocity[turn : last + 1]
         # What the filter leaves out at the ends of the recording is not lost in it.
-        out, back = out[max(given[0] - first, 0) :], back[: max(given[-1] + 1 - turn, 0)]
-        speed[k] = _highest(out, least_rate), _highest(back, least_rate)
+        before, after = before[max(given[0] - first, 0) :], after[: max(given[-1] + 1 - turn, 0)]
+        if way != 0.0:
+            speed[k] = np.array([_highest(before, least_rate), _highest(after, least_rate)])[:: int(way)]
         if known.size:
             direction[k], point[k] = mean_line_of(screw.angle[known], line[known])
             slides = screw.slide[rows]
@@ -242,9 +244,10 @@ def _point_spread(directions: Float, points: Float, near: Float) -> float:
     return _spread(length(point - point.mean(axis=0)))
 
 
-def speed_warnings(repetitions: Repetitions) -> tuple[QualityWarning, ...]:
-    """Say in which cycles the highest speed is not given, of a motion that has speeds."""
-    numbers = repetitions.number[np.isnan(repetitions.outward_speed) | np.isnan(repetitions.back_speed)]
+def speed_warnings(repetitions: Repetitions, sense: Float) -> tuple[QualityWarning, ...]:
+    """Say in which cycles the highest speed is not given, of a motion that has speeds; `sense` is that of `Cycles`."""
+    unknown = np.isnan(repetitions.outward_speed) | np.isnan(repetitions.back_speed)
+    numbers = repetitions.number[unknown & (sense != 0.0)]
     if not numbers.size:
         return ()
     message = (
@@ -264,6 +267,22 @@ def angle_warnings(repetitions: Repetitions) -> tuple[QualityWarning, ...]:
         "frames the angle goes farther among them"
     )
     return (QualityWarning(code="angles-unknown", message=message, count=numbers.size),)
+
+
+def given_warnings(cycles: Cycles) -> tuple[QualityWarning, ...]:
+    """Say which of the cycles that were given are none out and back."""
+    number = np.arange(1, cycles.sense.size + 1)
+    parts = [
+        f"{_cycles_called(number[cycles.sense == sense])}: {what}"
+        for sense, what in (
+            (-1.0, "cut at a top, so that the joint goes back first and then out"),
+            (0.0, "without a swing beyond the noise, so that its speeds are left empty"),
+        )
+        if (cycles.sense == sense).any()
+    ]
+    if not parts:
+        return ()
+    return (QualityWarning(code="given-cycles", message=f"of the cycles of --cycles, {'; '.join(parts)}"),)
 
 
 def _cycles_called(numbers: NDArray[np.int64]) -> str:

@@ -51,8 +51,8 @@ class Swings(NamedTuple):
         Cut-off of the two-pass Butterworth filter.
     noise, smooth_noise : float
         Standard deviation (rad) of the white noise of one sample, and of what the filter leaves of it.
-    least : float
-        Least swing between two turning points, radians.
+    least, noise_swing : float
+        Least swing between two turning points, and the largest that the noise makes, radians.
     level, smooth : ndarray, shape (N,)
         The rotation with its two ends by the samples beside them, and the same filtered, radians.
     all_reversals, reversals : ndarray of int64, shape (T,)
@@ -71,6 +71,7 @@ class Swings(NamedTuple):
     noise: float
     smooth_noise: float
     least: float
+    noise_swing: float
     level: Float
     smooth: Float
     all_reversals: Index
@@ -111,11 +112,8 @@ def swings_of(twist: Float, rate_hz: float, noise: float | None = None, least_sw
     smooth = lowpass_series(level, rate_hz, cutoff_hz)
     smooth_noise = sigma * float(np.sqrt(noise_gain(rate_hz, cutoff_hz)))
     draws = max(2.0 * cutoff_hz * twist.size / rate_hz, _FEWEST_DRAWS)
-    least = max(
-        2.0 * float(np.sqrt(2.0 * np.log(draws))) * smooth_noise, _LEAST_SWING, _RANGE_SHARE * float(np.ptp(smooth))
-    )
-    if least_swing is not None:
-        least = least_swing
+    noise_swing = 2.0 * float(np.sqrt(2.0 * np.log(draws))) * smooth_noise
+    least = max(noise_swing, _LEAST_SWING, _RANGE_SHARE * float(np.ptp(smooth))) if least_swing is None else least_swing
     every = turning_points(smooth, least)
     kept, close = every, np.empty(0, dtype=np.int64)
     doubtful: dict[int, str] = {}
@@ -128,6 +126,7 @@ def swings_of(twist: Float, rate_hz: float, noise: float | None = None, least_sw
         noise=sigma,
         smooth_noise=smooth_noise,
         least=least,
+        noise_swing=noise_swing,
         level=level,
         smooth=smooth,
         all_reversals=every,
