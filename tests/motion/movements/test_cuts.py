@@ -301,3 +301,15 @@ def test_laws_by_their_closed_forms(share: float) -> None:
         assert (ratios[k], scales[k]) == pytest.approx(ratio_and_scale(times), abs=2e-4)
     cycloid = 0.5 - 0.5 / scales[1]
     assert cycloid - np.sin(2.0 * np.pi * cycloid) / (2.0 * np.pi) == pytest.approx(share, abs=1e-4)
+
+
+@pytest.mark.parametrize("ratio", [0.26, 0.28, 0.36, 0.4])
+@pytest.mark.parametrize("noise", [0.2, 1.5])
+def test_whether_small_strokes_between_large_ones_count_is_told_to_be_uncertain(ratio: float, noise: float) -> None:
+    """Tops of 90 and 25 deg in turn may be eight cycles, or four with a hesitation each."""
+    for seed in range(4):
+        motion = Motion().hold(0.5)
+        for k in range(8):
+            motion.to(90.0 * (ratio if k % 2 else 1.0), 0.7).to(0.0, 0.7)
+        found = motion.hold(0.5).trial(100.0, noise, np.random.default_rng(seed)).found().cycles
+        assert any("small-beside-neighbors" in codes for codes in found.inversion_reasons + found.start_reasons)

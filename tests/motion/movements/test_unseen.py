@@ -48,3 +48,35 @@ def test_a_largest_angle_beside_lost_frames_is_known() -> None:
     analysis = analyze(taken(harmonic(3), [(0.4, 0.6), (2.95, 3.08), (4.3, 4.6)]))
     assert np.degrees(analysis.repetitions.top_angle) == pytest.approx(90.0, rel=0.02)
     assert not told(analysis, "angles-unknown")
+
+
+GAPS = [(center, half) for center in (2.0, 3.0, 4.0, 6.0, 7.0, 0.0, 8.0) for half in (0.07, 0.15, 0.3, 0.5, 0.8, 1.0)]
+
+
+@pytest.mark.parametrize(("center", "half"), GAPS)
+def test_no_cycle_is_lost_without_a_word(center: float, half: float) -> None:
+    """Four cycles of two seconds; at whole seconds the joint turns back."""
+    noise = np.random.default_rng(3).normal(0.0, 0.2, 801)
+    analysis = analyze(taken(harmonic(4) + noise, [(center - half, center + half)]))
+    found = analysis.repetitions
+    if found.number.size < 4:
+        assert told(analysis, "turns-in-gaps")
+    if half < 0.1:
+        assert found.number.size == 4
+        assert not told(analysis, "turns-in-gaps")
+
+
+@pytest.mark.parametrize(("half", "incomplete"), [(0.4, [False, True, True, False]), (0.6, [False, True, False])])
+def test_cycles_that_meet_in_a_gap_are_incomplete(half: float, incomplete: list[bool]) -> None:
+    """Two of four, or the one that a longer gap makes of them."""
+    analysis = analyze(taken(harmonic(4), [(4.0 - half, 4.0 + half)]))
+    assert analysis.repetitions.incomplete.tolist() == incomplete
+    assert told(analysis, "turns-in-gaps")
+
+
+def test_a_gap_on_the_way_or_at_rest_hides_no_turn() -> None:
+    angle = np.concatenate([harmonic(2), np.zeros(200), harmonic(2)])
+    analysis = analyze(taken(angle, [(0.4, 0.6), (2.35, 2.7), (4.8, 5.3)]))
+    assert analysis.repetitions.number.size == 4
+    assert not told(analysis, "turns-in-gaps")
+    assert not analysis.repetitions.incomplete.any()

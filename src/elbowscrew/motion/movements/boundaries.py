@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowscrew.geometry.arrays import Bool, Float
+from elbowscrew.motion.movements.unseen import LONGEST_GAP_S
 
 Reasons = tuple[str, ...]
 
@@ -26,8 +27,6 @@ REASONS: Final[dict[str, str]] = {
 }
 """Why a boundary is uncertain: codes and words."""
 
-_LONGEST_GAP_S: Final = 0.1
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Cycles:
@@ -40,7 +39,8 @@ class Cycles:
     start_sd_s, inversion_sd_s, end_sd_s : ndarray, shape (C,)
         Their standard deviations, by the noise and by what is not known of the law of motion at the foot.
     incomplete : ndarray of bool, shape (C,)
-        Whether the recording begins or ends on the way: the joint comes less than 90 % of the way there.
+        Whether the recording begins or ends on the way, the joint coming less than 90 % of the way there, or a turn may
+        be lost in it (`Cuts.hidden_s`).
     sense : ndarray, shape (C,)
         1 of a cycle out and back, -1 of one back and out, which only a given one can be, 0 of one without a swing.
     start_reasons, inversion_reasons, end_reasons : tuple of tuple of str
@@ -121,6 +121,8 @@ class Cuts:
         Standard deviation of the rotation's white noise, radians.
     least_swing, excursion : float
         Least swing between turns, and the largest angle less the smallest, radians.
+    hidden_s : ndarray, shape (G, 2)
+        Begin and end of stretches without a pose in which the joint may turn back unseen.
     """
 
     cycles: Cycles
@@ -129,6 +131,7 @@ class Cuts:
     noise: float
     least_swing: float
     excursion: float
+    hidden_s: Float
 
     def rows(self, seconds: Float, elapsed: Float) -> Float:
         """Fractional rows of a recording at such times; whole at its frames.
@@ -165,7 +168,7 @@ def no_movements() -> Movements:
 def long_gaps(elapsed: Float, known: NDArray[np.intp]) -> Float:
     """Begin and end of gaps of over a tenth of a second, shape (G, 2), seconds from the first frame."""
     time = elapsed[known] - elapsed[0]
-    long = np.flatnonzero(np.diff(time) > _LONGEST_GAP_S)
+    long = np.flatnonzero(np.diff(time) > LONGEST_GAP_S)
     long = long[np.diff(known)[long] > 1]
     return np.column_stack([time[long], time[long + 1]])
 

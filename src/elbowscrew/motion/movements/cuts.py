@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -12,6 +13,7 @@ from elbowscrew.motion.movements.boundaries import Cuts, Cycles, Movements, in_g
 from elbowscrew.motion.movements.cycles import Flanks, cycles_of, flanks_of
 from elbowscrew.motion.movements.rests import Strokes, strokes_of
 from elbowscrew.motion.movements.swings import fast_content, noise_of, swings_of
+from elbowscrew.motion.movements.unseen import hidden_stretches
 
 _FEWEST_SAMPLES: Final = 10
 
@@ -65,6 +67,7 @@ def cut(
             noise=np.nan,
             least_swing=np.nan,
             excursion=np.nan,
+            hidden_s=np.empty((0, 2)),
         )
     even = _even(twist, elapsed, rate_hz, known)
     sigma = noise_of(twist) if noise is None else noise
@@ -74,13 +77,17 @@ def cut(
     flanks = flanks_of(swings, strokes)
     fast = bool(flanks.tops.size) and fast_content(swings, flanks.median_rise)
     cycles = cycles_of(swings, flanks, gaps, fast=fast)
+    spans = np.column_stack([cycles.start_s, cycles.end_s])
+    hidden = hidden_stretches(twist, elapsed - elapsed[0], swings.least, spans)
+    lost = (hidden[:, 0, None] < spans[:, 1]) & (hidden[:, 1, None] > spans[:, 0])
     return Cuts(
-        cycles=cycles,
+        cycles=replace(cycles, incomplete=cycles.incomplete | lost.any(axis=0)),
         movements=_movements(strokes, swings.rate_hz, _turns(strokes, flanks, cycles, swings.rate_hz), gaps, fast=fast),
         cutoff_hz=swings.cutoff_hz,
         noise=swings.noise,
         least_swing=swings.least,
         excursion=float(np.ptp(swings.smooth)),
+        hidden_s=hidden,
     )
 
 

@@ -74,7 +74,19 @@ def _all_doubted(cuts: Cuts, code: str) -> Cuts:
 
 def cut_warnings(cuts: Cuts, settings: Settings) -> tuple[QualityWarning, ...]:
     """Say which boundaries are uncertain and why, and where a stated swing leaves no cycle; nothing if nothing is."""
-    return _doubts(cuts) + _no_such_swing(cuts, settings)
+    hidden = () if settings.cycles is not None else _hidden(cuts)
+    return _doubts(cuts) + hidden + _no_such_swing(cuts, settings)
+
+
+def _hidden(cuts: Cuts) -> tuple[QualityWarning, ...]:
+    if not len(cuts.hidden_s):
+        return ()
+    told = _listed([f"{begin:.2f} to {end:.2f} s" for begin, end in cuts.hidden_s.tolist()])
+    message = (
+        f"the joint may turn back where there is no pose ({told} after the first frame): such cycles are not counted, "
+        "and those beside them may be parts of two; --cycles gives the times"
+    )
+    return (QualityWarning(code="turns-in-gaps", message=message, count=len(cuts.hidden_s)),)
 
 
 def _no_such_swing(cuts: Cuts, settings: Settings) -> tuple[QualityWarning, ...]:

@@ -34,7 +34,9 @@ _FEWEST_DRAWS: Final = 3.0
 
 LOCAL_SHARE: Final = 0.375
 """A turn with less than this share of the prominence of its like neighbors is a hesitation of a larger swing."""
+# Within such shares above and below that it is in doubt, which it is; the latter holds small strokes of 25 of 90 deg.
 _NEAR: Final = 0.25
+_NEAR_BELOW: Final = 0.4
 _NEAR_SWING: Final = 1.3
 _FAST_SHARE: Final = 0.25
 _FAST_RANK: Final = 3
@@ -254,7 +256,7 @@ def _by_local_rule(reversals: Index, values: Float) -> tuple[Index, Index]:
         share = chain.share(k)
         if not share < LOCAL_SHARE:
             continue
-        if share > (1.0 - _NEAR) * LOCAL_SHARE:
+        if share > (1.0 - _NEAR_BELOW) * LOCAL_SHARE:
             close += [k, chain.after[k]]
         for near in chain.take_out(k):
             if chain.share(near) < LOCAL_SHARE:

@@ -10,6 +10,9 @@ from elbowscrew.geometry.arrays import Float, Index
 
 _SLOPE_FRAMES: Final = 5
 _SLOPE_S: Final = 0.05
+LONGEST_GAP_S: Final = 0.1
+"""Shorter gaps hide nothing that counts."""
+_CYCLE_SHARE: Final = 0.8
 
 
 class Gaps(NamedTuple):
@@ -34,10 +37,10 @@ class Gaps(NamedTuple):
     lowest: Float
 
 
-def gaps_of(series: Float, time: Float) -> Gaps:
-    """Find the gaps of a series (N,), NaN where it is not known, over times (N,) in seconds."""
+def gaps_of(series: Float, time: Float, longer_s: float = 0.0) -> Gaps:
+    """Find the gaps of a series (N,), NaN where it is not known, over times (N,) in seconds; those longer than that."""
     known = np.flatnonzero(np.isfinite(series))
-    at = np.flatnonzero(np.diff(known) > 1)
+    at = np.flatnonzero((np.diff(known) > 1) & (np.diff(time[known]) > longer_s))
     before, after = known[at], known[at + 1]
     slopes = np.zeros((2, at.size))
     for k, place in enumerate(at.tolist()):
@@ -57,6 +60,38 @@ def gaps_of(series: Float, time: Float) -> Gaps:
         highest=np.where(inside, 0.5 * (high + np.maximum(tip, high)), high),
         lowest=np.where(inside, 0.5 * (low + np.minimum(tip, low)), low),
     )
+
+
+def hidden_stretches(series: Float, time: Float, least_swing: float, cycles_s: Float) -> Float:
+    """Stretches without a value in which a series may turn back unseen: begin and end, shape (H, 2), seconds.
+
+    That is a gap of over a tenth of a second in which it would go on by a swing that counts if it were slowed down
+    evenly, or that lasts about as long as a cycle; and a begin or end of the series that is lost while it moves.
+
+    Parameters
+    ----------
+    series, time : ndarray, shape (N,)
+    least_swing : float
+        Swing that counts, in the unit of the series.
+    cycles_s : ndarray, shape (C, 2)
+        Starts and ends of the cycles that were found, in the time of the series.
+    """
+    gaps = gaps_of(series, time, LONGEST_GAP_S)
+    begin, end = time[gaps.before], time[gaps.after]
+    low, high = np.sort([series[gaps.before], series[gaps.after]], axis=0)
+    goes_on = np.maximum(gaps.highest - high, low - gaps.lowest) >= least_swing
+    apart = ~((begin[:, None] < cycles_s[:, 1]) & (end[:, None] > cycles_s[:, 0])).any(axis=0)
+    lengths = np.diff(cycles_s[apart] if apart.any() else cycles_s, axis=1)
+    as_cycle = _CYCLE_SHARE * float(np.median(lengths)) if lengths.size else np.inf
+    hidden = goes_on | (end - begin >= as_cycle)
+    found = [np.column_stack([begin, end])[hidden]]
+    known = np.flatnonzero(np.isfinite(series))
+    for edge, place, way in ((0, 0, 1), (series.size - 1, known.size - 1, -1)):
+        lost_s = abs(float(time[edge] - time[known[place]]))
+        moved = abs(_slope(series, time, known, place, way)) * lost_s
+        if lost_s > LONGEST_GAP_S and (moved >= least_swing or lost_s >= as_cycle):
+            found.append(np.sort([[time[edge], time[known[place]]]], axis=1))
+    return np.concatenate(found)
 
 
 def _slope(series: Float, time: Float, known: Index, place: int, way: int) -> float:
