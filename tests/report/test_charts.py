@@ -2,64 +2,14 @@
 
 from __future__ import annotations
 
-import re
-from xml.etree import ElementTree
-
 import numpy as np
 import pytest
+from read_charts import Read, keys_in, numbers, picture_in
 
-from elbowscrew.geometry.arrays import Float
 from elbowscrew.report.charts import COLORS, Chart, color_of, picture, range_of, tick_text, ticks_between
 from elbowscrew.report.distributions import strip_chart
 
 NAN = float("nan")
-NUMBERS = re.compile(r"-?\d+(?:\.\d+)?")
-
-
-class Read:
-    """Parts of a picture, and values along and up by its ticks."""
-
-    def __init__(self, svg: str) -> None:
-        self.root = ElementTree.fromstring(re.search(r'<svg class="chart".*', svg, re.S).group())  # type: ignore[union-attr] # noqa: S314
-        texts = [one for one in self.root.iter("text") if re.fullmatch(r"−?[\d.]+", one.text or "")]
-        along = [one for one in texts if one.get("text-anchor") == "middle"]
-        up = [one for one in texts if one.get("text-anchor") == "end"]
-        marks = [numbers(one)[0] for one in self.every("path", "tick")] or [float(one.get("x", "")) for one in along]
-        self.x = line_through(marks, along)
-        self.y = line_through([numbers(one)[1] for one in self.every("path", "grid")], up) if up else self.x
-
-    def every(self, tag: str, look: str) -> list[ElementTree.Element]:
-        return [one for one in self.root.iter(tag) if one.get("class") == look]
-
-    def outline(self, look: str) -> list[Float]:
-        """Points (x, y) in data units of every path of that look."""
-        found = []
-        for path in self.every("path", look):
-            points = np.array(numbers(path)).reshape(-1, 2)
-            found.append(np.column_stack([np.polyval(self.x, points[:, 0]), np.polyval(self.y, points[:, 1])]))
-        return found
-
-    def dots(self, look: str) -> list[list[float]]:
-        return [
-            [
-                float(np.polyval(self.x, float(one.get("cx", "")))),
-                float(np.polyval(self.y, float(one.get("cy", "")))),
-                float(one.get("r", "")),
-            ]
-            for one in self.every("circle", look)
-        ]
-
-
-def numbers(path: ElementTree.Element) -> list[float]:
-    return [float(text) for text in NUMBERS.findall(path.get("d", ""))]
-
-
-def line_through(pixels: list[float], texts: list[ElementTree.Element]) -> Float:
-    values = [float((one.text or "").replace("−", "-")) for one in texts]
-    assert len(values) == len(pixels) > 1
-    line = np.polyfit(pixels, values, 1)
-    assert np.polyval(line, pixels) == pytest.approx(values, abs=0.2 * abs(line[0]))
-    return np.asarray(line)
 
 
 def chart() -> Chart:
@@ -74,7 +24,7 @@ def test_a_line_goes_through_its_values_and_is_broken_where_there_is_none() -> N
     y = np.array([0.0, 10, 20, 30, NAN, 50, 40, 30, 20, -10, -20])
     one = chart()
     one.line(X, y, "measured", "measured")
-    read = Read(one.svg())
+    read = Read(picture_in(one.svg()))
     (path,) = read.every("path", "measured")
     assert path.get("d", "").count("M") == 2
     (points,) = read.outline("measured")
@@ -87,7 +37,7 @@ def test_a_band_lies_between_its_edges_wherever_both_are_known() -> None:
     low[3], high[7] = NAN, NAN
     one = chart()
     one.band(X, low, high, "band-known", "± one")
-    read = Read(one.svg())
+    read = Read(picture_in(one.svg()))
     pieces = read.outline("band-known")
     assert [len(piece) for piece in pieces] == [2 * 3, 2 * 3, 2 * 3]
     for piece, rows in zip(pieces, (slice(0, 3), slice(4, 7), slice(8, 11)), strict=True):
@@ -99,7 +49,7 @@ def test_a_band_lies_between_its_edges_wherever_both_are_known() -> None:
 def test_points_stand_at_their_values_and_unknown_ones_nowhere() -> None:
     one = chart()
     one.points(np.array([1.0, 2.0, NAN, 8.0]), np.array([5.0, NAN, 3.0, 55.0]), "keyframe", "keyframes", radius=3.0)
-    assert Read(one.svg()).dots("keyframe") == [
+    assert Read(picture_in(one.svg())).dots("keyframe") == [
         pytest.approx([1.0, 5.0, 3.0], abs=0.15),
         pytest.approx([8.0, 55.0, 3.0], abs=0.15),
     ]
@@ -108,7 +58,7 @@ def test_points_stand_at_their_values_and_unknown_ones_nowhere() -> None:
 def test_spans_reach_from_begin_to_end_and_from_axis_to_top() -> None:
     one = chart()
     one.spans([(2.0, 5.0), (7.0, 7.0)], "fill-lost", "not tracked")
-    read = Read(one.svg())
+    read = Read(picture_in(one.svg()))
     wide, thin = read.every("rect", "fill-lost")
     x, width = float(wide.get("x", "")), float(wide.get("width", ""))
     assert np.polyval(read.x, [x, x + width]) == pytest.approx([2.0, 5.0], abs=0.02)
@@ -121,7 +71,7 @@ def test_a_segment_joins_its_two_ends_in_its_own_color() -> None:
     one = chart()
     one.segment((1.0, 9.0), (10.0, 30.0), "thread", "#123456")
     one.segment((0.0, 10.0), (5.0, 5.0), "level", label="RMS")
-    read = Read(one.svg())
+    read = Read(picture_in(one.svg()))
     assert read.outline("thread")[0] == pytest.approx(np.array([[1.0, 10.0], [9.0, 30.0]]), abs=0.15)
     assert [path.get("stroke") for look in ("thread", "level") for path in read.every("path", look)] == [
         "#123456",
@@ -137,19 +87,17 @@ def test_the_legend_has_each_drawn_thing_once_and_nothing_else() -> None:
     one.line(X, X + 1.0, "measured", "measured <x>")
     one.segment((0.0, 1.0), (0.0, 1.0), "thread")
     one.points(X, X, "keyframe", "keyframes")
-    keys = one.keys()
-    assert re.findall(r"</svg> ([^<]*)</span>", keys) == ["moving", "measured &lt;x&gt;", "keyframes"]
     # A surface has a surface for its key, a curve a line, a point a point, each with the look of the thing drawn.
-    assert re.findall(r'<(rect|path|circle) class="([^"]+)"', keys) == [
-        ("rect", "fill-moving"),
-        ("path", "measured"),
-        ("circle", "keyframe"),
+    assert keys_in(one.keys()) == [
+        ("rect", "fill-moving", "moving"),
+        ("path", "measured", "measured &lt;x&gt;"),
+        ("circle", "keyframe", "keyframes"),
     ]
 
 
 def test_labels_ticks_and_grid_stand_at_the_axes() -> None:
     one = chart()
-    read = Read(one.svg())
+    read = Read(picture_in(one.svg()))
     left, bottom, right = numbers(read.every("path", "axis")[0])
     assert np.polyval(read.x, [left, right]) == pytest.approx([0.0, 10.0], abs=0.02)
     assert np.polyval(read.y, bottom) == pytest.approx(-20.0, abs=0.2)
@@ -178,7 +126,7 @@ def test_what_lies_outside_is_cut_off_at_the_panel() -> None:
     one = chart()
     one.line(X, 100.0 * X, "measured")
     svg = one.svg()
-    read = Read(svg)
+    read = Read(picture_in(svg))
     (clip,) = read.root.iter("clipPath")
     assert f'clip-path="url(#{clip.get("id")})"' in svg
     (frame,) = clip
@@ -192,7 +140,7 @@ def test_what_lies_outside_is_cut_off_at_the_panel() -> None:
 
 def test_panels_stand_where_they_are_put_and_a_picture_says_what_it_is() -> None:
     drawn = picture("two", "A <title>", "What & why", 900.0, 465.0, [chart().panel(450.0, 235.0)])
-    root = ElementTree.fromstring(drawn)  # noqa: S314
+    root = picture_in(drawn)
     assert root.get("viewBox") == "0 0 900 465"
     assert root[2].get("transform") == "translate(450 235)"
     named = {one.get("id"): one.text for one in root.iter() if one.get("id")}
@@ -264,7 +212,7 @@ def test_a_strip_has_a_point_for_each_trial_and_a_box_of_its_quartiles() -> None
     few = np.array([20.0, 30.0])
     name = "a group with a name that is very long"
     drawn = strip_chart("top", "Largest <angle>", "deg", {"slow": (VALUES, NAMES), name: (few, NAMES[:2])})
-    read = Read(drawn)
+    read = Read(picture_in(drawn))
     unit = 0.1 * abs(read.x[0])
     known = VALUES[np.isfinite(VALUES)]
     usual = sorted(along for along, *_ in read.dots("one"))
@@ -299,12 +247,12 @@ def test_a_strip_has_a_point_for_each_trial_and_a_box_of_its_quartiles() -> None
     texts = {text.text for text in read.root.iter("text")}
     assert "Largest <angle> (deg)" in texts
     assert read.root[1].text == "Largest <angle> of every trial in 2 groups, outliers marked."
-    alone = ElementTree.fromstring(strip_chart("top", "Top", "deg", {"all": (VALUES, NAMES)}))  # noqa: S314
+    alone = picture_in(strip_chart("top", "Top", "deg", {"all": (VALUES, NAMES)}))
     assert alone[1].text == "Top of every trial, outliers marked."
 
 
 def test_nothing_of_a_strip_chart_lies_outside_it() -> None:
-    read = Read(strip_chart("top", "Top", "deg", {"slow": (VALUES, NAMES)}))
+    read = Read(picture_in(strip_chart("top", "Top", "deg", {"slow": (VALUES, NAMES)})))
     width, height = (float(part) for part in read.root.get("viewBox", "").split()[2:])
     left, bottom, right = numbers(read.every("path", "axis")[0])
     assert 0.0 < left < right < width
