@@ -24,6 +24,7 @@ _STILL_S: Final = 0.5
 _FEWEST_STILL_FRAMES: Final = 20
 _LARGEST_DRIFT: Final = 3.0
 _STILL_NOISE_M: Final = 0.001
+_NO_JITTER_M: Final = 1e-9  # poses that do not change at all, but for the rounding of their mean
 _LARGEST_ERROR_M: Final = 1.0
 # Exports have six decimals: where some coordinate repeats in all of them its noise is that of the rounding, not none.
 _ROUNDING_SD: Final = np.array([2.0, 2.0, 2.0, 1.0, 1.0, 1.0]) * 1e-6 / np.sqrt(12.0)
@@ -160,7 +161,7 @@ def _still(body: RigidBody, rate_hz: float, settings: Settings) -> PoseNoise | N
     scale = np.array([radius] * 3 + [1.0] * 3)
     size = np.sqrt(np.sum((rest * scale) ** 2, axis=(1, 2)) / frames)
     drift = np.sqrt(np.sum((slope * scale) ** 2, axis=1))
-    still = (drift <= _LARGEST_DRIFT * size) & (size <= _STILL_NOISE_M) & (size > 0.0)
+    still = (drift <= _LARGEST_DRIFT * size) & (size <= _STILL_NOISE_M) & (size > _NO_JITTER_M)
     if not still.any():
         return None
     # The stillest of many is stiller than the noise: the median of those within its double says what is usual.
