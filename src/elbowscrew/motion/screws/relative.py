@@ -65,8 +65,8 @@ def joint_from_bodies(
     measured = distal.tracked if proximal is None else distal.tracked & proximal.tracked
     rows = np.flatnonzero(measured)
     if rows.size == 0:
-        both = f"{distal.name!r} is" if proximal is None else f"{proximal.name!r} and {distal.name!r} are both"
-        msg = f"no frame has {both} tracked: nothing to analyze; see `elbowscrew info` for what the file holds"
+        who = f"{distal.name!r}" if proximal is None else f"{proximal.name!r} and {distal.name!r} both"
+        msg = f"no frame has {who} tracked: nothing to analyze; see `elbowscrew info` for what the file holds"
         raise AnalysisError(msg)
     row = int(rows[0]) if reference_row is None else reference_row
     if not measured[row]:
