@@ -107,14 +107,10 @@ def _late(node: ast.AST) -> list[ast.stmt] | list[ast.expr]:
 
 
 def _own_lines(statement: ast.stmt) -> range:
-    body = getattr(statement, "body", None) or getattr(statement, "cases", None)
-    if isinstance(statement, ast.Match):
-        end = statement.end_lineno or statement.lineno
-    elif body:
-        end = max(statement.lineno, body[0].lineno - 1)
-    else:
-        end = statement.end_lineno or statement.lineno
-    return range(min([statement.lineno, *(d.lineno for d in getattr(statement, "decorator_list", []))]), end + 1)
+    first = min(part.lineno for part in (statement, *getattr(statement, "decorator_list", [])))
+    if getattr(statement, "body", None):
+        return range(first, max(statement.lineno + 1, statement.body[0].lineno))  # type: ignore[attr-defined]
+    return range(first, (statement.end_lineno or first) + 1)
 
 
 def _text(node: ast.AST) -> str:
@@ -244,10 +240,13 @@ def seen(runs: list[Run], fault: Fault, sources: Path) -> bool:
     keys = {
         test: (*key, sum(run.seconds[test] for test in tests)) for run, tests in reached for test, key in tests.items()
     }
+    if not keys:
+        return False
     folders = [run.tests for run, tests in reached if tests]
-    return (
-        bool(keys) and _in_child(lambda: _pytest([*folders, "-x", "--tb=no"], sources, Chosen(keys), silent=True)) != 0
-    )
+    status = _in_child(lambda: _pytest([*folders, "-x", "--tb=no"], sources, Chosen(keys), silent=True))
+    if status == pytest.ExitCode.INTERNAL_ERROR:
+        raise SystemExit(f"pytest itself fails: {fault}")
+    return status != 0
 
 
 def _pytest(arguments: list[str], sources: Path, plugin: object, *, silent: bool = False) -> int:
@@ -259,15 +258,20 @@ def _pytest(arguments: list[str], sources: Path, plugin: object, *, silent: bool
     os.environ["PYTHONPATH"] = str(sources)
     sys.path.insert(0, str(sources))
     sys.path_importer_cache.clear()
-    return int(pytest.main(["-q", "-p", "no:cacheprovider", *arguments], plugins=[plugin]))
+    kept = f"--basetemp={sources.parent / 'written'}"  # the usual folder is shared with other runs
+    return int(pytest.main(["-q", "-p", "no:cacheprovider", kept, *arguments], plugins=[plugin]))
 
 
 def _in_child(work: Callable[[], int]) -> int:
-    """0 where the work in a process of its own ends with 0."""
+    """What the work in a process of its own ends with; less than 0 where a signal has ended it."""
     child = os.fork()
     if child == 0:
-        os._exit(work())
-    return os.waitpid(child, 0)[1]
+        status = int(pytest.ExitCode.INTERNAL_ERROR)
+        try:
+            status = work()
+        finally:
+            os._exit(status)
+    return os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
 
 
 def main() -> None:
