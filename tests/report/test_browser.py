@@ -245,7 +245,7 @@ def trials(page: Any) -> list[str]:
 def test_the_table_sorts_up_down_and_by_number(open_page: Any, study: Path) -> None:
     page = open_page(study / "index.html")
     assert len(trials(page)) == 18
-    header = page.locator("#trials thead th", has_text="Largest θ")
+    header = page.locator("#trials thead th", has_text="Largest angle")
     column = page.evaluate(
         "[...document.querySelectorAll('#trials thead th')].findIndex(h => h.textContent.startsWith('Largest'))"
     )

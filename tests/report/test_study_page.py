@@ -79,14 +79,15 @@ def test_each_column_holds_what_its_heading_says(study: Path) -> None:
     headings = re.findall(r'<th scope="col"[^>]*>([^<]*)</th>', above)
     (row,) = re.findall(r'<tr><th scope="row"><a href="[^"]+">trial 5</a></th>(.*?)</tr>', page)
     cells = [re.sub("<[^>]*>", "", cell) for cell in re.findall(r"<td[^>]*>(.*?)</td>", row, re.DOTALL)]
+    assert len(headings) == 1 + len(cells)
     (trial,) = (one for one in read_study(study).trials if one.folder == "trial 5")
     motion, model = trial.summary["motion"], trial.summary["interpolation"]
     shown = dict(zip(reversed(headings), reversed(cells), strict=False))
     for heading, value in {
-        "Largest θ, deg": motion["theta_max_deg"],
-        "Dispersion, deg": motion["axis_dispersion_deg"],
+        "Largest angle, deg": motion["theta_max_deg"],
+        "Dispersion of the axes, deg": motion["axis_dispersion_deg"],
         "Model error, RMS rotation, deg": model["rms_angle_error_deg"],
-        "RMS displ., mm": model["rms_displacement_mm"],
+        "RMS displacement, mm": model["rms_displacement_mm"],
     }.items():
         assert float(shown[heading].replace("−", "-")) == pytest.approx(
             value, abs=0.051 if "Largest" in heading else 0.0051

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import is_dataclass
 from pathlib import Path
 from types import NoneType, UnionType
 from typing import Any, Union, get_args, get_origin, get_type_hints
@@ -22,6 +23,8 @@ from elbowscrew.model.summary_types import (
     TrialSummary,
     WarningSummary,
 )
+from elbowscrew.report.study import Failure
+from elbowscrew.report.study_page import Factor, GroupRow, Measure, TrialRow
 
 TYPES: dict[str, Any] = {
     "summary": AnalysisSummary,
@@ -34,6 +37,16 @@ TYPES: dict[str, Any] = {
     "warning": WarningSummary,
 }
 """What `elbowscrew.report.trial_page` and its loops call the parts of a result."""
+STUDY_TYPES: dict[str, Any] = {
+    "row": TrialRow,
+    "group": GroupRow,
+    "factor": Factor,
+    "measure": Measure,
+    "column": Measure,
+    "failure": Failure,
+}
+"""What `elbowscrew.report.study_page` and its loops call the parts of a study."""
+TEMPLATES = {"trial.html": TYPES, "study.html": STUDY_TYPES, "base.html": {}}
 METHODS = {"items", "lower", "startswith"}
 
 
@@ -54,10 +67,14 @@ def unknown_in(node: Any, types: Mapping[str, Any]) -> Iterator[str]:
     for key in reversed(path):
         if key in METHODS or not isinstance(key, str):
             return
-        if not is_typeddict(kind) or key not in get_type_hints(kind):
+        if not has_keys(kind) or key not in get_type_hints(kind):
             yield ".".join([inner.name, *map(str, reversed(path))])
             return
         kind = only(get_type_hints(kind)[key])
+
+
+def has_keys(kind: Any) -> bool:
+    return is_typeddict(kind) or hasattr(kind, "_fields") or is_dataclass(kind)
 
 
 def only(kind: Any) -> Any:
@@ -69,12 +86,30 @@ def only(kind: Any) -> Any:
 
 @pytest.fixture
 def source(root: Path) -> str:
-    return (root / "src" / "elbowscrew" / "report" / "templates" / "trial.html").read_text(encoding="utf-8")
+    return template(root, "trial.html")
 
 
-def test_keys_of_the_template_are_keys_of_the_files(source: str) -> None:
-    assert list(unknown(Environment(autoescape=True).parse(source), TYPES)) == []
-    assert {name for name in TYPES if f"{name}." in source} == set(TYPES)
+def template(root: Path, name: str) -> str:
+    return (root / "src" / "elbowscrew" / "report" / "templates" / name).read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("name", TEMPLATES)
+def test_keys_of_a_template_are_keys_of_what_it_shows(root: Path, name: str) -> None:
+    source, types = template(root, name), TEMPLATES[name]
+    assert list(unknown(Environment(autoescape=True).parse(source), types)) == []
+    assert {one for one in types if f"{one}." in source} == set(types)
+
+
+def test_every_template_is_looked_at(root: Path) -> None:
+    folder = root / "src" / "elbowscrew" / "report" / "templates"
+    assert {path.name for path in folder.iterdir()} == set(TEMPLATES)
+
+
+@pytest.mark.parametrize("key", ["row.outlier", "column.decimals", "failure.kind", "factor.levels", "group.count"])
+def test_a_misspelled_key_of_a_study_is_seen(root: Path, key: str) -> None:
+    source = template(root, "study.html")
+    assert key in source
+    assert list(unknown(Environment(autoescape=True).parse(source.replace(key, f"{key}x")), STUDY_TYPES))
 
 
 @pytest.mark.parametrize(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Any, Final, NamedTuple
+from typing import Final, NamedTuple, TypedDict
 from urllib.parse import quote
 
 import numpy as np
@@ -25,7 +25,7 @@ _ALL: Final = "all trials"
 
 
 class Measure(NamedTuple):
-    """A number that is compared over the trials, and how it is read from ``summary.json``."""
+    """A number of each trial, and how it is read from ``summary.json``."""
 
     key: str
     title: str
@@ -40,12 +40,54 @@ def _second_range(motion: MotionSummary) -> float | None:
     return None if two is None else two["axis2"]["range_deg"]
 
 
+def _cone(motion: MotionSummary) -> float | None:
+    joint = motion["joint_axis"]
+    return None if joint is None else joint["axis_cone95_deg"]
+
+
 MEASURES: Final = (
     Measure("top", "Largest angle", "deg", lambda one: one["motion"]["theta_max_deg"], 1),
     Measure("dispersion", "Dispersion of the axes", "deg", lambda one: one["motion"]["axis_dispersion_deg"], 2),
     Measure("second", "Range about the second axis", "deg", lambda one: _second_range(one["motion"]), 1),
     Measure("error", "Model error, RMS rotation", "deg", lambda one: one["interpolation"]["rms_angle_error_deg"], 2),
 )
+"""Those that are compared over the trials."""
+COLUMNS: Final = (
+    Measure("frames", "Frames", "", lambda one: one["trial"]["frames"], 0),
+    Measure("tracked", "Tracked", "%", lambda one: 100.0 * (1.0 - one["trial"]["missing_share"]), 1),
+    *MEASURES,
+    Measure("cone", "Axis 95 % cone", "deg", lambda one: _cone(one["motion"]), 3),
+    Measure("displacement", "RMS displacement", "mm", lambda one: one["interpolation"]["rms_displacement_mm"], 2),
+    Measure("repetitions", "Repetitions", "", lambda one: one["motion"]["repetitions"], 0),
+)
+"""Those that stand in the table of the trials, in order."""
+
+
+class TrialRow(TypedDict):
+    """What the table shows of a trial: the numbers of `COLUMNS` by their keys, NaN where not known."""
+
+    folder: str
+    link: str | None
+    thumb: Markup
+    factors: list[tuple[str, str]]
+    values: dict[str, float]
+    warnings: list[str]
+    outlier: list[str]
+
+
+class GroupRow(TypedDict):
+    """Trials alike in a factor: of each measure its decimals, and its median and quartiles."""
+
+    name: str
+    count: int
+    cells: list[tuple[int, list[float | None]]]
+
+
+class Factor(TypedDict):
+    """A column of the manifest, and what it says."""
+
+    name: str
+    levels: list[str]
 
 
 def write_study_page(folder: Path, factors: Sequence[str] | None = None) -> Path:
@@ -68,7 +110,7 @@ def study_page(study: Study) -> str:
         One HTML file that needs no other but the trials' pages it links to. The same results give the same bytes.
     """
     trials, failures = [], list(study.failures)
-    rows: list[dict[str, Any]] = []
+    rows: list[TrialRow] = []
     scale = _scale(study.trials)
     for trial in study.trials:
         try:
@@ -81,10 +123,11 @@ def study_page(study: Study) -> str:
     content = {
         "name": study.name,
         "rows": rows,
-        "factors": [{"name": name, "levels": _levels(trials, name)} for name in study.factors],
+        "factors": [Factor(name=name, levels=_levels(trials, name)) for name in study.factors],
         "group_name": _group_factor(study),
         "groups": _table_of_groups(rows, groups),
         "measures": MEASURES,
+        "columns": COLUMNS,
         "charts": _charts(rows, groups),
         "failures": failures,
         "others": study.others,
@@ -118,25 +161,18 @@ def _scale(trials: Sequence[StudyTrial]) -> tuple[float, float]:
     return min(float(theta.min()) for theta in known), max(float(theta.max()) for theta in known)
 
 
-def _row(trial: StudyTrial, scale: tuple[float, float]) -> dict[str, Any]:
+def _row(trial: StudyTrial, scale: tuple[float, float]) -> TrialRow:
     summary = trial.summary
-    figures, motion, model = summary["trial"], summary["motion"], summary["interpolation"]
     if not trial.theta.size:
         msg = "screw.csv has no rows"
         raise ValueError(msg)
-    joint = motion["joint_axis"]
     warnings = [one["code"] for one in summary["warnings"] if one["severity"] == "warning"]
-    values = {one.key: one.read(summary) for one in MEASURES}
+    values = {one.key: one.read(summary) for one in COLUMNS}
     return {
         "folder": trial.folder,
         "link": quote(f"{trial.folder}/report.html", safe="/") if trial.page else None,
         "thumb": thumbnail(trial.time_s, trial.theta, scale),
         "factors": list(trial.factors.items()),
-        "frames": figures["frames"],
-        "tracked": 100.0 * (1.0 - figures["missing_share"]),
-        "cone": None if joint is None else joint["axis_cone95_deg"],
-        "displacement": model["rms_displacement_mm"],
-        "repetitions": motion["repetitions"],
         "values": {key: np.nan if value is None else value for key, value in values.items()},
         "warnings": list(dict.fromkeys(warnings)),
         "outlier": [],
@@ -157,7 +193,7 @@ def _groups(study: Study, trials: Sequence[StudyTrial]) -> dict[str, list[int]]:
     return dict(sorted(groups.items()))
 
 
-def _mark_outliers(rows: list[dict[str, Any]], groups: Mapping[str, list[int]]) -> None:
+def _mark_outliers(rows: list[TrialRow], groups: Mapping[str, list[int]]) -> None:
     for measure in MEASURES:
         for members in groups.values():
             values = np.array([rows[k]["values"][measure.key] for k in members], dtype=np.float64)
@@ -166,11 +202,11 @@ def _mark_outliers(rows: list[dict[str, Any]], groups: Mapping[str, list[int]]) 
                     rows[k]["outlier"].append(f"{measure.title} {'high' if z > 0.0 else 'low'}")
 
 
-def _table_of_groups(rows: list[dict[str, Any]], groups: Mapping[str, list[int]]) -> list[dict[str, Any]]:
+def _table_of_groups(rows: list[TrialRow], groups: Mapping[str, list[int]]) -> list[GroupRow]:
     """Count, median and quartiles of each measure in each group."""
-    table = []
+    table: list[GroupRow] = []
     for name, members in groups.items():
-        cells = []
+        cells: list[tuple[int, list[float | None]]] = []
         for measure in MEASURES:
             values = np.array([rows[k]["values"][measure.key] for k in members], dtype=np.float64)
             known = values[np.isfinite(values)]
@@ -180,7 +216,7 @@ def _table_of_groups(rows: list[dict[str, Any]], groups: Mapping[str, list[int]]
     return table
 
 
-def _charts(rows: list[dict[str, Any]], groups: Mapping[str, list[int]]) -> list[tuple[str, Markup]]:
+def _charts(rows: list[TrialRow], groups: Mapping[str, list[int]]) -> list[tuple[str, Markup]]:
     shown = groups if len(groups) <= _MOST_STRIPS else {_ALL: list(range(len(rows)))}
     charts = []
     for measure in MEASURES:
