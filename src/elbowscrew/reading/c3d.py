@@ -25,7 +25,6 @@ from elbowscrew.reading.clock import is_rate
 from elbowscrew.reading.options import ReadOptions, nothing_wanted, stated_unit
 from elbowscrew.reading.source import sha256_of
 
-ENDINGS: Final = (".c3d",)
 _LONGEST_OPENING_S: Final = 600
 
 

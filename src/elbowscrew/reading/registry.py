@@ -5,9 +5,9 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from itertools import islice
+from itertools import chain, islice
 from pathlib import Path
-from typing import Final
+from typing import Final, Generic, TypeVar
 
 from elbowscrew.errors import RecordingError, SettingError, UsageError
 from elbowscrew.model import Recording
@@ -17,14 +17,19 @@ from elbowscrew.reading.cells import parse_number
 from elbowscrew.reading.options import ReadOptions
 from elbowscrew.reading.source import TextSource, first_bytes, open_source
 
+_HEAD_BYTES: Final = 16
 _UNITS: Final = frozenset({"units"})
 _MARKERS: Final = frozenset({"markers"})
 _ALL: Final = _UNITS | _MARKERS | {"rotation"}
 
 
+Head = TypeVar("Head")
+Opened = TypeVar("Opened")
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Format:
-    """One entry of the registry.
+class Format(Generic[Head, Opened]):
+    """One entry of the registry: a text format is told by cells and read from lines, a binary one from the file.
 
     Attributes
     ----------
@@ -32,7 +37,7 @@ class Format:
     endings : tuple of str
         How the names of its files end, in lower case, so that they are found in folders.
     recognizes : callable
-        Told the cells of the first line with any content, in lower case.
+        Told the cells of the first line with any content, in lower case; of a binary format, its first bytes.
     read : callable
     accepts : frozenset of str
         The fields of `ReadOptions` that mean something for it.
@@ -40,12 +45,12 @@ class Format:
 
     name: str
     endings: tuple[str, ...]
-    recognizes: Callable[[list[str]], bool]
-    read: Callable[[TextSource, ReadOptions], Recording]
+    recognizes: Callable[[Head], bool]
+    read: Callable[[Opened, ReadOptions], Recording]
     accepts: frozenset[str]
 
 
-FORMATS: Final = (
+FORMATS: Final[tuple[Format[list[str], TextSource], ...]] = (
     Format(
         name="Motive columns",
         endings=(".csv",),
@@ -71,7 +76,13 @@ FORMATS: Final = (
 )
 """A new text format is one module with `recognizes` and `read` and one entry here; the first that fits reads it."""
 
-ENDINGS: Final = tuple(dict.fromkeys((*(ending for entry in FORMATS for ending in entry.endings), *c3d.ENDINGS)))
+BINARY_FORMATS: Final[tuple[Format[bytes, Path], ...]] = (
+    Format(name="C3D", endings=(".c3d",), recognizes=c3d.recognizes, read=c3d.read, accepts=_UNITS | _MARKERS),
+)
+"""Formats that are no text, likewise."""
+
+_ENDINGS: Final = (*(one.endings for one in FORMATS), *(one.endings for one in BINARY_FORMATS))
+ENDINGS: Final = tuple(dict.fromkeys(chain.from_iterable(_ENDINGS)))
 """How the names of recordings end, in folders and for patterns; a file that is named itself may end as it likes."""
 
 
@@ -125,9 +136,11 @@ def read_recording(
     patterns = (markers,) if isinstance(markers, str) else tuple(markers)
     options = ReadOptions(units=units, rotation=rotation, markers=patterns)
     file = Path(path)
-    if c3d.recognizes(first_bytes(file, 2)):
-        _check_options(file, "C3D", options, _UNITS | _MARKERS)
-        return c3d.read(file, options)
+    head = first_bytes(file, _HEAD_BYTES)
+    for binary in BINARY_FORMATS:
+        if binary.recognizes(head):
+            _check_options(file, binary.name, options, binary.accepts)
+            return binary.read(file, options)
     source = open_source(file)
     first_line = next((line for line in islice(source.lines(), 20) if line.strip(", ;\t")), "")
     cells = [cell.strip().strip('"').strip().casefold() for cell in first_line.split(source.delimiter)]
