@@ -12,7 +12,7 @@ import sys
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,8 +24,17 @@ from elbowscrew.plots import style
 from elbowscrew.plots.comparison import plain_ticks, series_look
 
 ROOT = Path(__file__).parent.parent
-METHODS = ("dlb", "sclerp", "dib")
-LAWS = ("linear", "cycloidal", "harmonic", "polynomial-345", "polynomial-4567", "modified-sine", "best", "empirical")
+METHODS: Final = ("dlb", "sclerp", "dib")
+LAWS: Final = (
+    "linear",
+    "cycloidal",
+    "harmonic",
+    "polynomial-345",
+    "polynomial-4567",
+    "modified-sine",
+    "best",
+    "empirical",
+)
 COUNTS = (2, 3, 4, 5, 6, 8)
 NOISE = {"marker_noise_mm": 0.05, "proximal": "moving"}
 
@@ -122,7 +131,7 @@ def main() -> None:
         draw(results, target)
 
 
-ELBOW_METHODS = ("joint", "sclerp", "dlb")
+ELBOW_METHODS: Final = ("joint", "sclerp", "dlb")
 _SEARCHED: tuple[MethodName, ...] = ("joint", "sclerp")
 LIMITS_MM = (1.0, 2.0, 5.0)
 SHARED, OF_JOINT, OF_POSE = 12, 2, 6

@@ -12,9 +12,10 @@ from pathlib import Path
 import pytest
 
 from elbowscrew import __version__
+from elbowscrew.choices import BLEND_NAMES, CLOSED_LAWS, KEYFRAME_SOURCES, KNOT_NAMES, METHOD_NAMES
 from elbowscrew.cli.app import app
 from elbowscrew.study_columns import FAILURE_COLUMNS, study_header
-from elbowscrew.tables import INTERPOLATION_COLUMNS, SCREW_COLUMNS
+from elbowscrew.tables import COMPARISON_COLUMNS, INTERPOLATION_COLUMNS, KEYFRAME_COLUMNS, SCREW_COLUMNS
 from elbowscrew.view.figure_names import SAVED_FIGURES
 
 LINK = re.compile(r"!?\[[^\]]*\]\(([^)#]*)(?:#([^)]+))?\)")
@@ -80,6 +81,21 @@ def test_every_column_of_a_study_is_documented(root: Path) -> None:
     for column in [*header, *FAILURE_COLUMNS]:
         told = re.sub(r"_y(_mm)?$", r"_x\1", column)  # of three components the first and the last are named
         assert f"`{told}`" in text, column
+
+
+def test_laws_and_columns_of_a_comparison_are_documented(root: Path) -> None:
+    text = (root / "docs" / "compare.md").read_text(encoding="utf-8")
+    laws = text[text.index("## Laws") : text.index("## Phases")]
+    told = re.findall(r"`([a-z][a-z0-9-]+)`", laws[: laws.index("`--law-peak")])
+    assert sorted(told) == sorted(CLOSED_LAWS)
+    assert {"best", "empirical"} <= set(re.findall(r"`([a-z]+)`", laws))
+    words = set(re.findall(r"`(\w+?)(?:_deg|_mm)?`", text))
+    for column in (*COMPARISON_COLUMNS, *KEYFRAME_COLUMNS):
+        stem = re.sub(r"^(rms|max)_(?!displacement)", "", column.name)
+        ends = (stem, re.sub(r"\d$", "0", stem), re.sub(r"_[yz]$", "_x", stem))
+        assert words.intersection(ends), column.name
+    for name in (*METHOD_NAMES, *KNOT_NAMES, *BLEND_NAMES, *KEYFRAME_SOURCES):
+        assert f"`{name}`" in text, name
 
 
 def test_the_version_stands_in_changelog_and_citation(root: Path) -> None:

@@ -7,8 +7,9 @@ import importlib
 import inspect
 import pkgutil
 import re
+import sys
 from types import FunctionType
-from typing import Any
+from typing import Any, Literal, get_args, get_origin, get_type_hints
 
 import pytest
 from numpydoc.validate import validate  # type: ignore[import-untyped]
@@ -86,3 +87,50 @@ def test_there_is_something_to_look_at() -> None:
     assert len(functions(GEOMETRY)) > 80
     assert {full_name(kind) for kind in classes(GEOMETRY)} >= {"elbowscrew.geometry.screw.Screw"}
     assert len(functions(SURFACE)) >= 6
+
+
+CHOICES = re.compile(r"^(\w+(?:, \w+)*) : .*?\{(\"[^}]*)\}", re.M)
+
+
+def choices_in(annotation: Any) -> set[str]:
+    """Strings that a type allows, those of the parts of a tuple or a union among them."""
+    if get_origin(annotation) is Literal:
+        return {one for one in get_args(annotation) if isinstance(one, str)}
+    return set().union(*map(choices_in, get_args(annotation)))
+
+
+def documented(thing: Any) -> list[Any]:
+    methods = filter(inspect.isfunction, vars(thing).values()) if inspect.isclass(thing) else ()
+    return [thing, *methods]
+
+
+def type_of(thing: Any, name: str) -> Any:
+    """What a parameter or a field may be; None where its type is there for type checkers alone."""
+    try:
+        alone = type("", (), {"__annotations__": {name: thing.__annotations__.get(name)}})
+        return get_type_hints(alone, vars(sys.modules[thing.__module__]))[name]
+    except NameError:
+        return None
+
+
+def all_documented() -> list[Any]:
+    """Every function, class and method of the package with choices in its docstring."""
+    found = []
+    for module in pkgutil.walk_packages(elbowscrew.__path__, "elbowscrew."):
+        if module.name in ("elbowscrew.__main__", "elbowscrew.reading.c3d_worker"):
+            continue
+        for value in vars(importlib.import_module(module.name)).values():
+            if getattr(value, "__module__", "") == module.name and callable(value):
+                found += [one for one in documented(value) if CHOICES.search(inspect.getdoc(one) or "")]
+    return found
+
+
+@pytest.mark.parametrize("thing", all_documented(), ids=full_name)
+def test_choices_in_docstrings_are_those_of_the_types(thing: Any) -> None:
+    for names, told in CHOICES.findall(inspect.getdoc(thing) or ""):
+        words = set(re.findall(r'"([^"]+)"', told))
+        for name in names.split(", "):
+            allowed = choices_in(type_of(thing, name))
+            if allowed:
+                assert words <= allowed, name
+                assert words == allowed or "..." in told, name

@@ -37,7 +37,7 @@ class Landmark(ArrayRecord):
         Names; the landmark is in the middle of them.
     point : ndarray, shape (3,), optional
         Meters.
-    frame : {"arm", "forearm", "lab"}, optional
+    frame : {"proximal", "distal", "lab"}, optional
         What the coordinates are of: one of the two bodies, or the laboratory at the reference.
     """
 

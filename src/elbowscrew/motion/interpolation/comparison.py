@@ -89,7 +89,9 @@ def compare(recording: Recording, settings: Settings | None = None, plan: Compar
     rows: list[dict[str, Any]] = []
     laws: dict[str, tuple[PhaseLaw, ...]] = {}
     for source in keyframe_sources_of(measured, phases, plan, wanted):
-        fitted = {name: _laws_of(name, source, measured, points) for name in plan.laws}
+        fitted: dict[str, tuple[FittedLaw, ...] | str] = {
+            name: _laws_of(name, source, measured, points) for name in plan.laws
+        }
         if source.name == "raw" or not laws:
             laws = {
                 name: () if isinstance(found, str) else tuple(one.law for one in found)

@@ -8,7 +8,19 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from elbowscrew.choices import BLEND_NAMES, CLOSED_LAWS, KEYFRAME_SOURCES, KNOT_NAMES, METHOD_NAMES, functions_named
+from elbowscrew.choices import (
+    BLEND_NAMES,
+    CLOSED_LAWS,
+    KEYFRAME_SOURCES,
+    KNOT_NAMES,
+    METHOD_NAMES,
+    BlendName,
+    KeyframeSource,
+    KnotName,
+    LawName,
+    MethodName,
+    functions_named,
+)
 from elbowscrew.errors import SettingError, UsageError
 from elbowscrew.geometry.arrays import Bool, Float
 from elbowscrew.model import ModelPhases
@@ -16,7 +28,7 @@ from elbowscrew.motion.axes.measured import smoothed_displacement, twist_cutoff
 from elbowscrew.motion.screws.measurement import Measurement
 from elbowscrew.settings import Settings
 
-_LAWS: Final = (*CLOSED_LAWS, "best", "empirical")  # in the order that tables have had
+_LAWS: Final[tuple[LawName, ...]] = (*CLOSED_LAWS, "best", "empirical")  # in the order that tables have had
 _MOST_PER_PHASE: Final = 20
 
 
@@ -27,8 +39,8 @@ class ComparisonPlan:
     Attributes
     ----------
     methods : tuple of {"dlb", "sclerp", "sdlb", "dib", "catmull-rom", "joint"}
-    laws : tuple of str
-        Of the laws of motion, "best" and "empirical".
+    laws : tuple of {"cycloidal", ...}
+        Laws of motion, "best" and "empirical" among them.
     blends : tuple of {"piecewise", "global"}
     knots : tuple of {"law", "chord", "uniform", "angle"}
     counts : tuple of int
@@ -39,12 +51,12 @@ class ComparisonPlan:
         Use every N-th frame only.
     """
 
-    methods: tuple[str, ...] = METHOD_NAMES
-    laws: tuple[str, ...] = _LAWS
-    blends: tuple[str, ...] = BLEND_NAMES
-    knots: tuple[str, ...] = ("law",)
+    methods: tuple[MethodName, ...] = METHOD_NAMES
+    laws: tuple[LawName, ...] = _LAWS
+    blends: tuple[BlendName, ...] = BLEND_NAMES
+    knots: tuple[KnotName, ...] = ("law",)
     counts: tuple[int, ...] = (2, 3, 4, 5)
-    data: tuple[str, ...] = KEYFRAME_SOURCES
+    data: tuple[KeyframeSource, ...] = KEYFRAME_SOURCES
     decimation: tuple[int, ...] = (2, 4)
 
     def __post_init__(self) -> None:

@@ -106,7 +106,9 @@ class _Tried:
 class _Contest:
     """The types on the same frames, each fitted when it is first asked for."""
 
-    def __init__(self, poses: Poses, *, noise_known: bool, robust: bool, one: Fitted | None = None) -> None:
+    def __init__(
+        self, poses: Poses, *, noise_known: bool, robust: bool, one: Literal["hinge", "screw_hinge"] | None = None
+    ) -> None:
         self.poses, _ = poses.thinned(_FRAMES)
         self.consecutive = poses.at(slice(_CONSECUTIVE))
         self.noise_known = noise_known
@@ -189,7 +191,7 @@ def choose_type(
     noise_known: bool,
     robust: bool = False,
     forced: Fitted | None = None,
-    one: Fitted | None = None,
+    one: Literal["hinge", "screw_hinge"] | None = None,
 ) -> Choice:
     """Tell which type of joint moved so.
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Final
+from typing import Final, Literal
 
 import numpy as np
 
@@ -41,7 +41,7 @@ def identify_joint(
     noise_known: bool,
     robust: bool = False,
     forced: Fitted | None = None,
-    one: Fitted | None = None,
+    one: Literal["hinge", "screw_hinge"] | None = None,
     left: bool = False,
     everywhere: Everywhere | None = None,
     clusters: tuple[ClusterMotion, ...] = (),
