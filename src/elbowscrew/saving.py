@@ -155,7 +155,8 @@ def digests(folder: Path) -> dict[str, str]:
 
 
 def _write_json(path: Path, content: Mapping[str, object]) -> None:
-    write_new(path, (json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False) + "\n").encode())
+    text = json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+    write_new(path, text.encode("utf-8", "replace"))
 
 
 def _write_figures(staged: Path, view: TrialView, formats: Sequence[str]) -> None:

@@ -49,8 +49,7 @@ def interpolate(
 
     Times, laws and method are those of the file, unless given.
     """
-    from elbowscrew.cli import render
-    from elbowscrew.cli.text import printable
+    from elbowscrew.cli.text import emit, printable
     from elbowscrew.errors import UsageError
     from elbowscrew.motion.interpolation.rebuilding import interpolate as rebuild
     from elbowscrew.results.keyframe_table import read_keyframes
@@ -61,4 +60,4 @@ def interpolate(
         raise UsageError(msg)
     found = read_keyframes(keyframes, method=method, law=law, law_peak=law_peak)
     target = output if output is not None else Path(f"{keyframes.stem}_motion.csv")
-    render.emit(f"{printable(str(save_motion(rebuild(found, frames), target, force=force)))}\n")
+    emit(f"{printable(str(save_motion(rebuild(found, frames), target, force=force)))}\n")

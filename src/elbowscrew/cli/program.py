@@ -6,7 +6,7 @@ import os
 import sys
 from types import FrameType
 
-from elbowscrew.cli.text import NobodyReads, one_line
+from elbowscrew.cli.text import emit, one_line, tell
 from elbowscrew.errors import ElbowscrewError, OutputError, UsageError
 
 INTERRUPTED = 130
@@ -25,21 +25,18 @@ def run_program(given: list[str]) -> int:
     _mend_streams()
     try:
         code = _run(given)
-        sys.stdout.flush()
+        emit("")
     except ElbowscrewError as error:
         return _report(str(error), error.exit_code)
     except KeyboardInterrupt:
         return _report("interrupted; nothing was left half-written", INTERRUPTED)
     except Terminated as signal:
         return _report("terminated; nothing was left half-written", 128 + signal.number)
-    except (NobodyReads, BrokenPipeError):
-        _forget_output()
-        return 0
     except MemoryError:
         return _report("not enough memory; take fewer frames, or export fewer columns", OutputError.exit_code)
     except OSError as error:
-        _forget_output()
-        return _report(f"standard output cannot be written: {error.strerror or error}", OutputError.exit_code)
+        place = f"{error.filename}: " if error.filename is not None else ""
+        return _report(f"{place}{error.strerror or error}", OutputError.exit_code)
     return code
 
 
@@ -61,11 +58,7 @@ def _run(given: list[str]) -> int:
 
 
 def _report(message: str, code: int) -> int:
-    try:
-        sys.stderr.write(f"elbowscrew: error: {one_line(message)}\n")
-        sys.stderr.flush()
-    except OSError:
-        return code  # nobody can be told
+    tell(f"elbowscrew: error: {one_line(message)}")
     return code
 
 
@@ -85,11 +78,6 @@ def _mend_streams() -> None:
             setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: PTH123, SIM115
         elif hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="replace")
-
-
-def _forget_output() -> None:
-    """Let the interpreter's own last flush go nowhere."""
-    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _end_cleanly_when_terminated() -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -12,7 +11,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeRemaini
 from rich.progress import Progress as Bar
 from rich.text import Text
 
-from elbowscrew.cli.text import one_line
+from elbowscrew.cli.text import one_line, tell
 from elbowscrew.study.study import Progress
 
 _SECONDS_BETWEEN_LINES = 10.0
@@ -97,5 +96,4 @@ class _Rate:
 
 
 def _write(text: str) -> None:
-    sys.stderr.write(f"elbowscrew: {one_line(text)}\n")
-    sys.stderr.flush()
+    tell(f"elbowscrew: {one_line(text)}")

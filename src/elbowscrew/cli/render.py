@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import sys
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
@@ -12,7 +11,7 @@ from rich.console import Console, RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from elbowscrew.cli.text import NobodyReads, one_line, printable
+from elbowscrew.cli.text import emit, one_line, printable, tell
 
 if TYPE_CHECKING:
     from elbowscrew.model.comparison_summary_types import ComparisonSummary, ModelChoice, TrialsSummary
@@ -48,12 +47,12 @@ def warnings(found: Iterable[WarningSummary]) -> None:
     for warning in found:
         if warning["severity"] != "warning":
             continue
-        sys.stderr.write(f"elbowscrew: warning: {one_line(warning['message'])} [{warning['code']}]\n")
+        tell(f"elbowscrew: warning: {one_line(warning['message'])} [{warning['code']}]")
 
 
 def note(text: str) -> None:
     """Write one line of what went wrong beside the result."""
-    sys.stderr.write(f"elbowscrew: {one_line(text)}\n")
+    tell(f"elbowscrew: {one_line(text)}")
 
 
 def json_object(value: Mapping[str, object]) -> None:
@@ -65,7 +64,7 @@ def files(folder: Path) -> None:
     """Name the files of a result on standard error."""
     for path in sorted(folder.rglob("*")):
         if path.is_file():
-            sys.stderr.write(f"{printable(str(path))}\n")
+            tell(printable(str(path)))
 
 
 def analysis_table(summary: AnalysisSummary, folder: Path) -> None:
@@ -233,15 +232,6 @@ def paper_table(found: Iterable[PrintedValue]) -> None:
         word = "" if one.rounded == one.printed else one.note if one.agrees else "DIFFERS"
         table.add_row(one.place, one.quantity, one.printed, one.rounded, word)
     _print(table, Text(f"{counts[1]} numbers agree, {counts[0]} differ"))
-
-
-def emit(text: str) -> None:
-    """Write to standard output; a reader that has gone is not an error."""
-    try:
-        sys.stdout.write(text)
-        sys.stdout.flush()
-    except BrokenPipeError as error:
-        raise NobodyReads from error
 
 
 def _print(*parts: RenderableType) -> None:

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from elbowscrew.cli.render import print_rows
-from elbowscrew.cli.text import one_line
+from elbowscrew.cli.text import one_line, tell
 
 if TYPE_CHECKING:
     from elbowscrew.study.study import StudyResult
@@ -20,9 +19,9 @@ _FAILURES_TOLD = 10
 def skipped_files(skipped: Sequence[Skipped], *, verbose: bool) -> None:
     """Tell what was passed over: of many the first few, unless all are asked for."""
     for one in skipped if verbose else skipped[:_SKIPPED_TOLD]:
-        sys.stderr.write(f"elbowscrew: passed over: {one_line(f'{one.path}: {one.reason}')}\n")
+        tell(f"elbowscrew: passed over: {one_line(f'{one.path}: {one.reason}')}")
     if len(skipped) > _SKIPPED_TOLD and not verbose:
-        sys.stderr.write(f"elbowscrew: passed over: {len(skipped) - _SKIPPED_TOLD} more; --verbose names them\n")
+        tell(f"elbowscrew: passed over: {len(skipped) - _SKIPPED_TOLD} more; --verbose names them")
 
 
 def other_results(result: StudyResult) -> None:
@@ -30,7 +29,7 @@ def other_results(result: StudyResult) -> None:
     if result.others:
         told = ", ".join(result.others[:_SKIPPED_TOLD]) + (", ..." if len(result.others) > _SKIPPED_TOLD else "")
         message = f"{result.folder} holds results that do not belong to this batch and are not in summary.csv: {told}"
-        sys.stderr.write(f"elbowscrew: warning: {one_line(message)} [other-results]\n")
+        tell(f"elbowscrew: warning: {one_line(message)} [other-results]")
 
 
 def study_statement(result: StudyResult, skipped: Sequence[Skipped]) -> dict[str, Any]:

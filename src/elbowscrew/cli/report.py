@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 from typing import Annotated
 
@@ -68,8 +67,7 @@ def report(
 
     From finished results, without analyzing again: a page for every trial, and one over those of a batch.
     """
-    from elbowscrew.cli import render
-    from elbowscrew.cli.text import one_line, printable
+    from elbowscrew.cli.text import emit, one_line, printable, tell
     from elbowscrew.errors import UsageError
     from elbowscrew.report import remake_pages, results_in
     from elbowscrew.report.names import figure_names, width_mm
@@ -95,14 +93,12 @@ def report(
         published = save_publication_figures(results_in(results), folder, names, formats, width_mm=wide, force=force)
         written = published.files
         for path in published.left_out:
-            sys.stderr.write(
-                f"elbowscrew: warning: {one_line(str(path))}: has no movement out and back, and is left out of the "
-                "overlay\n"
-            )
+            name = one_line(str(path))
+            tell(f"elbowscrew: warning: {name}: has no movement out and back, and is left out of the overlay")
     if not quiet:
         for path in written:
-            render.emit(f"{printable(str(path))}\n")
+            emit(f"{printable(str(path))}\n")
     for error in errors[1:]:
-        sys.stderr.write(f"elbowscrew: error: {one_line(str(error))}\n")
+        tell(f"elbowscrew: error: {one_line(str(error))}")
     if errors:
         raise errors[0]

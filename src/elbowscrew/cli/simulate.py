@@ -96,8 +96,7 @@ def simulate(
 
     The truth about it goes to <OUT>.truth.json.
     """
-    from elbowscrew.cli import render
-    from elbowscrew.cli.text import printable
+    from elbowscrew.cli.text import emit, printable
     from elbowscrew.saving import save_simulation
     from elbowscrew.simulate import Simulation, simulate_trial
 
@@ -130,4 +129,4 @@ def simulate(
     for path in save_simulation(
         simulate_trial(simulation), output, layout=layout, length_unit=length_unit, force=force
     ):
-        render.emit(f"{printable(str(path))}\n")
+        emit(f"{printable(str(path))}\n")

@@ -1,10 +1,46 @@
 """Text that may come from files: nothing of it may speak to the terminal."""
 
-from elbowscrew.errors import shortened
+from __future__ import annotations
+
+import os
+import sys
+from contextlib import suppress
+
+from elbowscrew.errors import OutputError, shortened
 
 
-class NobodyReads(Exception):  # noqa: N818 - no error: whoever read our output has read enough
-    """Standard output was closed by its reader."""
+def tell(text: str) -> None:
+    """Write a line to standard error; that nobody takes it stops no work."""
+    with suppress(OSError, ValueError):
+        sys.stderr.write(f"{text}\n")
+        sys.stderr.flush()
+
+
+def emit(text: str) -> None:
+    """Write to standard output; a reader that has read enough is no error, and nothing more is written for him.
+
+    Raises
+    ------
+    OutputError
+        If standard output cannot be written.
+    """
+    try:
+        sys.stdout.write(text)
+        sys.stdout.flush()
+    except BrokenPipeError:
+        forget_output()
+    except OSError as error:
+        forget_output()
+        msg = f"standard output cannot be written: {error.strerror or error}"
+        raise OutputError(msg) from error
+
+
+def forget_output() -> None:
+    """Let what is still written to standard output, by the interpreter's own last flush too, go nowhere."""
+    with suppress(OSError, ValueError):
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, sys.stdout.fileno())
+        os.close(nowhere)
 
 
 def printable(text: str) -> str:

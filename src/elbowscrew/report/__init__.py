@@ -9,7 +9,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from elbowscrew.errors import ResultError
+from elbowscrew.errors import ElbowscrewError, ResultError
 
 if TYPE_CHECKING:
     from elbowscrew.view.trial_view import TrialView
@@ -68,10 +68,10 @@ def write_study_page(folder: Path) -> Path:
 
 
 class Remade(NamedTuple):
-    """Pages that were made, and why some could not be: a damaged result stops no other."""
+    """Pages that were made, and why some could not be: a damaged result, or a page's place taken, stops no other."""
 
     pages: tuple[Path, ...]
-    errors: tuple[ResultError, ...]
+    errors: tuple[ElbowscrewError, ...]
 
 
 def remake_pages(folders: Iterable[Path]) -> Remade:
@@ -89,8 +89,6 @@ def remake_pages(folders: Iterable[Path]) -> Remade:
     ------
     ResultError
         If a folder neither is nor holds a finished result.
-    OutputError
-        If something else has a page's name, or the disk does not take it.
     """
     from elbowscrew.results.trial_views import is_result
 
@@ -99,10 +97,13 @@ def remake_pages(folders: Iterable[Path]) -> Remade:
         for result in results_in([folder]):
             try:
                 pages.append(write_trial_page(result))
-            except ResultError as error:
+            except ElbowscrewError as error:
                 errors.append(error)
-        if not is_result(folder):
-            pages.append(write_study_page(folder))
+        try:
+            if not is_result(folder):
+                pages.append(write_study_page(folder))
+        except ElbowscrewError as error:
+            errors.append(error)
     return Remade(tuple(dict.fromkeys(pages)), tuple(errors))
 
 

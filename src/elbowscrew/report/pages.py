@@ -72,7 +72,7 @@ def json_for_script(data: Any) -> Markup:
 
 def write_page(path: Path, text: str) -> Path:
     """Write a page whole or not at all, over nothing but an earlier page of ours."""
-    write_files({path: text.encode("utf-8")}, replaceable=MARK)
+    write_files({path: text.encode("utf-8", "replace")}, replaceable=MARK)
     return path
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import os
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Final
@@ -83,13 +84,15 @@ class Study:
 
 def result_folders(folder: Path) -> Iterator[Path]:
     """Find result folders inside a folder, in order of their names; links are not followed."""
-    for root, names, _ in os.walk(folder):
-        here = Path(root)
+    left = [folder]
+    while left:
+        here = left.pop()
         if here != folder and is_result(here):
-            names.clear()
             yield here
             continue
-        names[:] = sorted(name for name in names if not name.startswith("."))
+        with suppress(OSError), os.scandir(here) as entries:
+            names = [one.name for one in entries if one.is_dir(follow_symlinks=False) and not one.name.startswith(".")]
+            left += [here / name for name in sorted(names, reverse=True)]
 
 
 def read_study(folder: Path, factors: Sequence[str] | None = None) -> Study:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 import os
 from functools import cache
 from pathlib import Path
@@ -24,6 +23,9 @@ SUMMARY: Final = "summary.json"
 JOINT: Final = "joint.json"
 
 _LONGEST_FOUND: Final = 40
+
+LARGEST: Final = 1e100
+"""No result has a number beyond it; its square is still one."""
 
 Shape = TypeVar("Shape")
 
@@ -92,7 +94,8 @@ def _joint_adapter() -> TypeAdapter[JointSummary]:
 
 def _read_object(path: Path) -> dict[str, Any]:
     try:
-        content = json.loads(read_text(path), parse_float=_finite, parse_constant=_finite)
+        content = json.loads(read_text(path), parse_float=_number, parse_constant=_number, parse_int=_whole)
+        json.dumps(content, ensure_ascii=False).encode()  # half a character is no text
     except OSError as error:
         msg = (
             f"{path.parent}: holds no finished result: {path.name}: {error.strerror or error}; analyze the trial first"
@@ -107,12 +110,17 @@ def _read_object(path: Path) -> dict[str, Any]:
     return content
 
 
-def _finite(text: str) -> float:
+def _number(text: str) -> float:
     value = float(text)
-    if not math.isfinite(value):
+    if not abs(value) <= LARGEST:
         msg = f"{text} is not a known number"
         raise ValueError(msg)
     return value
+
+
+def _whole(text: str) -> int:
+    _number(text)
+    return int(text)
 
 
 def _check_version(folder: Path, content: dict[str, Any]) -> None:

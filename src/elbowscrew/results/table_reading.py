@@ -16,6 +16,7 @@ from elbowscrew.errors import ResultError
 from elbowscrew.model.table_record import TableRecord
 from elbowscrew.opening import open_text
 from elbowscrew.quantities import Quantity, as_read_back, in_si, unit_suffixes
+from elbowscrew.results.summary_reading import LARGEST
 from elbowscrew.tables import Column, attributes
 
 _BLOCK_LINES: Final = 4096
@@ -163,7 +164,11 @@ def _values(cells: tuple[str, ...], quantity: Quantity) -> NDArray[Any]:
         missing = [not cell for cell in cells]
         return np.ma.MaskedArray([int(cell or 0) for cell in cells], mask=missing, dtype=np.int64)
     nan = float("nan")
-    return np.array([float(cell) if cell else nan for cell in cells], dtype=np.float64)
+    values = np.array([float(cell) if cell else nan for cell in cells], dtype=np.float64)
+    if ((np.abs(values) > LARGEST) & np.isfinite(values)).any():
+        msg = f"it has numbers beyond {LARGEST:g}"
+        raise ValueError(msg)
+    return values
 
 
 def _joined(blocks: list[NDArray[Any]], quantity: Quantity) -> NDArray[Any]:

@@ -123,6 +123,10 @@ def _read(path: Path) -> tuple[list[str], list[tuple[int, list[str]]], str]:
     except UnicodeDecodeError as error:
         msg = f"{path}: not UTF-8 text; save the manifest as CSV in UTF-8"
         raise UsageError(msg) from error
+    if "\0" in text:
+        line = text[: text.index("\0")].count("\n") + 1
+        msg = f"{path}:{line}: a NUL character; save the manifest as CSV in UTF-8"
+        raise UsageError(msg)
     delimiter = _delimiter(next(iter(text.splitlines()), ""))
     try:
         reader = csv.reader(text.splitlines(keepends=True), delimiter=delimiter, strict=True)

@@ -115,7 +115,7 @@ def _csv(header: Sequence[str], lines: Iterable[Sequence[Any]]) -> bytes:
     writer = csv.writer(stream, lineterminator="\n")
     writer.writerow([safe_cell(name) for name in header])
     writer.writerows([_cell(value) for value in line] for line in lines)
-    return stream.getvalue().encode("utf-8")
+    return stream.getvalue().encode("utf-8", "replace")  # names of files may be anything
 
 
 def _cell(value: Any) -> str:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from concurrent.futures import Executor
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -128,9 +130,14 @@ def run_study(
     tasks = _tasks(trials, folder, config, dict(options or {}), landmarks)
     with batch_folder(folder):
         pending = [k for k, task in enumerate(tasks) if restart or not is_current(task)]
-        if pending:
-            _remove_tables(folder)  # what stands there is of a batch that is finished; this one is not
-        failed = _analyze(tasks, pending, open_executor, workers, report)
+
+        @contextmanager
+        def opened() -> Iterator[Executor]:
+            with open_executor() as executor:
+                _remove_tables(folder)  # what stands there is of a batch that is finished; this one is not
+                yield executor
+
+        failed = _analyze(tasks, pending, opened, workers, report)
         failures = tuple(FailedTrial(path=tasks[k].label, failure=failed[k]) for k in sorted(failed))
         rows = [
             StudyRow(trial=task.folder.name, path=task.label, columns=trial.columns, summary=_summary_of(task))

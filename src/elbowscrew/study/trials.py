@@ -103,7 +103,7 @@ class _Search:
     def __init__(self, recursive: bool, follow_symlinks: bool, exclude: Path | None) -> None:
         self.recursive = recursive
         self.follow_symlinks = follow_symlinks
-        self.exclude = None if exclude is None else exclude.resolve()
+        self.exclude = None if exclude is None else _identity(exclude)
         self.trials: list[Trial] = []
         self.skipped: list[Skipped] = []
         self.known: set[Path] = set()
@@ -111,14 +111,14 @@ class _Search:
 
     def add(self, path: Path, label: str, *, by_file: bool = True) -> None:
         """Take a file, unless it has been found before under another name."""
-        real = path.resolve()
+        real = _real(path)
         if real not in self.known:
             self.known.add(real)
             self.trials.append(Trial(path=Path(os.path.abspath(path)), label=label, by_file=by_file))  # noqa: PTH100 - keeps links
 
     def manifest(self, path: Path) -> None:
         for trial in read_manifest(path):
-            self.known.add(trial.path.resolve())
+            self.known.add(_real(trial.path))
             self.trials.append(trial)
 
     def pattern(self, text: str) -> None:
@@ -135,8 +135,8 @@ class _Search:
 
     def folder(self, root: Path, prefix: str) -> None:
         """Take the recordings of a folder, and of those below it if that is asked for."""
-        real_root = root.resolve()
-        for path in self._files(root, real_root, {real_root}):
+        real_root = _real(root)
+        for path in self._files(root, real_root):
             label = prefix + _posix(path.relative_to(root))
             if self._may_be_followed(path, real_root, label):
                 self._candidate(path, label, by_file=False)
@@ -152,34 +152,49 @@ class _Search:
             msg = f"no trial found: expected files that end in {ends}{passed}"
         raise UsageError(msg)
 
-    def _files(self, folder: Path, real_root: Path, seen: set[Path]) -> Iterator[Path]:
-        try:
-            entries = sorted(folder.iterdir())
-        except OSError as error:
-            self.skipped.append(Skipped(path=_posix(folder), reason=f"cannot be read: {error.strerror}"))
-            return
-        for path in entries:
-            if path.name.startswith("."):
+    def _files(self, root: Path, real_root: Path) -> Iterator[Path]:
+        """Yield the files of a folder and of those below it, however deep, in the order of their names."""
+        seen = {_identity(root)}
+        left = self._entries(root)
+        while left:
+            path = left.pop()
+            try:
+                if not path.is_dir():
+                    if path.suffix.casefold() in ENDINGS:
+                        yield path
+                    continue
+                identity = _identity(path)
+                if identity in seen or self._ours(path):
+                    continue
+            except OSError as error:
+                self._unreadable(path, error)
                 continue
-            if not path.is_dir():
-                if path.suffix.casefold() in ENDINGS:
-                    yield path
-            elif not self._ours(path):
-                real = path.resolve()
-                if not self.recursive:
-                    self.below.append(path.name)
-                elif real not in seen and self._may_be_followed(path, real_root, _posix(path)):
-                    yield from self._files(path, real_root, seen | {real})
+            if not self.recursive:
+                self.below.append(path.name)
+            elif self._may_be_followed(path, real_root, _posix(path)):
+                seen.add(identity)
+                left += self._entries(path)
+
+    def _entries(self, folder: Path) -> list[Path]:
+        """Give what is in a folder, the last by name first."""
+        try:
+            return sorted((path for path in folder.iterdir() if not path.name.startswith(".")), reverse=True)
+        except OSError as error:
+            self._unreadable(folder, error)
+            return []
+
+    def _unreadable(self, path: Path, error: OSError) -> None:
+        self.skipped.append(Skipped(path=_posix(path), reason=f"cannot be read: {error.strerror or error}"))
 
     def _may_be_followed(self, path: Path, real_root: Path, label: str) -> bool:
-        if self.follow_symlinks or not path.is_symlink() or path.resolve().is_relative_to(real_root):
+        if self.follow_symlinks or not path.is_symlink() or _real(path).is_relative_to(real_root):
             return True
         self.skipped.append(Skipped(path=label, reason="a link out of the folder; --follow-symlinks follows it"))
         return False
 
     def _ours(self, folder: Path) -> bool:
         """Whether a folder is a result, or the output of a batch."""
-        if self.exclude is not None and folder.resolve() == self.exclude:
+        if self.exclude is not None and _identity(folder) == self.exclude:
             return True
         return (folder / MARK).exists() or is_summary(folder / "summary.json")
 
@@ -220,6 +235,20 @@ def _other_table(path: Path) -> str:
     if not words or len(row) != len(header) or any(entry.recognizes(cells) for entry in FORMATS):
         return ""
     return "a table, but not of a recording"
+
+
+def _real(path: Path) -> Path:
+    """Follow links as far as they lead; `Path.resolve` raises an error where they lead in a circle."""
+    return Path(os.path.realpath(path))
+
+
+def _identity(path: Path) -> tuple[int, int] | None:
+    """Tell which file or folder it is, whatever it is called; None if there is none."""
+    try:
+        found = path.stat()
+    except OSError:
+        return None
+    return found.st_dev, found.st_ino
 
 
 def _posix(path: Path) -> str:
