@@ -7,8 +7,11 @@ import json
 import signal
 import subprocess
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from importlib.util import find_spec
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any, Final, NamedTuple
 
 import numpy as np
@@ -20,7 +23,8 @@ from elbowscrew.model import QualityWarning, Recording, RigidBody, Source, inval
 from elbowscrew.quantities import METERS
 from elbowscrew.reading import c3d_worker
 from elbowscrew.reading.builders import MarkerBuilder
-from elbowscrew.reading.c3d_sizes import check_sizes
+from elbowscrew.reading.c3d_mending import mended
+from elbowscrew.reading.c3d_parameters import check_sizes, read_statements
 from elbowscrew.reading.clock import is_rate
 from elbowscrew.reading.options import ReadOptions, nothing_wanted, stated_unit
 from elbowscrew.reading.source import sha256_of
@@ -65,6 +69,13 @@ def read(path: Path, options: ReadOptions) -> Recording:
         msg = f"{path}: POINT:RATE is {rate:g}, no possible frame rate; export the take again"
         raise RecordingError(msg)
     bodies, warnings = _bodies(content, METERS[unit])
+    flagged = bool(content.residuals.size) and bool((content.residuals < 0.0).all())
+    if flagged and not bodies:
+        msg = (
+            f"{path}: all points are flagged as not seen (residuals below 0) in every frame: there is nothing to read; "
+            "export the take again"
+        )
+        raise RecordingError(msg)
     builders = _markers(content, METERS[unit], options)
     markers = tuple(marker.finish() for marker in builders)
     if not bodies and not markers:
@@ -95,14 +106,9 @@ def _open(path: Path) -> _Content:
     if find_spec("ezc3d") is None:
         msg = f"{path}: a C3D file needs ezc3d; install it with: pip install 'elbowscrew[c3d]'"
         raise RecordingError(msg)
-    command = [sys.executable, "-P", c3d_worker.__file__, str(path)]
     reason = "the file is damaged"
     try:
-        check_sizes(path)
-        done = subprocess.run(  # noqa: S603
-            command, capture_output=True, check=True, timeout=_LONGEST_OPENING_S, env=guarded_environment()
-        )
-        with np.load(io.BytesIO(done.stdout)) as arrays:
+        with _as_the_library_takes_it(path) as file, np.load(io.BytesIO(_worker_output(file))) as arrays:
             statement = json.loads(str(arrays["statement"]))
             points, residuals, rotations = (
                 np.asarray(arrays[name], dtype=np.float64) for name in ("points", "residuals", "rotations")
@@ -124,6 +130,30 @@ def _open(path: Path) -> _Content:
         reason = str(error)
     msg = f"{path}: not a C3D file that can be read: {reason}; export the take again"
     raise RecordingError(msg)
+
+
+@contextmanager
+def _as_the_library_takes_it(path: Path) -> Iterator[Path]:
+    """Give the file, or one in its place that says the same."""
+    stated = read_statements(path)
+    if stated is not None:
+        check_sizes(path, stated)
+        data = mended(path, stated)
+        if data is not None:
+            with TemporaryDirectory(prefix="elbowscrew-") as folder:
+                file = Path(folder) / "mended.c3d"
+                file.write_bytes(data)
+                yield file
+            return
+    yield path
+
+
+def _worker_output(file: Path) -> bytes:
+    command = [sys.executable, "-P", c3d_worker.__file__, str(file)]
+    done = subprocess.run(  # noqa: S603
+        command, capture_output=True, check=True, timeout=_LONGEST_OPENING_S, env=guarded_environment()
+    )
+    return done.stdout
 
 
 def _markers(content: _Content, scale: float, options: ReadOptions) -> list[MarkerBuilder]:

@@ -1,0 +1,184 @@
+"""What a C3D file says of itself, looked at before a library believes it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final, Literal
+
+from elbowscrew.errors import RecordingError
+from elbowscrew.opening import open_bytes
+
+BLOCK: Final = 512
+BIG_ENDIAN: Final = 86
+"""Processor of the file in the fourth byte of its parameters: Intel is 84, DEC 85, MIPS (SGI) 86."""
+_DEC: Final = 85
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """One entry of the parameters, whose positions count from its blocks' beginning.
+
+    Attributes
+    ----------
+    group : str
+        Name of its group, "" where the file names none (yet).
+    name : str
+    link_at : int
+        Where the two bytes to the next entry stand.
+    kind : int
+        -1 for text, else bytes of a value: 1, 2 or 4 (floats).
+    values_at, count : int
+        Where its values stand, and how many there are.
+    """
+
+    group: str
+    name: str
+    link_at: int
+    kind: int
+    values_at: int
+    count: int
+
+
+@dataclass(frozen=True, slots=True)
+class Statements:
+    """Header and parameters of a file, as bytes, with the size of the file in bytes."""
+
+    header: bytes
+    parameters_at: int
+    blocks: bytes
+    size: int
+
+    @property
+    def processor(self) -> int:
+        """84 for Intel, 85 for DEC, 86 for MIPS."""
+        return self.blocks[3]
+
+    @property
+    def order(self) -> Literal["big", "little"]:
+        """Order of the bytes of whole numbers."""
+        return "big" if self.processor == BIG_ENDIAN else "little"
+
+    @property
+    def data_at(self) -> int:
+        """First byte of the points."""
+        return BLOCK * (self.word(8) - 1)
+
+    @property
+    def word_bytes(self) -> int:
+        """Bytes of a coordinate: 4 where the scale factor is negative, which says that they are floats."""
+        sign_at = {BIG_ENDIAN: 12, _DEC: 13}.get(self.processor, 15)
+        return 4 if self.header[sign_at] & 0x80 else 2
+
+    def word(self, number: int) -> int:
+        """Whole number of the header, counted from 0."""
+        return int.from_bytes(self.header[2 * number : 2 * number + 2], self.order)
+
+    def entries(self) -> Iterator[tuple[Parameter | None, int]]:
+        """Go from one entry to the next, and give what it is, None for a group, with where its link stands.
+
+        An entry is: length of the name, number of the group, the name, two bytes to the next entry counted from where
+        they stand, and of a parameter its type, how many dimensions it has, these, and its values.
+        """
+        at, groups = 4, dict[int, str]()
+        while at + 2 <= len(self.blocks):
+            length, group = abs(_signed(self.blocks[at])), _signed(self.blocks[at + 1])
+            link_at = at + 2 + length
+            if not length or link_at + 4 > len(self.blocks):
+                return
+            name = self.blocks[at + 2 : link_at].decode("ascii", "replace").upper()
+            if group > 0:
+                values_at = link_at + 4 + self.blocks[link_at + 3]
+                count = math.prod(self.blocks[link_at + 4 : values_at])
+                yield (
+                    Parameter(
+                        groups.get(group, ""), name, link_at, _signed(self.blocks[link_at + 2]), values_at, count
+                    ),
+                    link_at,
+                )
+            else:
+                groups[-group] = name
+                yield None, link_at
+            step = int.from_bytes(self.blocks[link_at : link_at + 2], self.order)
+            if not step:
+                return
+            at = link_at + step
+
+    def whole_number(self, group: str, name: str) -> int:
+        """First value of a parameter of whole numbers; 0 if there is none."""
+        for one, _ in self.entries():
+            if one is not None and (one.group, one.name, one.kind) == (group, name, 2) and one.count:
+                return int.from_bytes(self.blocks[one.values_at : one.values_at + 2], self.order)
+        return 0
+
+
+def read_statements(path: Path) -> Statements | None:
+    """Read header and parameters; None of a file that is too short for them.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be read.
+    """
+    with open_bytes(path) as stream:
+        header = stream.read(BLOCK)
+        at = BLOCK * (max(header[0], 1) - 1) if header else 0
+        stream.seek(at)
+        head = stream.read(4)
+        if len(header) < 24 or len(head) < 4:
+            return None
+        blocks = head + stream.read(BLOCK * max(head[2], 1))
+    return Statements(header, at, blocks, path.stat().st_size)
+
+
+def check_sizes(path: Path, stated: Statements) -> None:
+    """Refuse a file whose parameters have more values than it has bytes, or whose points' places are not certain.
+
+    Nothing else is judged here: what cannot be followed is left to the reader.
+
+    Raises
+    ------
+    RecordingError
+        If it is so.
+    """
+    values = 0
+    for one, _ in stated.entries():
+        values += 0 if one is None else one.count
+        if one is not None and values > stated.size:
+            msg = (
+                f"{path}: not a C3D file that can be read: its parameters up to {one.name} state {values} values, "
+                f"where the whole file has {stated.size} bytes; export the take again"
+            )
+            raise RecordingError(msg)
+    _check_frame_size(path, stated)
+
+
+def _check_frame_size(path: Path, stated: Statements) -> None:
+    """Refuse where the parameters, by which points are found, contradict the header and do not fit the file's length.
+
+    Points and analog samples of a frame stand together: of one that is not told, all positions behind it are shifted.
+    """
+    points, analog = stated.word(1), stated.word(2)
+    told_points = stated.whole_number("POINT", "USED")
+    told_analog = stated.whole_number("ANALOG", "USED") * max(stated.word(9), 1)
+    if (points, analog) == (told_points, told_analog):
+        return
+    frames = stated.word(4) - stated.word(3) + 1
+    needed = frames * (4 * told_points + told_analog) * stated.word_bytes
+    end = stated.size
+    if stated.whole_number("ROTATION", "USED"):
+        rotations_at = BLOCK * (stated.whole_number("ROTATION", "DATA_START") - 1)
+        end = rotations_at if stated.data_at < rotations_at < end else end
+    if not 0 <= end - stated.data_at - needed < BLOCK:
+        msg = (
+            f"{path}: the header tells of {points} points and {analog} analog words a frame, the parameters of "
+            f"{told_points} and {told_analog}, and the file's length does not fit the latter: where a position stands "
+            "is not certain; export the take again"
+        )
+        raise RecordingError(msg)
+
+
+def _signed(byte: int) -> int:
+    return byte - 256 if byte > 127 else byte
