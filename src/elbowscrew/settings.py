@@ -56,7 +56,7 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
     An impossible value raises `UsageError` through `settings_from`, and pydantic's own error here.
     """
 
-    joint: JointName | None = setting(None, "What the joint is called.", BODIES, shown="by the bodies' names")
+    joint: JointName | None = setting(None, "Name of the joint.", BODIES, shown="by the bodies' names")
     proximal: str | None = setting(
         None, "Proximal body: name or id; 'none' if it stands still.", BODIES, metavar="NAME", shown="by the names"
     )
@@ -69,7 +69,7 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
     )
     pose_method: Literal["svd", "dual-qr"] = setting("svd", "How poses are computed from markers.", BODIES)
     reference: int | None = setting(
-        None, "Frame all displacements are counted from.", MOTION, metavar="FRAME", shown="first tracked frame"
+        None, "Frame that all displacements are measured from.", MOTION, metavar="FRAME", shown="first tracked frame"
     )
     reference_window: int = setting(1, "Average this many frames from the reference on.", MOTION, metavar="N", ge=1)
     express_in: Literal["distal", "proximal", "lab", "arm", "forearm"] | str = setting(
@@ -79,12 +79,16 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
         metavar="FRAME",
     )
     max_gap_s: float = setting(0.1, "Longest gap that is filled, in seconds.", MOTION, metavar="SECONDS", ge=0)
-    frozen: Literal["lost", "keep"] = setting("lost", "What to make of poses that repeat to the last digit.", BODIES)
+    frozen: Literal["lost", "keep"] = setting("lost", "How to treat poses that repeat to the last digit.", BODIES)
     max_turn_deg_s: float = setting(
-        3000.0, "Fastest rotation of a body, in degrees a second; more is a leap.", BODIES, metavar="DEG/S", gt=0
+        3000.0,
+        "Fastest rotation of a body, in degrees per second; anything faster is a leap.",
+        BODIES,
+        metavar="DEG/S",
+        gt=0,
     )
     max_speed_m_s: float = setting(
-        15.0, "Fastest motion of a body, in meters a second; more is a leap.", BODIES, metavar="M/S", gt=0
+        15.0, "Fastest motion of a body, in meters per second; anything faster is a leap.", BODIES, metavar="M/S", gt=0
     )
     min_tracked_percent: float = setting(
         50.0, "Smallest share of tracked frames, in percent.", BODIES, metavar="PERCENT", ge=0, le=100
@@ -98,7 +102,7 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
     )
     min_rate_rad_s: float = setting(
         0.25,
-        "Smallest angular velocity that has an instantaneous axis, in radians a second.",
+        "Smallest angular velocity with an instantaneous axis, in radians per second.",
         MOTION,
         metavar="RAD/S",
         gt=0,
@@ -112,7 +116,7 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
         lt=180,
     )
     axis_sd_deg: Angle | None = setting(
-        None, "Give an axis where its direction is known this well, in place of --min-angle: 2deg.", MOTION,
+        None, "Give an axis where its direction is known to within this angle (2deg), instead of --min-angle.", MOTION,
         metavar="DEG", gt=0, lt=90,
     )  # fmt: skip
     step_deg: float | None = setting(
@@ -125,7 +129,7 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
     )  # fmt: skip
     noise: Literal["auto", NoiseSource, "none"] = setting("auto", "Source of the poses' noise.", MOTION)
     signed: Literal["auto", "yes", "no"] = setting(
-        "auto", "Give theta a sense: where one axis dominates the motion, always, or never.", MOTION
+        "auto", "Whether theta has a sign: where one axis dominates the motion, always, or never.", MOTION
     )
     joint_type: Literal["auto", StatedJoint] | str = setting(
         "auto", f"Type of joint: {', '.join(STATED_JOINTS[:-1])} or {STATED_JOINTS[-1]}; auto finds it.", MOTION,
@@ -153,10 +157,10 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
         metavar="F1,F2,...", shown="start, inversion, end", min_length=2,
     )  # fmt: skip
     phases: Literal["movement", "whole"] = setting(
-        "movement", "Phases between the movement's rests, or of the whole recording.", MODEL
+        "movement", "Find phases from the movement's turns and rests, or take the whole recording.", MODEL
     )
     tolerance_mm: Length | None = setting(
-        None, "Fewest keyframes that keep the RMS displacement below this length: 2mm.", MODEL,
+        None, "Choose the fewest keyframes that keep the RMS displacement below this length (2mm).", MODEL,
         metavar="LENGTH", ge=1e-3, le=1e5,
     )  # fmt: skip
     method: MethodName | None = setting(
@@ -182,8 +186,8 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
     length_unit: LengthUnit = setting("mm", "Unit of lengths in tables and figures.", OUTPUT)
     figure_format: tuple[FigureFormat, ...] = setting(("png",), "Formats of the figures.", OUTPUT, min_length=1)
     export: tuple[ExportName, ...] = setting((), "Also write the tables in these formats.", OUTPUT, shown="none")
-    units: FileUnit | None = setting(None, "Unit of length of a file that states none.", BODIES)
-    rotation: RotationType | None = setting(None, "Rotation type of a file that states none.", BODIES)
+    units: FileUnit | None = setting(None, "Unit of length, if the file states none.", BODIES)
+    rotation: RotationType | None = setting(None, "Rotation type, if the file states none.", BODIES)
 
     # An elbow's own words for the two bodies, as they were before: taken and given, but not stored.
     if TYPE_CHECKING:

@@ -72,7 +72,7 @@ def _parameter(name: str, setting: Setting, defaults: Mapping[str, str]) -> insp
         *names,
         metavar=None if kind is bool or (setting.choices and not setting.several) else setting.metavar,
         rich_help_panel=setting.about,
-        help=setting.text + (" With commas, or given again." if setting.several else ""),
+        help=setting.text + (" Separate with commas, or repeat the option." if setting.several else ""),
         show_default=False if kind is bool or not default else default,
     )
     return inspect.Parameter(

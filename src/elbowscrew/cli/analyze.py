@@ -35,7 +35,7 @@ def analyze(
         bool, typer.Option("--report/--no-report", rich_help_panel=OUTPUT, help="Write the page report.html.")
     ] = True,
     config: Annotated[
-        Path | None, typer.Option(metavar="FILE.toml", rich_help_panel=OUTPUT, help="Settings; options are stronger.")
+        Path | None, typer.Option(metavar="FILE.toml", rich_help_panel=OUTPUT, help="Settings; options override them.")
     ] = None,
     json_output: Annotated[
         bool, typer.Option("--json", help="Print summary.json instead of the table.", rich_help_panel=OUTPUT)

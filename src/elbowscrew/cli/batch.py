@@ -32,7 +32,7 @@ def batch(
         typer.Option("--output", "-o", metavar="DIR", rich_help_panel=OUTPUT, help="Output folder."),
     ] = Path("batch_elbowscrew"),
     recursive: Annotated[
-        bool, typer.Option("--recursive", help="Look into the folders below, too.", rich_help_panel=_TRIALS)
+        bool, typer.Option("--recursive", help="Search subfolders, too.", rich_help_panel=_TRIALS)
     ] = False,
     follow_symlinks: Annotated[
         bool,
@@ -41,7 +41,12 @@ def batch(
     workers: Annotated[
         int | None,
         typer.Option(
-            min=1, max=1024, metavar="N", rich_help_panel=_WORK, help="Trials at a time.", show_default="all cores"
+            min=1,
+            max=1024,
+            metavar="N",
+            rich_help_panel=_WORK,
+            help="Trials analyzed at the same time.",
+            show_default="all cores",
         ),
     ] = None,
     scheduler: Annotated[
@@ -60,7 +65,7 @@ def batch(
             max=1e6,
             metavar="SECONDS",
             rich_help_panel=_WORK,
-            help="Wait so long for a cluster's first worker.",
+            help="How long to wait for a cluster's first worker.",
         ),
     ] = 10.0,
     restart: Annotated[
@@ -69,21 +74,22 @@ def batch(
             "--restart",
             "--force",
             rich_help_panel=_WORK,
-            help="Analyze all trials again, also those whose results are up to date.",
+            help="Analyze all trials again, even those whose results are up to date.",
         ),
     ] = False,
     *,
     given: dict[str, Any],
     landmarks: options.LandmarksFile = None,
     config: Annotated[
-        Path | None, typer.Option(metavar="FILE.toml", rich_help_panel=OUTPUT, help="Settings; options are stronger.")
+        Path | None, typer.Option(metavar="FILE.toml", rich_help_panel=OUTPUT, help="Settings; options override them.")
     ] = None,
     json_output: Annotated[bool, typer.Option("--json", help="Print one JSON object.", rich_help_panel=OUTPUT)] = False,
     quiet: Annotated[
         bool, typer.Option("--quiet", "-q", help="Print neither table nor progress.", rich_help_panel=OUTPUT)
     ] = False,
     verbose: Annotated[
-        bool, typer.Option("--verbose", "-v", help="Name every file passed over and failed.", rich_help_panel=OUTPUT)
+        bool,
+        typer.Option("--verbose", "-v", help="Name every file that was skipped or failed.", rich_help_panel=OUTPUT),
     ] = False,
 ) -> None:
     """Analyze every trial of a study.

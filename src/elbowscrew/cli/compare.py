@@ -61,7 +61,7 @@ def compare(
     ] = None,
     counts: Annotated[
         list[str] | None,
-        typer.Option(metavar="N1,N2,...", rich_help_panel=_MODELS, help="Keyframes a phase.", show_default="2,3,4,5"),
+        typer.Option(metavar="N1,N2,...", rich_help_panel=_MODELS, help="Keyframes per phase.", show_default="2,3,4,5"),
     ] = None,
     data: Annotated[
         list[str] | None,

@@ -17,13 +17,13 @@ def info(
         Path, typer.Argument(metavar="TRIAL", help="An OptiTrack export, plain table, TRC or C3D.", show_default=False)
     ],
     markers: Annotated[
-        list[str] | None, typer.Option(metavar="NAMES", help="Markers to tell of, or patterns; with commas.")
+        list[str] | None, typer.Option(metavar="NAMES", help="Markers to describe: names or patterns, with commas.")
     ] = None,
     *,
     given: dict[str, Any],
     json_output: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
 ) -> None:
-    """Say what a file holds; analyze nothing.
+    """Show what a file contains, without analyzing it.
 
     Layout, clock, bodies and their tracking, markers.
     """

@@ -13,10 +13,15 @@ from elbowscrew.choices import ClosedLaw, MethodName
 def interpolate(
     keyframes: Annotated[
         Path,
-        typer.Argument(metavar="KEYFRAMES.csv", help="Of a result, or poses with times.", show_default=False),
+        typer.Argument(
+            metavar="KEYFRAMES.csv", help="The keyframes of a result, or any poses with times.", show_default=False
+        ),
     ],
     frames: Annotated[
-        int, typer.Option(metavar="N", min=2, max=10_000_000, help="Frames, evenly in time from first to last.")
+        int,
+        typer.Option(
+            metavar="N", min=2, max=10_000_000, help="Frames, evenly spaced in time from the first pose to the last."
+        ),
     ],
     output: Annotated[
         Path | None,

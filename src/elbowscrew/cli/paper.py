@@ -11,7 +11,9 @@ import typer
 def paper(
     figures: Annotated[
         Path | None,
-        typer.Option(metavar="DIR", help="Write the counterparts of figures 7 to 10, of a synthetic trial, there."),
+        typer.Option(
+            metavar="DIR", help="Write counterparts of figures 7 to 10, from a synthetic trial, to this folder."
+        ),
     ] = None,
     json_output: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
 ) -> None:

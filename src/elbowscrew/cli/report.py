@@ -18,7 +18,9 @@ def report(
     results: Annotated[
         list[Path],
         typer.Argument(
-            metavar="RESULTS...", help="Result folders, or folders that hold them, as a batch's.", show_default=False
+            metavar="RESULTS...",
+            help="Result folders, or folders that contain them, such as a batch's output.",
+            show_default=False,
         ),
     ],
     figures: Annotated[
@@ -35,7 +37,7 @@ def report(
         typer.Option(
             metavar="png,svg,pdf",
             rich_help_panel=_FIGURES,
-            help="With commas, or given again.",
+            help="Separate with commas, or repeat the option.",
             show_default="pdf",
         ),
     ] = None,

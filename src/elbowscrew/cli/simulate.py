@@ -16,31 +16,37 @@ def simulate(
     output: Annotated[Path, typer.Argument(metavar="OUT.csv", help="File to write.", show_default=False)],
     joint: Annotated[
         JointName,
-        typer.Option(rich_help_panel=_MOTION, help="Names the bodies, and sets how long they are."),
+        typer.Option(rich_help_panel=_MOTION, help="Names the bodies, and sets their lengths."),
     ] = "elbow",
     side: Annotated[
         Literal["left", "right"] | None,
-        typer.Option(rich_help_panel=_MOTION, help="Goes into the bodies' names; left is right in a mirror."),
+        typer.Option(rich_help_panel=_MOTION, help="Part of the bodies' names; a left joint mirrors a right one."),
     ] = None,
     frames: Annotated[int, typer.Option(rich_help_panel=_MOTION, help="Frames of one repetition.")] = 450,
-    rate: Annotated[float, typer.Option(metavar="HZ", rich_help_panel=_RECORDING, help="Frames a second.")] = 100.0,
+    rate: Annotated[float, typer.Option(metavar="HZ", rich_help_panel=_RECORDING, help="Frames per second.")] = 100.0,
     top: Annotated[float, typer.Option(metavar="DEG", rich_help_panel=_MOTION, help="Largest angle.")] = 130.0,
     inversion: Annotated[
         int, typer.Option(metavar="FRAME", rich_help_panel=_MOTION, help="Frame of the largest angle.")
     ] = 211,
     joint_type: Annotated[
-        SimulatedJointType, typer.Option(rich_help_panel=_MOTION, help="How the segments move against each other.")
+        SimulatedJointType, typer.Option(rich_help_panel=_MOTION, help="How the segments move relative to each other.")
     ] = "screw-hinge",
     slide: Annotated[
         float | None,
         typer.Option(
-            metavar="MM", rich_help_panel=_MOTION, help="Slide of a screw-hinge at the top; 3.", show_default=False
+            metavar="MM",
+            rich_help_panel=_MOTION,
+            help="Slide of a screw-hinge at the top; 3 by default.",
+            show_default=False,
         ),
     ] = None,
     pronation: Annotated[
         float | None,
         typer.Option(
-            metavar="DEG", rich_help_panel=_MOTION, help="Range about the second of two axes; 60.", show_default=False
+            metavar="DEG",
+            rich_help_panel=_MOTION,
+            help="Range about the second of two axes; 60 by default.",
+            show_default=False,
         ),
     ] = None,
     law: Annotated[SimulatedLaw, typer.Option(rich_help_panel=_MOTION, help="Law of motion.")] = "minimum-jerk",
@@ -69,14 +75,16 @@ def simulate(
     tremor: Annotated[
         float, typer.Option(metavar="DEG", rich_help_panel=_MOTION, help="Amplitude of a tremor of the angle.")
     ] = 0.0,
-    tremor_hz: Annotated[float, typer.Option(metavar="HZ", rich_help_panel=_MOTION, help="Its frequency.")] = 6.0,
+    tremor_hz: Annotated[
+        float, typer.Option(metavar="HZ", rich_help_panel=_MOTION, help="Frequency of the tremor.")
+    ] = 6.0,
     skin: Annotated[
         float, typer.Option(metavar="MM", rich_help_panel=_RECORDING, help="How far markers move with flexion.")
     ] = 0.0,
     marker_noise: Annotated[
         float, typer.Option(metavar="MM", rich_help_panel=_RECORDING, help="SD of each marker coordinate.")
     ] = 0.2,
-    gaps: Annotated[int, typer.Option(rich_help_panel=_RECORDING, help="Times the distal body is lost.")] = 0,
+    gaps: Annotated[int, typer.Option(rich_help_panel=_RECORDING, help="How often the distal body is lost.")] = 0,
     gap_frames: Annotated[int, typer.Option(rich_help_panel=_RECORDING, help="Frames of each gap.")] = 5,
     sign_flips: Annotated[
         bool, typer.Option("--sign-flips", rich_help_panel=_RECORDING, help="Flip quaternion signs at random.")
