@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -12,8 +13,9 @@ import pytest
 
 from elbowscrew import Recording, Settings, analyze, read_recording, simulate_trial
 from elbowscrew.cli import main
-from elbowscrew.motion.movements.boundaries import Cuts
-from elbowscrew.motion.movements.measured import measured_cuts
+from elbowscrew.motion.movements.boundaries import REASONS, Cuts
+from elbowscrew.motion.movements.cuts import cut
+from elbowscrew.motion.movements.measured import cut_warnings, measured_cuts
 from elbowscrew.motion.screws.measurement import measure
 
 TRIALS: list[dict[str, Any]] = [
@@ -189,3 +191,18 @@ def test_a_filter_hardly_moves_the_models_error(real_data: Path, proximal: int) 
         modeled = analyze(recording, wanted).interpolated
         errors.append([np.sqrt(np.nanmean(series**2)) for series in (modeled.angle_error, modeled.rms_displacement)])
     assert errors[1] == pytest.approx(errors[0], rel=0.1)
+
+
+def test_what_the_standard_deviation_tells_is_no_warning() -> None:
+    """A doubt about the law at a foot is told where it may move the cut by a twentieth of the cycle."""
+    way = np.linspace(0.0, 80.0, 30)
+    angle = np.concatenate([np.zeros(60), *4 * [way, way[::-1]], np.zeros(60)])
+    noisy = np.radians(angle + np.random.default_rng(5).normal(0.0, 0.6, angle.size))
+    cuts = cut(noisy, np.arange(angle.size) / 100.0, 100.0)
+    cycles = cuts.cycles
+    assert any("law" in codes for codes in cycles.start_reasons)
+    for share, told in ((0.049, False), (0.051, True)):
+        sd = share * (cycles.end_s - cycles.start_s)
+        doubted = replace(cuts, cycles=replace(cycles, start_sd_s=sd))
+        words = " ".join(warning.message for warning in cut_warnings(doubted, Settings()))
+        assert ("start of cycle" in words and REASONS["law"] in words) == told
