@@ -297,7 +297,7 @@ def axis_path_figure(analysis: Analysis | TrialView, *, width_mm: float = WIDTH_
     view = view_of(analysis)
     path = view.axis_path
     if path is None:
-        msg = "this joint's axis does not wander, as far as it is seen"
+        msg = "no wander of this joint's axis was found"
         raise ValueError(msg)
     narrow = width_mm < NARROW_MM
     figure = style.new_figure(width_mm, 120.0 if narrow else 75.0)

@@ -82,7 +82,7 @@ def read(path: Path, options: ReadOptions) -> Recording:
         raise nothing_wanted(path, "no rigid bodies (rotations) in the file", content.labels("POINT"), options)
     count = bodies[0].loss.size if bodies else len(markers[0].position)
     if not count or content.frames not in (0, count):
-        msg = f"{path}: the file is cut: its header tells of {content.frames} frames, it has {count}; export it again"
+        msg = f"{path}: the file is cut: its header states {content.frames} frames, it has {count}; export it again"
         raise RecordingError(msg)
     frame = np.arange(content.first_frame, content.first_frame + count, dtype=np.int64)
     return Recording(

@@ -145,7 +145,7 @@ def _parse_block(
         if source.decimal_comma:
             marks |= {mark for column in columns for mark in ",." if mark in cells[column]}
             if len(marks) > 1:
-                msg = f"{location}: commas and points in numbers: which is the decimal mark is not certain; save again"
+                msg = f"{location}: numbers have both commas and points: the decimal mark is ambiguous; save again"
                 raise RecordingError(msg)
     return shape, np.array(rows, dtype=np.float64).reshape(len(rows), len(columns))
 

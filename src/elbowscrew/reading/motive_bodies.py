@@ -234,6 +234,6 @@ class MotiveBody:
         if self._far_markers:
             found.append(invalid_marker_warning(f"the markers of body {name!r}: together they", self._far_markers))
         if not offsets_known and (self._body.fitted or self._body.seen):
-            message = f"the markers of body {name!r} are not at rest in it: they are not used"
+            message = f"the markers of body {name!r} move relative to it: they are not used"
             found.append(QualityWarning(code="markers-unused", message=message))
         return found + self._store.warnings()

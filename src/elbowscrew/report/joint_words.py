@@ -63,7 +63,7 @@ def _beside_a_hinge(joint: JointSummary) -> Iterator[str]:
     if wander is not None and wander["significant"]:
         yield (
             f"The axis wanders by {number(wander['size_deg'])} deg and {number(wander['size_mm'])} mm over the range "
-            "of the angle: what is told first is its mean, and axis_path.csv has it against the angle."
+            "of the angle: the axis given first is its mean, and axis_path.csv has the axis against the angle."
         )
     elif wander is not None:
         yield (

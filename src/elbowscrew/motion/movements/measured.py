@@ -126,8 +126,8 @@ def _doubts(cuts: Cuts) -> tuple[QualityWarning, ...]:
         return ()
     parts = [f"{_listed(boundaries)}: {REASONS[code]}" for code, boundaries in found.items()]
     message = (
-        f"where the motion is cut is uncertain. {'; '.join(parts)} (--cycle-swing sets the least swing, --cycles gives "
-        "the times)"
+        f"the cuts of the motion are uncertain. {'; '.join(parts)} (--cycle-swing sets the smallest swing, --cycles "
+        "gives the times)"
     )
     return (QualityWarning(code="uncertain-cuts", message=message),)
 

@@ -278,7 +278,7 @@ def _measured_series(
             best = np.degrees(np.nanmin(errors.axis, initial=np.inf))
             msg = (
                 f"{found}, and no axis is known to the {settings.axis_sd_deg:g} deg of --axis-sd: the best is known "
-                f"to {best:.3g} deg; ask for less, or give --min-angle"
+                f"to {best:.3g} deg; give a larger limit, or --min-angle"
             )
         raise AnalysisError(msg)
     return series, known_errors(errors, series.angle, np.isfinite(series.slide))

@@ -25,7 +25,7 @@ def sense_warnings(sense: Sense, frame: NDArray[np.int64], chosen: SignedChoice)
         message = (
             f"no axis dominates the motion ({ratio}; one axis leaves {DOMINANT_RATIO:.2f} at most): theta is the "
             "rotation since the reference without a sense, and everything that needs a sense is empty; --signed yes "
-            "takes the leading direction for the axis"
+            "takes the leading direction as the axis"
         )
         found.append(QualityWarning(code="unsigned", message=message))
     if chosen == "auto" and sense.doubtful:

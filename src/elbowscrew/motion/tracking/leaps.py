@@ -143,7 +143,7 @@ def _without_frozen(body: RigidBody, recording: Recording, warnings: list[Qualit
     if (align_signs(pose[known], pose[known[0]]) == pose[known[0]]).all():
         if (pose[known[0], 1:] == 0.0).all():
             message = (
-                f"body {body.name!r} stands at the very origin without rotation in every frame, as a body does that "
+                f"body {body.name!r} stands exactly at the origin without rotation in every frame, like a body that "
                 "was never solved: taken as not tracked (--frozen keep takes it as it is)"
             )
             warnings.append(QualityWarning(code="never-solved", message=message))

@@ -159,7 +159,7 @@ def _pivot_warnings(body: RigidBody, _recording: Recording) -> list[QualityWarni
         return []
     message = (
         f"the origin of body {body.name!r} lies {1000 * pivot:.0f} mm from the centroid of its markers: "
-        "it is not the barycenter the paper speaks of (the axis does not depend on it)"
+        "it is not the barycenter that the paper assumes (the axis does not depend on it)"
     )
     return [QualityWarning(code="pivot-offset", message=message, severity="note")]
 

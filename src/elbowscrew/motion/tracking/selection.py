@@ -124,7 +124,7 @@ def _speaking_pair(
     names = list(dict.fromkeys(joint.name for joint, _, _ in agreeing))
     if len(names) > 1 and first is None and second is None:
         told = "; ".join(f"{joint.name}: {one.name!r} and {other.name!r}" for joint, one, other in agreeing)
-        msg = f"several joints speak ({told}): give --joint NAME, or --proximal NAME and --distal NAME"
+        msg = f"the bodies' names fit several joints ({told}): give --joint NAME, or --proximal NAME and --distal NAME"
         raise SettingError(msg)
     raise SettingError(_unclear(bodies, "distal" if first is not None else "proximal", len(ends)))
 
