@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from elbowscrew import Analysis, Recording, Settings, analyze, simulate_trial
+from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry.arrays import Float
 
 
@@ -44,3 +47,26 @@ def test_swapped_roles_exchange_the_two_axes() -> None:
         assert off(mine.direction_distal, theirs.direction_proximal) < 1e-3
         assert theirs.axis_cone == pytest.approx(mine.axis_cone, rel=0.1)
     assert two.two_axes.angle_between.value == pytest.approx(one.two_axes.angle_between.value, abs=1e-3)
+
+
+@pytest.mark.parametrize("jitter", [0.0, 1e-7, 1e-6])
+@pytest.mark.parametrize("stated", [{}, {"marker_noise_mm": 0.2}])
+def test_a_body_that_stands_still_is_like_none(jitter: float, stated: dict[str, float]) -> None:
+    """A micrometer of jitter is no cluster's noise: axis and cone do not leap where a body is not quite still."""
+    trial = simulate_trial(joint_type="hinge", proximal="still", frames=200, inversion=95, seed=3).recording
+    arm, forearm = trial.bodies
+    shaken = jitter * np.random.default_rng(4).normal(size=(200, 6)) * [10.0, 10.0, 10.0, 1.0, 1.0, 1.0]
+    still = dq.multiply(arm.dual_quat_lab_body[0], dq.exp(0.5 * shaken))
+    recording = replace(trial, bodies=(replace(arm, dual_quat_lab_body=still), forearm))
+    roles = (("none", forearm.name, "distal"), (arm.name, forearm.name, "distal"), (forearm.name, arm.name, "proximal"))
+    lines = []
+    for proximal, distal, express_in in roles:
+        settings = Settings(proximal=proximal, distal=distal, express_in=express_in, joint="elbow", **stated)  # type: ignore[arg-type]
+        found = analyze(recording, settings).joint_axis.headline
+        assert found is not None
+        lines.append(found)
+    for line in lines[1:]:
+        assert off(lines[0].line.direction, line.line.direction) < 5e-6
+        assert line.line.point == pytest.approx(lines[0].line.point, abs=2e-6)
+        assert line.axis_cone == pytest.approx(lines[0].axis_cone, rel=0.003)
+        assert line.point_radius == pytest.approx(lines[0].point_radius, rel=0.003)

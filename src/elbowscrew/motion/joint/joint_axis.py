@@ -12,7 +12,7 @@ from elbowscrew.geometry._blocks import evenly_thinned
 from elbowscrew.geometry.arrays import Float, Index
 from elbowscrew.geometry.dual_quaternion import conjugate, pose_from_dual_quat, transform_lines
 from elbowscrew.geometry.sensitivity import NORMAL_95
-from elbowscrew.model import FittedJoint, JointAxis, JointMotion, MarkerMotion, PoseNoise
+from elbowscrew.model import FittedJoint, JointAxis, JointMotion, MarkerMotion
 from elbowscrew.motion.joint.estimates import line_errors, line_estimate
 from elbowscrew.motion.joint.influence import influence_of_fit
 from elbowscrew.motion.joint.interval import (
@@ -34,9 +34,6 @@ from elbowscrew.motion.screws.uncertainty import joint_covariance
 _MOST_FRAMES: Final = 20_000
 LARGEST_UNEXPLAINED: Final = 0.25
 """Share of its rotation that a joint with a single axis may leave, RMS over RMS."""
-
-# Without a stated noise: a common cluster's, whose rotation and translation only have to be weighed against each other.
-_COMMON_NOISE: Final = np.diag([6e-6] * 3 + [1e-8] * 3)
 
 
 def estimate_joint_axis(
@@ -120,13 +117,7 @@ def fitted_frames(joint: JointMotion, noise: JointNoise, noise_gain: Float) -> t
     rows = np.flatnonzero(joint.measured)
     rows = evenly_thinned(rows, _MOST_FRAMES)
     poses = joint.dual_quat_proximal_distal[rows]
-    return rows, poses, noise_gain[rows, None, None] * joint_covariance(poses, *assumed_noise(noise))
-
-
-def assumed_noise(noise: JointNoise) -> tuple[PoseNoise | None, PoseNoise]:
-    """Noise of both bodies: the stated one, else that of a common cluster, which only its shape counts of."""
-    assumed = PoseNoise(covariance=_COMMON_NOISE, source="assumed", marker_noise=None)
-    return noise.known or (assumed if noise.proximal_moves else None, assumed)
+    return rows, poses, noise_gain[rows, None, None] * joint_covariance(poses, *noise.assumed)
 
 
 class BodyMarkers(NamedTuple):

@@ -17,7 +17,6 @@ from elbowscrew.motion.joint.interval import SkinMotion
 from elbowscrew.motion.joint.joint_axis import (
     LARGEST_UNEXPLAINED,
     BodyMarkers,
-    assumed_noise,
     clusters_of,
     distal_line,
     estimate_joint_axis,
@@ -101,7 +100,7 @@ def _without_numbers(name: StatedJoint, reason: str) -> JointType:
 
 def _everywhere(measured: Measurement, settings: Settings) -> Everywhere:
     """All frames, with the noise that the joint is fitted with."""
-    proximal, distal = assumed_noise(measured.noise)
+    proximal, distal = measured.noise.assumed
     joint = measured.joint
     return Everywhere(
         joint.dual_quat_proximal_distal,
@@ -165,9 +164,12 @@ def _skin(measured: Measurement, settings: Settings) -> tuple[SkinMotion, ...]:
 
 
 def _moving(measured: Measurement) -> list[tuple[Segment, RigidBody]]:
-    found: list[tuple[Segment, RigidBody]] = [("distal", measured.distal)]
-    if measured.proximal is not None and measured.noise.proximal_moves:
-        found.insert(0, ("proximal", measured.proximal))
+    proximal_moves, distal_moves = measured.noise.moving
+    found: list[tuple[Segment, RigidBody]] = []
+    if measured.proximal is not None and proximal_moves:
+        found.append(("proximal", measured.proximal))
+    if distal_moves:
+        found.append(("distal", measured.distal))
     return found
 
 
@@ -195,7 +197,10 @@ def joint_axis_warnings(
             "is not a perfect hinge, or the markers move on the skin; the joint axis' interval is that of the residuals"
         )
         warnings.append(QualityWarning(code="beyond-noise", message=message, severity="note"))
-    if any(noise is not None and noise.source == STILL_STRETCH for noise in measured.noise.known or ()):
+    known = measured.noise.known or ()
+    if any(
+        n is not None and n.source == STILL_STRETCH and m for n, m in zip(known, measured.noise.moving, strict=False)
+    ):
         message = (
             "error bars rest on the jitter of a still stretch, which a moving body usually exceeds many times over; "
             "--marker-noise MM states more"

@@ -12,7 +12,6 @@ from elbowscrew.geometry.dual_quaternion import conjugate, continuous_signs, mul
 from elbowscrew.model.joint_coordinates import JointCoordinates
 from elbowscrew.model.joint_type import JointType
 from elbowscrew.motion.joint.coordinates import joint_angles_of
-from elbowscrew.motion.joint.joint_axis import assumed_noise
 from elbowscrew.motion.screws.measurement import Measurement
 from elbowscrew.motion.screws.sense import sense_of
 from elbowscrew.motion.screws.uncertainty import joint_covariance
@@ -71,7 +70,7 @@ def course_of_frames(measured: Measurement, joint_type: JointType | None) -> Flo
 
 def _first_angle(measured: Measurement, relative: Float, reference: int, joint: JointCoordinates) -> Float:
     def covariance(rows: Index) -> Float:
-        return joint_covariance(relative[rows], *assumed_noise(measured.noise))
+        return joint_covariance(relative[rows], *measured.noise.assumed)
 
     pose = continuous_signs(multiply(conjugate(measured.joint.reference), relative))
     return joint_angles_of(joint, pose, covariance, reference)[:, 0]

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Final, NamedTuple
 
 import numpy as np
 
 from elbowscrew.choices import NOISE_SOURCES, functions_named
+from elbowscrew.geometry._blocks import evenly_thinned
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_quaternion import align_signs, conjugate, log, multiply, normalize
 from elbowscrew.model import PoseNoise, RigidBody
@@ -26,6 +28,11 @@ _LARGEST_DRIFT: Final = 3.0
 _STILL_NOISE_M: Final = 0.001
 _NO_JITTER_M: Final = 1e-9  # poses that do not change at all, but for the rounding of their mean
 _LARGEST_ERROR_M: Final = 1.0
+_MOST_FRAMES: Final = 20_000
+_LEAST_SHOWN: Final = 0.01
+_IDENTITY: Final = np.eye(8)[0]
+# Without a stated noise: a common cluster's, whose rotation and translation only have to be weighed against each other.
+_COMMON_NOISE: Final = np.diag([6e-6] * 3 + [1e-8] * 3)
 # Exports have six decimals: where some coordinate repeats in all of them its noise is that of the rounding, not none.
 _ROUNDING_SD: Final = np.array([2.0, 2.0, 2.0, 1.0, 1.0, 1.0]) * 1e-6 / np.sqrt(12.0)
 
@@ -58,24 +65,56 @@ def pose_noise(body: RigidBody, rate_hz: float, settings: Settings) -> PoseNoise
 
 
 class JointNoise(NamedTuple):
-    """Noise of the two bodies' poses, None where it is not known."""
+    """Noise of the two bodies' poses, and how much of it they show.
+
+    Attributes
+    ----------
+    proximal, distal : PoseNoise or None
+        As far as the body shows it; None where it is not known.
+    proximal_share, distal_share : float
+        Variance of the body's poses in units of its noise's, 1 at most: 0 of one that stands still to the last digit,
+        or is none, 1 of one that moves. What does not change in the trial is no error of the joint.
+    """
 
     proximal: PoseNoise | None
     distal: PoseNoise | None
-    proximal_moves: bool
+    proximal_share: float
+    distal_share: float = 1.0
 
     @classmethod
     def of(cls, proximal: RigidBody | None, distal: RigidBody, rate_hz: float, settings: Settings) -> JointNoise:
         """Find the noise of both; a proximal body that stands still has none."""
-        found = None if proximal is None else pose_noise(proximal, rate_hz, settings)
-        return cls(found, pose_noise(distal, rate_hz, settings), proximal is not None)
+        bodies = (distal,) if proximal is None else (proximal, distal)
+        noises = [pose_noise(body, rate_hz, settings) for body in bodies]
+        # One that is known has nothing to be weighed against where the other is not.
+        known = [noise.covariance for noise in noises if noise is not None]
+        sizes = known if len(known) == len(bodies) else [_COMMON_NOISE] * len(bodies)
+        shares = [_share_shown(body, size) for body, size in zip(bodies, sizes, strict=True)]
+        shown = [_as_shown(noise, share) for noise, share in zip(noises, shares, strict=True)]
+        if proximal is None:
+            shown, shares = [None, *shown], [0.0, *shares]
+        return cls(shown[0], shown[1], shares[0], shares[1])
+
+    @property
+    def moving(self) -> tuple[bool, bool]:
+        """Whether the proximal and the distal body show more than a tenth of the noise's standard deviation."""
+        return self.proximal_share > _LEAST_SHOWN, self.distal_share > _LEAST_SHOWN
 
     @property
     def known(self) -> tuple[PoseNoise | None, PoseNoise] | None:
         """Both, the proximal body's None if it stands still; None if one is not known."""
-        if self.distal is None or (self.proximal is None and self.proximal_moves):
+        if self.distal is None or (self.proximal is None and self.proximal_share > 0.0):
             return None
         return self.proximal, self.distal
+
+    @property
+    def assumed(self) -> tuple[PoseNoise | None, PoseNoise]:
+        """Both as known, else those of a common cluster, which only the shape counts of."""
+        first, second = (
+            PoseNoise(covariance=share * _COMMON_NOISE, source="assumed", marker_noise=None)
+            for share in (self.proximal_share, self.distal_share)
+        )
+        return self.known or (first if self.proximal_share > 0.0 else None, second)
 
 
 def covariance_from_markers(offsets: Float, marker_noise: float) -> Float:
@@ -102,6 +141,25 @@ def covariance_from_markers(offsets: Float, marker_noise: float) -> Float:
     square[3:, :3] = square[:3, 3:].T
     square[3:, 3:] = count * np.eye(3)
     return np.asarray(marker_noise**2 * np.linalg.inv(square), dtype=np.float64)
+
+
+def _as_shown(noise: PoseNoise | None, share: float) -> PoseNoise | None:
+    if noise is None or share == 1.0:
+        return noise
+    size = None if noise.marker_noise is None else float(np.sqrt(share)) * noise.marker_noise
+    return replace(noise, covariance=share * noise.covariance, marker_noise=size)
+
+
+def _share_shown(body: RigidBody, covariance: Float) -> float:
+    """Variance of a body's poses about their mean in units of a covariance (6, 6), 1 at most."""
+    rows = evenly_thinned(np.flatnonzero(body.tracked), _MOST_FRAMES)
+    poses = body.dual_quat_lab_body[rows]
+    if len(rows) < _FEWEST_STILL_FRAMES:
+        return 1.0
+    off = 2.0 * log(align_signs(multiply(conjugate(poses[0]), poses), _IDENTITY))
+    off = off - off.mean(axis=0)
+    square = np.einsum("ni,ij,nj->n", off, np.linalg.inv(covariance), off)
+    return min(float(square.sum()) / (6.0 * (len(rows) - 1)), 1.0)
 
 
 def _from_marker_noise(body: RigidBody, marker_noise: float, source: str, settings: Settings) -> PoseNoise:
