@@ -163,8 +163,15 @@ class TwoAxesSummary(TypedDict):
     foot2_mm_high: float | None
 
 
+class CenterSummary(TypedDict):
+    """One estimate of a center."""
+
+    center_in_proximal_mm: Vector
+    center_in_distal_mm: Vector
+
+
 class BallSummary(TypedDict):
-    """The center of a ball joint."""
+    """The center of a ball joint, by maximum likelihood."""
 
     center_in_proximal_mm: Vector
     center_in_distal_mm: Vector
@@ -172,6 +179,8 @@ class BallSummary(TypedDict):
     """Radius that holds the center in the proximal body with 95 %."""
     semi_axes95_mm: list[Vector] | None
     """Semi-axes of the ellipsoid that holds it with 95 %, in the proximal body."""
+    score: CenterSummary
+    """The same by SCoRE, which takes the measured rotations for true."""
 
 
 class SecondRotationSummary(TypedDict):

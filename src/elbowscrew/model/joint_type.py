@@ -136,12 +136,16 @@ class BallJoint(ArrayRecord):
         Of both, in that order, along the axes of the bodies, as that of `TwoAxes`.
     radius : float
         That holds 95 % of the center in the proximal body, m.
+    score_proximal, score_distal : ndarray, shape (3,)
+        Center by SCoRE, beside it: in the frames of both bodies, m.
     """
 
     center_proximal: Float
     center_distal: Float
     covariance: Float
     radius: float
+    score_proximal: Float
+    score_distal: Float
 
     @property
     def semi_axes(self) -> Float:

@@ -23,7 +23,9 @@ def _sentences(view: TrialView) -> Iterator[str]:
         within = "" if ball["radius95_mm"] is None else f", within {number(ball['radius95_mm'])} mm"
         yield (
             f"The center is at ({vector(ball['center_in_proximal_mm'], 1)}) mm in the proximal body{within}, and at "
-            f"({vector(ball['center_in_distal_mm'], 1)}) mm in the distal one."
+            f"({vector(ball['center_in_distal_mm'], 1)}) mm in the distal one; by SCoRE, beside it, at "
+            f"({vector(ball['score']['center_in_proximal_mm'], 1)}) and "
+            f"({vector(ball['score']['center_in_distal_mm'], 1)}) mm."
         )
     yield from _beside_a_hinge(joint)
     yield from _intervals(joint)

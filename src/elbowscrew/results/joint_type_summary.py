@@ -125,6 +125,10 @@ def _ball(found: BallJoint) -> BallSummary:
         "center_in_distal_mm": (_MILLIMETERS * found.center_distal).tolist(),
         "radius95_mm": known(_MILLIMETERS * found.radius),
         "semi_axes95_mm": (_MILLIMETERS * found.semi_axes).tolist() if np.isfinite(found.semi_axes).all() else None,
+        "score": {
+            "center_in_proximal_mm": (_MILLIMETERS * found.score_proximal).tolist(),
+            "center_in_distal_mm": (_MILLIMETERS * found.score_distal).tolist(),
+        },
     }
 
 

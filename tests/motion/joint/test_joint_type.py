@@ -8,6 +8,7 @@ import moving_joints as mj
 import numpy as np
 import pandas as pd
 import pytest
+from scipy.spatial.transform import Rotation
 
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry import pose_from_points
@@ -307,6 +308,23 @@ def test_the_hip_is_a_ball(real_data: Path) -> None:
     np.testing.assert_allclose(found.ball.center_proximal, [0.03, -0.05, 0.08], atol=2e-4)
     np.testing.assert_allclose(found.ball.center_distal, [0.0, 0.25, 0.0], atol=2e-4)
     assert np.linalg.norm(found.ball.center_proximal - [0.03, -0.05, 0.08]) < 2.0 * found.ball.radius
+
+
+def test_score_stands_beside_the_center_of_a_ball() -> None:
+    """The least squares of all frames' ``R c_F - c_A = -d`` at once; the truth where there is no noise."""
+    rng = np.random.default_rng(31)
+    exact = mj.ball(200, 40.0, rng)
+    seen, covariance = mj.noisy(exact.poses, rng, ROTATION_DEG, 1e-3)
+    for poses in (seen, exact.poses):
+        found = identify_joint(poses, covariance, poses[0], noise_known=True, forced="ball").ball
+        assert found is not None
+        quat, position = dq.pose_from_dual_quat(poses)
+        R = Rotation.from_quat(quat, scalar_first=True).as_matrix()
+        system = np.concatenate([R, np.broadcast_to(-np.eye(3), R.shape)], axis=2).reshape(-1, 6)
+        wanted = np.linalg.lstsq(system, -position.ravel(), rcond=None)[0]
+        np.testing.assert_allclose(found.score_distal, wanted[:3], atol=1e-9)
+        np.testing.assert_allclose(found.score_proximal, wanted[3:], atol=1e-9)
+        assert np.abs(found.score_proximal - exact.truth["proximal"]).max() < (5e-3 if poses is seen else 1e-9)
 
 
 def test_flexion_with_pronation_is_no_hinge(real_data: Path) -> None:

@@ -58,6 +58,10 @@ def nearest_points(joint: Float, *, undetermined: int) -> tuple[Float, Float]:
     undetermined : int
         How many directions the motion leaves open: 1 of an axis, along which any point does, 0 of a ball. They are
         taken out, not left to the noise.
+
+    References
+    ----------
+    SCoRE of a ball: Ehrig, Taylor, Duda and Heller 2006, Journal of Biomechanics 39.
     """
     quat, position = dq.pose_from_dual_quat(joint)
     R = rotation_matrix_from_quat(quat)

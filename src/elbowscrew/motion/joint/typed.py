@@ -18,7 +18,7 @@ from elbowscrew.motion.joint.every_frame import Everywhere, FrameNumbers, number
 from elbowscrew.motion.joint.fitting import Fitted, frames_that_count_as_one, shared_covariance
 from elbowscrew.motion.joint.interval import ClusterMotion, JointInterval, Method, SkinMotion
 from elbowscrew.motion.joint.likelihood import Fit, Mechanism, Poses, fit_mechanism, fit_robustly
-from elbowscrew.motion.joint.lines import Z_LINE
+from elbowscrew.motion.joint.lines import Z_LINE, nearest_points
 from elbowscrew.motion.joint.simple_types import Ball, OneAxis
 from elbowscrew.motion.joint.two_axes import TwoAxesMechanism, angle_sd, axes_geometry, geometry_slopes
 from elbowscrew.motion.joint.type_interval import Evidence, interval_of_type
@@ -113,7 +113,7 @@ def identify_joint(
     every = numbers_everywhere(mechanism, everywhere, reference)
     if isinstance(mechanism, Ball):
         interval = interval_of_type(fit, most, evidence.at(rows))
-        center = _ball(fit, mechanism, interval, noise_known=noise_known)
+        center = _ball(fit, mechanism, interval, most.joint, noise_known=noise_known)
         method = interval.decided_by(np.eye(6)[:3])
         return _result(choice, every, scale, coordinates=allowed, ball=center, decided_by=method)
     if isinstance(mechanism, OneAxis):
@@ -260,10 +260,13 @@ def _second_rotation(choice: Choice, poses: Poses, reference: Float, evidence: E
     return SecondRotation(range=left, axis=None)
 
 
-def _ball(fit: Fit[Mechanism], at: Ball, interval: JointInterval, *, noise_known: bool) -> BallJoint:
+def _ball(fit: Fit[Mechanism], at: Ball, interval: JointInterval, joint: Float, *, noise_known: bool) -> BallJoint:
+    score_distal, score_proximal = nearest_points(joint, undetermined=0)
     return BallJoint(
         center_proximal=at.proximal,
         center_distal=at.distal,
         covariance=shared_covariance(fit, noise_known=noise_known),
         radius=interval.radius(np.eye(6)[:3]),
+        score_proximal=score_proximal,
+        score_distal=score_distal,
     )
