@@ -22,6 +22,7 @@ from hypothesis import strategies as st
 
 from elbowscrew import Settings, analyze, save_analysis, simulate_trial
 from elbowscrew.errors import OutputError, ResultError
+from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry.dual_quaternion import dual_quat_from_pose, transform_points
 from elbowscrew.report import write_trial_page
 from elbowscrew.report.charts import path_of, ticks_between
@@ -32,7 +33,7 @@ from elbowscrew.report.trial_page import trial_page
 from elbowscrew.results.staging import RESULT_FILES
 from elbowscrew.results.trial_views import view_of, view_of_result
 from elbowscrew.view.decimation import drawn_rows
-from elbowscrew.view.scene import bodies_in_space
+from elbowscrew.view.scene import bodies_in_space, frames_in_space
 
 
 class Seen(HTMLParser):
@@ -282,3 +283,45 @@ def test_a_motion_without_a_single_axis_is_said_to_have_none(ball_result: Path) 
     assert "The motion has no single axis" in methods_of(trial)
     assert "maximum likelihood" not in methods_of(trial)
     assert "95 % confidence of the joint axis" not in text
+
+
+@pytest.mark.parametrize("express_in", ["distal", "proximal", "lab"])
+def test_the_view_has_both_axes_and_the_second_goes_along(express_in: Any, tmp_path: Path) -> None:
+    recording = simulate_trial(joint_type="two-axes", frames=120, inversion=60, proximal="moving", seed=3).recording
+    analysis = analyze(recording, Settings(express_in=express_in))
+    folder = save_analysis(analysis, tmp_path / "r", figure_formats=(), report=False)
+    scene = json.loads(json.dumps(scene_of(view_of_result(folder)), allow_nan=False))
+    first, second = scene["joint"]["axes"]
+    assert analysis.joint_type is not None
+    assert analysis.joint_type.two_axes is not None
+    told = analysis.joint_type.two_axes
+    to_proximal, to_distal = {
+        "distal": (dq.conjugate(analysis.joint.reference), np.eye(8)[0]),
+        "proximal": (np.eye(8)[0], analysis.joint.reference),
+        "lab": (
+            analysis.joint.dual_quat_lab_proximal,
+            dq.multiply(analysis.joint.dual_quat_lab_proximal, analysis.joint.reference),
+        ),
+    }[express_in]
+    for axis, pose, direction, point in (
+        (first, to_proximal, told.axis1.direction_proximal, told.axis1.point_proximal),
+        (second, to_distal, told.axis2.direction_distal, told.axis2.point_distal),
+    ):
+        assert axis["direction"] == pytest.approx(dq.transform_lines(pose, [*direction, 0, 0, 0])[:3], abs=2e-5)
+        assert axis["center"] == pytest.approx(1000.0 * transform_points(pose, point), abs=0.02)
+        assert np.array(axis["across"]) @ axis["direction"] == pytest.approx([0.0, 0.0], abs=1e-4)
+    assert (first["moves"], second["moves"]) == (False, True)
+    assert scene["joint"]["center"] is None
+
+
+def test_the_view_has_the_center_of_a_ball_and_no_axes_of_a_hinge(result: Path, tmp_path: Path) -> None:
+    recording = simulate_trial(joint_type="ball", frames=120, inversion=60, seed=3).recording
+    view = view_of_result(save_analysis(analyze(recording), tmp_path / "r", figure_formats=(), report=False))
+    joint, ball = scene_of(view)["joint"], view.joint_summary["ball"]
+    assert ball is not None
+    assert joint["axes"] == []
+    there = transform_points(frames_in_space(view)[0], np.array(ball["center_in_proximal_mm"]) / 1e3)
+    assert joint["center"] == pytest.approx(1e3 * there, abs=0.02)
+    sizes = np.linalg.norm(joint["semiAxes"], axis=1)
+    assert sizes == pytest.approx(np.linalg.norm(ball["semi_axes95_mm"] or [[0.0]], axis=1), abs=1e-3)
+    assert scene_of(view_of_result(result))["joint"] == {"axes": [], "center": None, "semiAxes": None}

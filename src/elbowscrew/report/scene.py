@@ -8,8 +8,11 @@ import numpy as np
 
 from elbowscrew.geometry._blocks import evenly_thinned
 from elbowscrew.geometry.arrays import Float
+from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat, transform_points
+from elbowscrew.geometry.quaternion import rotate
 from elbowscrew.report.charts import COLORS
-from elbowscrew.view.scene import Region, bodies_in_space, directions_across, joint_bundle
+from elbowscrew.view.joint_space import joint_in_body
+from elbowscrew.view.scene import Region, bodies_in_space, directions_across, frames_in_space, joint_bundle
 from elbowscrew.view.trial_view import TrialView
 
 MOST_FRAMES: Final = 900
@@ -58,6 +61,7 @@ def scene_of(trial: TrialView) -> dict[str, Any]:
         "across": _rounded(np.stack(across), _PURE_DECIMALS),
         "spread": _region(bundle.spread),
         "confidence": None if bundle.confidence is None else _region(bundle.confidence),
+        "joint": _joint(trial, bundle.half),
         "proximal": proximal,
         "distal": distal,
         "colors": list(COLORS),
@@ -80,6 +84,33 @@ def _body(word: str, origin: Float | None, markers: Float | None) -> dict[str, A
         "word": word,
         "origin": _rounded(1000.0 * origin, _DECIMALS),
         "markers": [] if markers is None else _rounded(1000.0 * markers, _DECIMALS),
+    }
+
+
+def _joint(trial: TrialView, half: float) -> dict[str, Any]:
+    """Give both axes of a joint that has two, at the reference, or its center; nothing of one axis, which is there."""
+    joint, (to_here, _) = joint_in_body(trial, "proximal"), frames_in_space(trial)
+    turn = pose_from_dual_quat(to_here)[0]
+    axes = []
+    for axis, moves in zip(joint.axes if len(joint.axes) == 2 else (), (False, True), strict=False):
+        direction = rotate(turn, axis.direction)
+        known = axis.known
+        axes.append(
+            {
+                "name": axis.name,
+                "direction": _rounded(direction, _PURE_DECIMALS),
+                "center": _rounded(1000.0 * transform_points(to_here, axis.point), _DECIMALS),
+                "half": round(half, _DECIMALS),
+                "across": _rounded(np.stack(directions_across(direction)[0]), _PURE_DECIMALS),
+                "known": None if known is None else _region(Region(known.angle, 1000.0 * known.radius)),
+                "moves": moves,
+            }
+        )
+    center, semi_axes = joint.center, joint.semi_axes
+    return {
+        "axes": axes,
+        "center": None if center is None else _rounded(1000.0 * transform_points(to_here, center), _DECIMALS),
+        "semiAxes": None if semi_axes is None else _rounded(1000.0 * rotate(turn, semi_axes), 4),
     }
 
 

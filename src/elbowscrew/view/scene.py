@@ -75,15 +75,20 @@ class Bundle(NamedTuple):
         )
 
 
-def bodies_in_space(view: TrialView) -> Bodies:
-    """Place the bodies in the frame the screws are expressed in."""
+def frames_in_space(view: TrialView) -> tuple[Float, Float]:
+    """Poses (8,) of the proximal and of the distal body at the reference, in the frame the screws are expressed in."""
     reference, proximal = view.reference, view.proximal_in_lab
     identity = np.array([1.0, 0, 0, 0, 0, 0, 0, 0])
-    change, at_reference = {
+    return {
         "distal": (conjugate(reference), identity),
         "proximal": (identity, reference),
         "lab": (proximal, multiply(proximal, reference)),
     }[view.settings.express_in]
+
+
+def bodies_in_space(view: TrialView) -> Bodies:
+    """Place the bodies in the frame the screws are expressed in."""
+    change, at_reference = frames_in_space(view)
     markers = [
         None if offsets is None else transform_points(pose, offsets)
         for offsets, pose in ((view.proximal_markers, change), (view.distal_markers, at_reference))

@@ -124,7 +124,7 @@
     ? points.flatMap((p, k) => points.slice(k + 1).flatMap((q) => [p, q, null]))
     : points.flatMap((p) => [origin, p, null]));
   const around = 36;
-  const surface = (region, color, alpha) => {
+  const surface = (about, region, color, alpha) => {
     if (!region) return;
     const [angle, radius] = region;
     const steps = 12;
@@ -132,15 +132,15 @@
       const wide = Math.hypot(radius, Math.tan(Math.min(angle, 1.4)) * s);
       return Array.from({ length: around }, (_, k) => {
         const turn = (2 * Math.PI * k) / around;
-        const out = add(times(wide * Math.cos(turn), scene.across[0]), times(wide * Math.sin(turn), scene.across[1]));
-        return screen(add(add(scene.center, times(s, scene.direction)), out));
+        const out = add(times(wide * Math.cos(turn), about.across[0]), times(wide * Math.sin(turn), about.across[1]));
+        return screen(add(add(about.center, times(s, about.direction)), out));
       });
     };
     context.fillStyle = color;
     context.globalAlpha = alpha;
     let before = null;
     for (let j = 0; j <= steps; j += 1) {
-      const now = ring(scene.half * ((2 * j) / steps - 1));
+      const now = ring(about.half * ((2 * j) / steps - 1));
       if (before) {
         for (let k = 0; k < around; k += 1) {
           const next = (k + 1) % around;
@@ -156,6 +156,38 @@
       before = now;
     }
     context.globalAlpha = 1;
+  };
+  const ends = (axis, share) => [-1, 1].map((way) => add(axis.center, times(way * share * axis.half, axis.direction)));
+  // The second axis goes with the distal body.
+  const ownAxes = (k) => scene.joint.axes.flatMap((axis, j) => {
+    const color = ["#00507d", "#a34800"][j];
+    if (!axis.moves) return [{ ...axis, color }];
+    const at = moved(k, axis.center);
+    if (!at) return [];
+    const led = (v) => less(moved(k, add(axis.center, v)), at);
+    return [{ ...axis, color, center: at, direction: led(axis.direction), across: axis.across.map(led) }];
+  });
+  const center = () => {
+    if (!scene.joint.center) return;
+    if (shown("cone") && scene.joint.semiAxes) {
+      // Outline of an ellipsoid: C d / sqrt(d C d) in all directions d, C the sum of its semi-axes' squares as seen.
+      const seen = scene.joint.semiAxes.map((a) => [scale * dot(view.rows[0], a), scale * dot(view.rows[1], a)]);
+      const square = [0, 1].map((i) => [0, 1].map((j) => seen.reduce((sum, a) => sum + a[i] * a[j], 0)));
+      const [x, y] = screen(scene.joint.center);
+      context.fillStyle = "#d55e00";
+      context.globalAlpha = 0.25;
+      context.beginPath();
+      for (let n = 0; n < around; n += 1) {
+        const d = [Math.cos((2 * Math.PI * n) / around), Math.sin((2 * Math.PI * n) / around)];
+        const out = square.map((row) => row[0] * d[0] + row[1] * d[1]);
+        const size = Math.sqrt(out[0] * d[0] + out[1] * d[1]) || 1;
+        context.lineTo(x + out[0] / size, y - out[1] / size);
+      }
+      context.fill();
+      context.globalAlpha = 1;
+    }
+    disc(scene.joint.center, 4.5, "#000");
+    label(add(scene.joint.center, times(16 / scale, view.rows[1])), "center", "#000");
   };
   const label = (p, text, color) => {
     const [x, y] = screen(p);
@@ -222,12 +254,19 @@
     const here = path[k];
     if (scene.proximal) line([scene.proximal.origin, foot(scene.proximal.origin)], "#9aa4ae", 9, 0.3);
     if (here) line([here, foot(here)], "#9aa4ae", 9, 0.3);
-    if (shown("cone")) surface(scene.spread, "#8c959e", 0.1);
+    if (shown("cone")) surface(scene, scene.spread, "#8c959e", 0.1);
     if (shown("axes")) {
       scene.segments.forEach((s, j) => line([s.slice(0, 3), s.slice(3)], colorAt(scene.segmentTheta[j]), 1, 0.7));
     }
-    if (shown("cone")) surface(scene.confidence, "#d55e00", 0.25);
-    line([less(scene.center, times(1.15 * scene.half, scene.direction)), add(scene.center, times(1.15 * scene.half, scene.direction))], "#000", 2.4);
+    if (shown("cone")) surface(scene, scene.confidence, "#d55e00", 0.25);
+    const own = ownAxes(k);
+    // Where the joint has axes of its own, or a center, the mean of the frames' axes is none of them.
+    if (!own.length && !scene.joint.center) line(ends(scene, 1.15), "#000", 2.4);
+    own.forEach((axis) => {
+      if (shown("cone")) surface(axis, axis.known, axis.color, 0.25);
+      line(ends(axis, 1), axis.color, 2.4);
+      label(ends(axis, 1.06)[1], axis.name, axis.color);
+    });
     if (shown("path")) line(path, "#d55e00", 2);
     if (shown("moment") && scene.axis[k] && scene.point[k]) {
       const n = scene.axis[k];
@@ -249,6 +288,7 @@
       disc(here, 5.5, "#d55e00");
       label(add(here, times(18 / scale, view.rows[1])), scene.distal.word, "#a34800");
     }
+    center();
     triad();
     ruler();
     tellState();
