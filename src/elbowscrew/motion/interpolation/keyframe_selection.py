@@ -6,6 +6,7 @@ import itertools
 from typing import Final, NamedTuple
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
 from elbowscrew.errors import SettingError
 from elbowscrew.geometry.arrays import Bool, Float, Index
@@ -90,10 +91,11 @@ def select_keyframes(
     if track.left[stops].max() > limit:
         raise _no_set(track, tolerance)
     complete = len(pose) <= MOST_FRAMES_COMPLETE
-    found = _best_of_each_size(track, tolerance) if complete else _thinned_and_fewest(track, tolerance)
-    if not found or _errors(track, found[-1]).max() > limit:
+    found = _best_of_each_size(track, tolerance, len(pose)) if complete else _thinned_and_fewest(track, tolerance)
+    known: dict[tuple[int, int], Float] = {}  # sets of many sizes share most of their segments
+    if not found or _errors(track, found[-1], known).max() > limit:
         raise _no_set(track, tolerance)
-    errors = [_errors(track, row) for row in found]
+    errors = [_errors(track, row, known) for row in found]
     return Selection(
         row=found[-1],
         tolerance=tolerance,
@@ -128,29 +130,33 @@ class _Track(NamedTuple):
         return int(self.stops[np.searchsorted(self.stops, first, side="right")])
 
 
-def _errors(track: _Track, keyframes: Index) -> Float:
-    """RMS displacement of every frame, shape (N,)."""
+def _errors(track: _Track, keyframes: Index, known: dict[tuple[int, int], Float]) -> Float:
+    """RMS displacement of every frame, shape (N,); what segments leave between their ends is kept."""
     error = np.zeros(track.parameter.size)
     error[keyframes] = track.left[keyframes]
     for first, last in itertools.pairwise(keyframes.tolist()):
         rows = np.arange(first + 1, last)
-        if rows.size:
+        if rows.size and (first, last) not in known:
             segment = track.poses.segments_from(first, [last])
             seen = track.poses.seen_from(first, rows)
-            error[rows] = segment.displacement(seen, track.fraction(first, last, rows))
+            known[first, last] = segment.displacement(seen, track.fraction(first, last, rows))
+        if rows.size:
+            error[rows] = known[first, last]
     return error
 
 
 # Every pair of frames: the best set of each size.
 
 
-def _best_of_each_size(track: _Track, tolerance: float) -> list[Index]:
-    """Best sets from the smallest on, until one is within the tolerance; of some frames alone none may be."""
+def _best_of_each_size(track: _Track, tolerance: float, most: int) -> list[Index]:
+    """Best sets of up to so many rows, from the smallest on, until one is within the tolerance: it may be that none is.
+
+    Each size costs what its longest segment spans, so that all of them together cost little more than the pairs do.
+    """
     largest, total = _all_pairs(track)
-    count = track.parameter.size
     reached = [largest[0]]  # least largest error of a way to each row in so many segments
-    last = count - 1
-    while reached[-1][last] > tolerance and len(reached) < last:
+    last = track.parameter.size - 1
+    while reached[-1][last] > tolerance and len(reached) < most - 1:
         reached.append(np.maximum(reached[-1][:, None], largest).min(axis=0))
     found = []
     for segments, errors in enumerate(reached, start=1):
@@ -185,18 +191,25 @@ def _all_pairs(track: _Track) -> tuple[Float, Float]:
 
 
 def _least_total(cost: Float, segments: int) -> Index:
-    """Rows from the first to the last in so many segments whose costs (N, N) add up to the least."""
+    """Rows from the first to the last in so many segments whose costs (N, N) add up to the least; inf where none is."""
     count = len(cost)
+    starts, ends = np.nonzero(np.isfinite(cost))
+    width = int((ends - starts).max())
+    # Column k of a row is the row from which a segment of length width - k ends there.
+    rows = np.arange(count)
+    origin = rows[:, None] - width + np.arange(width)
+    band = np.where(origin >= 0, cost[np.maximum(origin, 0), rows[:, None]], np.inf)
     sums = cost[0].copy()
     before = []
     for _ in range(segments - 1):
-        ways = sums[:, None] + cost
-        before.append(ways.argmin(axis=0))
-        sums = ways[before[-1], np.arange(count)]
-    rows = [count - 1]
+        ways = sliding_window_view(np.concatenate([np.full(width, np.inf), sums[:-1]]), width) + band
+        best = ways.argmin(axis=1)
+        before.append(origin[rows, best])
+        sums = ways[rows, best]
+    found = [count - 1]
     for step in reversed(before):
-        rows.append(int(step[rows[-1]]))
-    return np.array([0, *rows[::-1]], dtype=np.int64)
+        found.append(int(step[found[-1]]))
+    return np.array([0, *found[::-1]], dtype=np.int64)
 
 
 def _thinned_and_fewest(track: _Track, tolerance: float) -> list[Index]:
@@ -210,8 +223,9 @@ def _thinned_and_fewest(track: _Track, tolerance: float) -> list[Index]:
         parameter=track.parameter[kept],
         stops=np.searchsorted(kept, track.stops),
     )
-    smaller = [kept[rows] for rows in _best_of_each_size(thinned, tolerance)]
-    return [*(rows for rows in smaller if rows.size < fewest.size), fewest]
+    most = min(fewest.size - 1, kept.size)
+    smaller = _best_of_each_size(thinned, tolerance, most) if most > 1 else []
+    return [*(kept[rows] for rows in smaller), fewest]
 
 
 # Long recordings: whom the first row reaches within the tolerance in one segment, in two, and so on.
