@@ -68,5 +68,5 @@ def test_a_body_that_stands_still_is_like_none(jitter: float, stated: dict[str, 
     for line in lines[1:]:
         assert off(lines[0].line.direction, line.line.direction) < 5e-6
         assert line.line.point == pytest.approx(lines[0].line.point, abs=2e-6)
-        assert line.axis_cone == pytest.approx(lines[0].axis_cone, rel=0.003)
-        assert line.point_radius == pytest.approx(lines[0].point_radius, rel=0.003)
+        assert line.axis_cone == pytest.approx(lines[0].axis_cone, rel=0.005)
+        assert line.point_radius == pytest.approx(lines[0].point_radius, rel=0.005)

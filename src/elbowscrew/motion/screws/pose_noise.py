@@ -72,8 +72,8 @@ class JointNoise(NamedTuple):
     proximal, distal : PoseNoise or None
         As far as the body shows it; None where it is not known.
     proximal_share, distal_share : float
-        Variance of the body's poses in units of its noise's, 1 at most: 0 of one that stands still to the last digit,
-        or is none, 1 of one that moves. What does not change in the trial is no error of the joint.
+        0 of a body that stands still to the last digit, or is none, 1 of one whose poses vary by at least half of the
+        noise's variance. What does not change in the trial is no error of the joint.
     """
 
     proximal: PoseNoise | None
@@ -151,7 +151,7 @@ def _as_shown(noise: PoseNoise | None, share: float) -> PoseNoise | None:
 
 
 def _share_shown(body: RigidBody, covariance: Float) -> float:
-    """Variance of a body's poses about their mean in units of a covariance (6, 6), 1 at most."""
+    """Twice the variance of a body's poses about their mean in units of a covariance (6, 6), 1 at most."""
     rows = evenly_thinned(np.flatnonzero(body.tracked), _MOST_FRAMES)
     poses = body.dual_quat_lab_body[rows]
     if len(rows) < _FEWEST_STILL_FRAMES:
@@ -159,7 +159,8 @@ def _share_shown(body: RigidBody, covariance: Float) -> float:
     off = 2.0 * log(align_signs(multiply(conjugate(poses[0]), poses), _IDENTITY))
     off = off - off.mean(axis=0)
     square = np.einsum("ni,ij,nj->n", off, np.linalg.inv(covariance), off)
-    return min(float(square.sum()) / (6.0 * (len(rows) - 1)), 1.0)
+    # Twice, so that a body at rest that is as noisy as it is said to be has all of its noise.
+    return min(2.0 * float(square.sum()) / (6.0 * (len(rows) - 1)), 1.0)
 
 
 def _from_marker_noise(body: RigidBody, marker_noise: float, source: str, settings: Settings) -> PoseNoise:
