@@ -311,7 +311,11 @@ def texts_with_numbers(told: Told) -> Iterator[tuple[str, list[str]]]:
         rf"Rotation θ since the reference .*through.*{' and '.join(laws)} law, {model['blend']}\)\.",
         [str(trial["reference_frame"]), poses, *map(str, motion["inversion_frames"])],
     )
-    yield rf"In the .*Black: {joint_axis}", ["95", "95", "57"]
+    if joint["two_axes"] is not None:
+        yield r"In the .*Axis 1 is fixed in the .*, axis 2 goes with the ", ["1", "2", "95", "95", "57"]
+    else:
+        black = "the center" if joint["ball"] is not None else joint_axis
+        yield rf"In the .*Black: {black}", ["95", "95", "57"]
     yield r"95 % of the frames’ axes", ["95", "95"] if motion["joint_axis"] else ["95"]
     yield rf"The {joint_axis} and the axes of", [str(min(axis_frames, 60))]
     yield rf"Axes of the frames about the {joint_axis}", [general(settings["min-angle"])]
@@ -336,7 +340,13 @@ def texts_with_numbers(told: Told) -> Iterator[tuple[str, list[str]]]:
         within = [] if ball["radius95_mm"] is None else [dec(ball["radius95_mm"])]
         yield (
             "The center is at",
-            [*vec(ball["center_in_proximal_mm"], 1), *within, *vec(ball["center_in_distal_mm"], 1)],
+            [
+                *vec(ball["center_in_proximal_mm"], 1),
+                *within,
+                *vec(ball["center_in_distal_mm"], 1),
+                *vec(ball["score"]["center_in_proximal_mm"], 1),
+                *vec(ball["score"]["center_in_distal_mm"], 1),
+            ],
         )
     if joint["second_rotation"] is not None:
         second = joint["second_rotation"]
