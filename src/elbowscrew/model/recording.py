@@ -137,6 +137,8 @@ class RigidBody(ArrayRecord):
         How the markers seen move among themselves.
     shape_deviation : ndarray, shape (N,), optional
         Departure of the dual QR decomposition's triangular factor from the identity, a pure number (P 28).
+    coarse_step : float, optional
+        Size of the steps of its markers' coordinates, meters, if they are so coarse that the pose may repeat at rest.
     """
 
     name: str
@@ -148,6 +150,7 @@ class RigidBody(ArrayRecord):
     marker_residual: Float | None = None
     marker_motion: MarkerMotion | None = None
     shape_deviation: Float | None = None
+    coarse_step: float | None = None
 
     @classmethod
     def from_quaternions(

@@ -72,6 +72,10 @@ def tracked_bodies(recording: Recording, settings: Settings) -> TrackedBodies:
                 + "".join(f"; {warning.message}" for warning in found.warnings if warning.code == "leap")
             )
             raise AnalysisError(msg)
+    same = next((warning for warning in checked.warnings if warning.code == "same-pose"), None)
+    if same is not None:
+        msg = f"{same.message}; choose another body"
+        raise AnalysisError(msg)
     proximal = None if proximal is None else checked.bodies[0].body
     broken_rows = np.unique(np.concatenate([found.broken_rows for found in checked.bodies]))
     return TrackedBodies(

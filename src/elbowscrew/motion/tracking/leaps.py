@@ -11,9 +11,10 @@ import numpy as np
 from elbowscrew.geometry import quaternion, sclerp
 from elbowscrew.geometry._small_angle import length
 from elbowscrew.geometry.arrays import Bool, Float, Index
-from elbowscrew.geometry.dual_quaternion import align_signs
+from elbowscrew.geometry.dual_quaternion import align_signs, pose_from_dual_quat
 from elbowscrew.model import QualityWarning, Recording, RigidBody, TrackingLoss
 from elbowscrew.motion.difference import angle_between, origin_distance
+from elbowscrew.motion.tracking.resolution import coarse_step
 from elbowscrew.settings import Settings
 
 # An exact identity this far from where its neighbors put the body is what is written for a body that is not solved.
@@ -114,9 +115,15 @@ def _without_sentinels(
     ):
         near, far, row = others[one[there]], others[two[there]], ends[there]
         fraction = (elapsed[row] - elapsed[near]) / (elapsed[far] - elapsed[near])
-        expected = sclerp(pose[near], pose[far], np.clip(fraction, -_LONGEST_LEAD, 0.0))
-        off[there] |= (angle_between(pose[row], expected) > _SENTINEL_TURN) | (
-            origin_distance(pose[row], expected) > _SENTINEL_DISTANCE_M
+        lead = np.clip(fraction, -_LONGEST_LEAD, 0.0)
+        expected = sclerp(pose[near], pose[far], lead)
+        # A body that speeds up may be as far from there as it is led to go.
+        off[there] |= (
+            angle_between(pose[row], expected)
+            > np.maximum(_SENTINEL_TURN, -lead * angle_between(pose[near], pose[far]))
+        ) | (
+            origin_distance(pose[row], expected)
+            > np.maximum(_SENTINEL_DISTANCE_M, -lead * origin_distance(pose[near], pose[far]))
         )
     rows = identity[off[np.searchsorted(lasts, identity)]]
     if not rows.size:
@@ -155,12 +162,26 @@ def _without_frozen(body: RigidBody, recording: Recording, warnings: list[Qualit
     rows = known[1:][repeats]
     if not rows.size:
         return body
+    step_m = body.coarse_step or _coarse_step_of_pose(body)
+    if step_m is not None:
+        message = (
+            f"body {body.name!r} repeats its pose in {_frames(rows, recording)}, and its positions come in steps of "
+            f"{1000.0 * step_m:.3g} mm: taken as stillness; lost tracking would not be seen"
+        )
+        warnings.append(frames_warning("coarse-numbers", message, rows, recording))
+        return body
     message = (
         f"body {body.name!r} repeats its pose to the last digit in {_frames(rows, recording)}: taken as lost tracking "
         "(--frozen keep turns this off)"
     )
     warnings.append(frames_warning("frozen", message, rows, recording))
     return _lost(body, rows, TrackingLoss.FROZEN)
+
+
+def _coarse_step_of_pose(body: RigidBody) -> float | None:
+    rotation, position = pose_from_dual_quat(body.dual_quat_lab_body)
+    turned = (rotation[1:] != rotation[:-1]).any(axis=1) & (rotation[1:] != -rotation[:-1]).any(axis=1)
+    return coarse_step(position, turned)
 
 
 def _without_leaps(
@@ -372,6 +393,19 @@ def check_swaps(one: RigidBody, other: RigidBody, recording: Recording, elapsed:
         "are swapped from there on, or up to there; relabel them in Motive"
     )
     return (frames_warning("swapped-bodies", message, swapped, recording),)
+
+
+def check_same_pose(one: RigidBody, other: RigidBody) -> tuple[QualityWarning, ...]:
+    """Tell of two bodies, unchecked, that have one and the same changing pose wherever both have one."""
+    rows = np.flatnonzero(one.tracked & other.tracked)
+    first, second = one.dual_quat_lab_body[rows], other.dual_quat_lab_body[rows]
+    if rows.size < 2 or not (align_signs(second, first) == first).all():
+        return ()
+    message = (
+        f"bodies {one.name!r} and {other.name!r} have one and the same pose in every frame, as one body under two "
+        "names has: nothing moves between them"
+    )
+    return (QualityWarning(code="same-pose", message=message, count=int(rows.size)),)
 
 
 def _lost(body: RigidBody, rows: Index, reason: TrackingLoss) -> RigidBody:

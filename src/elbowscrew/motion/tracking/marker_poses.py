@@ -13,6 +13,7 @@ from elbowscrew.geometry._blocks import evenly_thinned
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_quaternion import conjugate, transform_points
 from elbowscrew.model import MarkerMotion, Recording, RigidBody, TrackingLoss, at_origin, marker_matches
+from elbowscrew.motion.tracking.resolution import coarse_step
 
 _REFINEMENTS: Final = 2
 _MOST_FRAMES: Final = 65_536
@@ -80,6 +81,7 @@ def body_from_markers(recording: Recording, name: str, patterns: tuple[str, ...]
         marker_residual=fitted.deviation if svd else fit_poses(shape, seen).deviation,
         marker_motion=_motion(fitted.dual_quat, seen, shape),
         shape_deviation=None if svd else fitted.deviation,
+        coarse_step=coarse_step(seen.reshape(len(seen), -1)),
     )
 
 
