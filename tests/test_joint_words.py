@@ -14,6 +14,7 @@ from elbowscrew import Settings, __version__, analyze, save_analysis, save_simul
 from elbowscrew.cli import main, render
 from elbowscrew.errors import ResultError
 from elbowscrew.report.methods import methods_of
+from elbowscrew.results.proof import proof_of
 from elbowscrew.results.summary_reading import read_summary
 from elbowscrew.results.trial_views import view_of_result
 from elbowscrew.view.figure_names import FIGURE_ENTRIES
@@ -47,8 +48,8 @@ def test_no_word_of_another_joint(case: str, motion: Any, tmp_path: Path, capsys
     settings = Settings(express_in="proximal", step_deg=20.0, **chosen)
     analysis = analyze(recording, settings)
     folder = save_analysis(analysis, tmp_path / "r", figure_formats=("svg",))
-    render.analysis_table(read_summary(folder), Path("r"))
-    render.warnings(read_summary(folder)["warnings"])
+    render.analysis_table(read_summary(proof_of(folder)), Path("r"))
+    render.warnings(read_summary(proof_of(folder))["warnings"])
     page = (folder / "report.html").read_text(encoding="utf-8")
     told = {
         "page": page,
@@ -113,7 +114,7 @@ def test_no_word_of_another_joint_beside_the_trials_page(
 def test_a_result_says_the_joint_and_its_side(tmp_path: Path) -> None:
     recording = simulate_trial(joint="knee", side="left", frames=80, inversion=40).recording
     folder = save_analysis(analyze(recording), tmp_path / "r", figure_formats=(), report=False)
-    words = read_summary(folder)["trial"]["joint"]
+    words = read_summary(proof_of(folder))["trial"]["joint"]
     assert words == {"name": "knee", "proximal": "thigh", "distal": "shank", "side": "left"}
 
 
@@ -126,6 +127,7 @@ def test_a_result_of_before_is_refused_in_one_line_with_both_versions(tmp_path: 
     del trial["joint"]
     trial["arm"], trial["forearm"] = trial.pop("proximal"), trial.pop("distal")
     path.write_text(json.dumps({**summary, "elbowscrew": "0.1.0"}), encoding="utf-8")
+    (folder / "SHA256SUMS").unlink()
     with pytest.raises(ResultError) as caught:
         view_of_result(folder)
     told = str(caught.value)

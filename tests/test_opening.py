@@ -129,7 +129,7 @@ def test_no_file_is_written_through_a_link(tmp_path: Path, precious: Path, to: s
     link = tmp_path / "link.csv"
     link.symlink_to(tmp_path / to)
     with pytest.raises(OutputError, match="is a link"):
-        write_files({link: b"synthetic"}, replaceable="synthetic")
+        write_files(tmp_path, {link.name: b"synthetic"}, replaceable=("synthetic",))
     with pytest.raises(OSError):  # noqa: PT011 - of the system
         create(link)
     assert link.is_symlink()

@@ -17,16 +17,10 @@ from elbowscrew.model.summary_types import Summary
 from elbowscrew.motion.analysis import analyze
 from elbowscrew.opening import write_new
 from elbowscrew.reading.registry import read_recording
-from elbowscrew.reading.source import sha256_of
-from elbowscrew.report import write_trial_page
 from elbowscrew.results.exporting import check_exports, write_exports
 from elbowscrew.results.joint_summary import joint_summary
-from elbowscrew.results.staging import (
-    COMPARISON,
-    RESULT_FILES,
-    result_folder,
-    write_files,
-)
+from elbowscrew.results.result_files import COMPARISON
+from elbowscrew.results.staging import result_folder, write_files
 from elbowscrew.results.summary import summary_from_analysis
 from elbowscrew.results.summary_reading import JOINT, SUMMARY
 from elbowscrew.results.trial_views import view_of_analysis
@@ -70,7 +64,7 @@ def save_analysis(
     Whole or not at all. Figures and page are made of the numbers as the tables and JSON hold them, so that
     ``elbowscrew report`` makes the same of the folder at any later time.
 
-    The summary says under ``files`` what else is in the folder, each with its SHA-256.
+    ``SHA256SUMS`` has the digests of all files, as ``sha256sum --check`` reads them.
 
     Parameters
     ----------
@@ -133,11 +127,12 @@ def write_result(
         if formats:
             _write_figures(staged, view, formats)
         write_exports(staged, analysis, found, others)
-        summary: Summary = {**found, "files": digests(staged)}  # when all else is there
-        _write_json(staged / SUMMARY, summary)
+        _write_json(staged / SUMMARY, found)
         if report:
-            write_trial_page(staged, view)
-    return summary
+            from elbowscrew.report.trial_page import PAGE, trial_page
+
+            write_new(staged / PAGE, trial_page(view, staged).encode("utf-8", "replace"))
+    return found
 
 
 def _known_formats(formats: tuple[str, ...]) -> tuple[str, ...]:
@@ -146,12 +141,6 @@ def _known_formats(formats: tuple[str, ...]) -> tuple[str, ...]:
         msg = f"figure formats: expected {', '.join(DRAWN_FORMATS)}, found {', '.join(unknown)}"
         raise UsageError(msg)
     return formats
-
-
-def digests(folder: Path) -> dict[str, str]:
-    """SHA-256 of the files of a result folder, all but the summary that holds them and the report made from it."""
-    names = (name for name in RESULT_FILES if name not in (SUMMARY, "report.html") and (folder / name).is_file())
-    return {name: sha256_of(folder / name) for name in names}
 
 
 def _write_json(path: Path, content: Mapping[str, object]) -> None:
@@ -230,8 +219,11 @@ def save_simulation(
     else:
         lines = row_tagged_lines(trial.recording, trial.markers)
     statement = {"about": "truth of a synthetic trial", **trial.truth}
-    contents: dict[Path, Iterable[str] | bytes] = {export: lines, truth: [json.dumps(statement, indent=1)]}
-    write_files(contents, replaceable="synthetic" if force else None)
+    contents: dict[str, Iterable[str] | bytes] = {
+        export.name: lines,
+        truth.name: [json.dumps(statement, indent=1)],
+    }
+    write_files(export.parent, contents, replaceable=("synthetic",) if force else None)
     return export, truth
 
 
@@ -251,9 +243,9 @@ def save_paper_figures(folder: str | os.PathLike[str]) -> tuple[Path, ...]:
     analysis = analyze(simulate_trial(marker_noise_mm=0.1, seed=2010).recording, Settings(inversion=211))
     names = {"figures_7_and_8.png": "theta", "figures_9_and_10.png": "euler_parameters"}
     drawn = figure_files(analysis, tuple(names.values()), ("png",))
-    contents = {Path(folder) / file: drawn[f"{name}.png"] for file, name in names.items()}
-    write_files(contents, replaceable=None)
-    return tuple(contents)
+    contents = {file: drawn[f"{name}.png"] for file, name in names.items()}
+    write_files(Path(folder), contents, replaceable=None)
+    return tuple(Path(folder) / name for name in contents)
 
 
 def save_motion(motion: RebuiltMotion, path: str | os.PathLike[str], *, force: bool = False) -> Path:
@@ -291,7 +283,7 @@ def save_motion(motion: RebuiltMotion, path: str | os.PathLike[str], *, force: b
         staged = Path(folder) / "motion.csv"
         write_table(staged, motion, "deg", "mm")
         content = staged.read_bytes()
-    write_files({target: content}, replaceable="frame,time_s,phase,t,theta" if force else None)
+    write_files(target.parent, {target.name: content}, replaceable=("frame,time_s,phase,t,theta",) if force else None)
     return target
 
 

@@ -45,7 +45,8 @@ def test_a_good_trial_ends_with_0_and_a_whole_result(take: Path, capsys: pytest.
     assert "Mean axis" in out
     folder = take.parent / "take_elbowscrew"
     names = sorted(str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file())
-    assert names == ["cycles.csv", "figures/axis.png", "figures/error.png", "figures/euler_parameters.png",
+    assert names == ["SHA256SUMS", "cycles.csv",
+                     "figures/axis.png", "figures/error.png", "figures/euler_parameters.png",
                      "figures/joint.png", "figures/joint_angles.png", "figures/joint_axis.png", "figures/theta.png",
                      "instantaneous.csv", "interpolation.csv", "joint.json", "joint_angles.csv", "keyframes.csv",
                      "repetitions.csv", "report.html", "screw.csv", "summary.json"]  # fmt: skip

@@ -14,6 +14,7 @@ import pytest
 from finished_results import HOSTILE, write_rows
 from hypothesis import given
 from hypothesis import strategies as st
+from sealed import resealed
 
 from elbowscrew.errors import OutputError, ResultError
 from elbowscrew.report import remake_pages, results_in, write_study_page
@@ -121,6 +122,7 @@ def test_a_damaged_result_is_a_failure_of_its_own(result: Path, tmp_path: Path) 
     summary = json.loads((tmp_path / "poor" / "summary.json").read_text())
     del summary["motion"]["axis_dispersion_deg"]
     (tmp_path / "poor" / "summary.json").write_text(json.dumps(summary))
+    resealed(tmp_path / "poor")
     made = remake_pages([tmp_path])
     assert [page.relative_to(tmp_path).as_posix() for page in made.pages] == ["good/report.html", "index.html"]
     assert len(made.errors) == 2

@@ -14,12 +14,12 @@ from typing_extensions import is_typeddict
 
 from elbowscrew.model.joint_summary_types import JointSummary
 from elbowscrew.model.summary_types import (
-    AnalysisSummary,
     ModelSummary,
     MotionSummary,
     PhaseLawSummary,
     QualitySummary,
     SourceSummary,
+    Summary,
     TrialSummary,
     WarningSummary,
 )
@@ -27,7 +27,7 @@ from elbowscrew.report.study import Failure
 from elbowscrew.report.study_page import Factor, GroupRow, Measure, TrialRow
 
 TYPES: dict[str, Any] = {
-    "summary": AnalysisSummary,
+    "summary": Summary,
     "source": SourceSummary,
     "trial": TrialSummary,
     "motion": MotionSummary,

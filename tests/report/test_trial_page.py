@@ -19,6 +19,7 @@ import pytest
 from finished_results import HOSTILE
 from hypothesis import given
 from hypothesis import strategies as st
+from sealed import resealed
 
 from elbowscrew import Settings, analyze, save_analysis, simulate_trial
 from elbowscrew.errors import OutputError, ResultError
@@ -30,7 +31,7 @@ from elbowscrew.report.methods import methods_of
 from elbowscrew.report.pages import json_for_script, number
 from elbowscrew.report.scene import MOST_FRAMES, scene_of
 from elbowscrew.report.trial_page import trial_page
-from elbowscrew.results.staging import RESULT_FILES
+from elbowscrew.results.result_files import RESULT_FILES
 from elbowscrew.results.trial_views import view_of, view_of_result
 from elbowscrew.view.decimation import drawn_rows
 from elbowscrew.view.scene import bodies_in_space, frames_in_space
@@ -154,7 +155,7 @@ def test_a_result_that_lacks_a_number_is_told(result: Path, tmp_path: Path) -> N
     del summary["interpolation"]["rmse_theta_deg"]
     (copy / "summary.json").write_text(json.dumps(summary))
     with pytest.raises(ResultError, match="rmse_theta_deg"):
-        write_trial_page(copy)
+        write_trial_page(resealed(copy))
 
 
 def test_a_page_without_figures_needs_neither_pandas_nor_matplotlib_and_no_page_no_templates(

@@ -17,7 +17,7 @@ from elbowscrew import Landmark, Landmarks, Settings, save_analysis
 from elbowscrew.cli import main
 from elbowscrew.errors import UsageError
 from elbowscrew.results import exporting
-from elbowscrew.results.staging import RESULT_FILES
+from elbowscrew.results.result_files import RESULT_FILES
 
 ALL = ("parquet", "mat", "sto")
 LANDMARKS = Landmarks(

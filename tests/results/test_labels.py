@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 
 from elbowscrew.quantities import Quantity
+from elbowscrew.reading.source import sha256_of
+from elbowscrew.results.proof import ProvedFile
 from elbowscrew.results.table_reading import read_columns
 from elbowscrew.results.writing import write_csv
 from elbowscrew.tables import Column
@@ -32,7 +34,7 @@ def test_labels_come_back_whole(tmp_path: Path, labels: list[str]) -> None:
     with path.open(encoding="utf-8", newline="") as stream:
         rows = list(csv.reader(stream, strict=True))
     assert [row[0] for row in rows[1:]] == labels
-    read = read_columns(path, TABLE, "deg", "mm")
+    read = read_columns(ProvedFile(path, sha256_of(path)), TABLE, "deg", "mm")
     assert read["label"].tolist() == labels
     np.testing.assert_array_equal(read["value"], value)
 

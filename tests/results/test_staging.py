@@ -12,7 +12,8 @@ from elbowscrew import Settings, plots
 from elbowscrew.errors import OutputError
 from elbowscrew.plots.registry import figure_function
 from elbowscrew.results.exporting import EXPORTS
-from elbowscrew.results.staging import RESULT_FILES, result_folder, write_files
+from elbowscrew.results.result_files import RESULT_FILES
+from elbowscrew.results.staging import result_folder, write_files
 from elbowscrew.view.figure_names import FIGURE_ENTRIES
 
 OLD = '{"elbowscrew": "0.0.1"}'
@@ -57,7 +58,7 @@ def test_an_earlier_result_is_replaced_whole_on_request_only(tmp_path: Path) -> 
         pass
     with result_folder(target, force=True) as staged:
         (staged / "summary.json").write_text("new")
-    assert sorted(path.name for path in target.iterdir()) == ["summary.json"]
+    assert sorted(path.name for path in target.iterdir()) == ["SHA256SUMS", "summary.json"]
     assert [path.name for path in tmp_path.iterdir()] == ["result"]
 
 
@@ -161,17 +162,17 @@ def test_every_figure_entry_names_a_function(name: str) -> None:
 
 def test_files_are_replaced_on_request_only_and_only_ours(tmp_path: Path) -> None:
     one, two = tmp_path / "one.csv", tmp_path / "two.json"
-    write_files({one: ["synthetic 1"], two: ["synthetic 2"]}, replaceable=None)
+    write_files(tmp_path, {one.name: ["synthetic 1"], two.name: ["synthetic 2"]}, replaceable=None)
     with pytest.raises(OutputError, match="--force"):
-        write_files({one: ["synthetic 3"]}, replaceable=None)
-    write_files({one: ["synthetic 3"]}, replaceable="synthetic")
+        write_files(tmp_path, {one.name: ["synthetic 3"]}, replaceable=None)
+    write_files(tmp_path, {one.name: ["synthetic 3"]}, replaceable=("synthetic",))
     assert one.read_text() == "synthetic 3\n"
     one.write_text("a recording")
     with pytest.raises(OutputError, match="not written by elbowscrew"):
-        write_files({two: ["new"], one: ["new"]}, replaceable="synthetic")
+        write_files(tmp_path, {two.name: ["new"], one.name: ["new"]}, replaceable=("synthetic",))
     assert (one.read_text(), two.read_text()) == ("a recording", "synthetic 2\n")
     with pytest.raises(OutputError, match="not a file"):
-        write_files({tmp_path: ["x"]}, replaceable="synthetic")
+        write_files(tmp_path.parent, {tmp_path.name: ["x"]}, replaceable=("synthetic",))
     assert sorted(path.name for path in tmp_path.iterdir()) == ["one.csv", "two.json"]
 
 
@@ -181,5 +182,5 @@ def test_of_files_that_belong_together_all_appear_or_none(tmp_path: Path) -> Non
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        write_files({tmp_path / "a.csv": ["whole"], tmp_path / "b.csv": lines()}, replaceable=None)
+        write_files(tmp_path, {"a.csv": ["whole"], "b.csv": lines()}, replaceable=None)
     assert list(tmp_path.iterdir()) == []

@@ -10,16 +10,21 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from sealed import reproved, resealed
 
 from elbowscrew import analyze, save_analysis, simulate_trial
 from elbowscrew._version import __version__
 from elbowscrew.errors import ResultError
+from elbowscrew.results.proof import proof_of
 from elbowscrew.results.summary_reading import read_joint_summary, read_summary
 from elbowscrew.results.trial_views import view_of_result
 from elbowscrew.saving import write_result
 
-READERS: dict[str, Callable[[Path], Any]] = {"summary.json": read_summary, "joint.json": read_joint_summary}
-OPEN = {"settings", "lost_frames", "versions", "files", "landmarks_mm"}
+READERS: dict[str, Callable[[Path], Any]] = {
+    "summary.json": lambda folder: read_summary(reproved(folder)),
+    "joint.json": lambda folder: read_joint_summary(reproved(folder)),
+}
+OPEN = {"settings", "lost_frames", "versions", "landmarks_mm"}
 """Objects whose keys are no fixed names."""
 
 
@@ -85,14 +90,17 @@ def test_what_was_expected_and_what_was_found_is_told(folder: Path) -> None:
     summary["motion"]["theta_max_deg"] = [1.0, 2.0]
     (folder / "summary.json").write_text(json.dumps(summary))
     where = f"{folder / 'summary.json'}: motion.theta_max_deg: "
-    assert told(read_summary, folder) == f"{where}expected a valid number, found a list of 2; analyze the trial again"
+    assert (
+        told(READERS["summary.json"], folder)
+        == f"{where}expected a valid number, found a list of 2; analyze the trial again"
+    )
 
 
 def test_another_version_is_named_beside_a_key_that_it_lacks(folder: Path) -> None:
     summary = content_of(folder, "summary.json")
     del summary["motion"]["signed"]
     (folder / "summary.json").write_text(json.dumps({**summary, "elbowscrew": "9.1"}))
-    message = told(read_summary, folder)
+    message = told(READERS["summary.json"], folder)
     assert message.startswith(f"{folder / 'summary.json'}: motion.signed: is missing")
     assert f"written by elbowscrew 9.1; this is {__version__}" in message
 
@@ -100,7 +108,7 @@ def test_another_version_is_named_beside_a_key_that_it_lacks(folder: Path) -> No
 def test_another_version_with_the_same_keys_is_read_and_keys_of_ones_own_are_passed_over(folder: Path) -> None:
     summary = content_of(folder, "summary.json")
     (folder / "summary.json").write_text(json.dumps({**summary, "elbowscrew": "9.1", "operator": "me"}))
-    assert read_summary(folder) == {**summary, "elbowscrew": "9.1"}
+    assert read_summary(reproved(folder)) == {**summary, "elbowscrew": "9.1"}
 
 
 @pytest.mark.parametrize("word", ["NaN", "Infinity", "-Infinity", "1e999"])
@@ -108,7 +116,7 @@ def test_no_number_is_not_taken_for_one(folder: Path, word: str) -> None:
     summary = content_of(folder, "summary.json")
     text = json.dumps(summary).replace(json.dumps(summary["motion"]["theta_max_deg"]), word)
     (folder / "summary.json").write_text(text)
-    assert word in told(read_summary, folder)
+    assert word in told(READERS["summary.json"], folder)
 
 
 @pytest.mark.parametrize("key", ["min-angle", "color"])
@@ -116,7 +124,7 @@ def test_a_setting_that_cannot_be_is_named(folder: Path, key: str) -> None:
     summary = content_of(folder, "summary.json")
     summary["settings"][key] = "wide"
     (folder / "summary.json").write_text(json.dumps(summary))
-    message = told(view_of_result, folder)
+    message = told(view_of_result, resealed(folder))
     assert message.startswith(f"{folder / 'summary.json'}: settings")
     assert key in message
 
@@ -125,7 +133,7 @@ def test_the_preferred_fit_must_be_there(folder: Path) -> None:
     joint = content_of(folder, "joint.json")
     preferred = joint["preferred"]
     (folder / "joint.json").write_text(json.dumps({**joint, preferred: None}))
-    assert told(read_joint_summary, folder).startswith(f"{folder / 'joint.json'}: {preferred}: ")
+    assert told(READERS["joint.json"], folder).startswith(f"{folder / 'joint.json'}: {preferred}: ")
 
 
 @pytest.mark.parametrize("number", [10**30, -(10**30)])
@@ -133,14 +141,14 @@ def test_a_frame_beyond_all_numbers_is_told(folder: Path, number: int) -> None:
     summary = content_of(folder, "summary.json")
     summary["interpolation"]["keyframes"][0] = number
     (folder / "summary.json").write_text(json.dumps(summary))
-    assert told(view_of_result, folder).startswith(str(folder))
+    assert told(view_of_result, resealed(folder)).startswith(str(folder))
 
 
 def test_the_summary_that_was_written_is_the_one_on_disk(tmp_path: Path) -> None:
     """Once built it need not be read: no value is of a kind that JSON does not give back."""
     analysis = analyze(simulate_trial(frames=80, inversion=40, gaps=1, seed=3).recording)
     written = write_result(analysis, tmp_path / "r", figure_formats=(), report=False)
-    assert read_summary(tmp_path / "r") == written
+    assert read_summary(proof_of(tmp_path / "r")) == written
     assert kinds(written) == kinds(content_of(tmp_path / "r", "summary.json"))
 
 

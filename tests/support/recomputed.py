@@ -138,11 +138,6 @@ def summary_of(told: Told) -> dict[str, Any]:
         "trial": _trial(told),
         "motion": _motion(told),
         "interpolation": _interpolation(told),
-        "files": {
-            path.relative_to(told.folder).as_posix(): hashlib.sha256(path.read_bytes()).hexdigest()
-            for path in told.folder.rglob("*")
-            if path.is_file() and path.name not in ("summary.json", "report.html")
-        },
     }
 
 

@@ -119,6 +119,7 @@ def batch(
             restart=restart,
             report=report,
         )
+    render_study.changed_results(result)
     render_study.other_results(result)
     if json_output:
         render.json_object(render_study.study_statement(result, study.skipped))

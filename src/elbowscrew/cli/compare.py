@@ -113,7 +113,8 @@ def compare(
     from elbowscrew.errors import ElbowscrewError
     from elbowscrew.reading.registry import read_recording, recordings_in
     from elbowscrew.results.recording_summary import warnings_summary
-    from elbowscrew.results.staging import COMPARISON, check_result_folder
+    from elbowscrew.results.result_files import COMPARISON
+    from elbowscrew.results.staging import check_result_folder
     from elbowscrew.saving import write_comparison
 
     settings = settings_from(config, given)

@@ -22,7 +22,6 @@ if TYPE_CHECKING:
         WanderSummary,
     )
     from elbowscrew.model.summary_types import (
-        AnalysisSummary,
         FileSummary,
         JointWords,
         ModelSummary,
@@ -30,6 +29,7 @@ if TYPE_CHECKING:
         QualitySummary,
         SelectionSummary,
         SpreadSummary,
+        Summary,
         TrialSummary,
         WarningSummary,
     )
@@ -67,7 +67,7 @@ def files(folder: Path) -> None:
             tell(printable(str(path)))
 
 
-def analysis_table(summary: AnalysisSummary, folder: Path) -> None:
+def analysis_table(summary: Summary, folder: Path) -> None:
     """Write the result of one trial at a glance."""
     trial, motion, model = summary["trial"], summary["motion"], summary["interpolation"]
     rows = [

@@ -32,6 +32,14 @@ def other_results(result: StudyResult) -> None:
         tell(f"elbowscrew: warning: {one_line(message)} [other-results]")
 
 
+def changed_results(result: StudyResult) -> None:
+    """Warn of files of earlier results that were not as they had been written."""
+    if result.changed:
+        told = ", ".join(result.changed[:_SKIPPED_TOLD]) + (", ..." if len(result.changed) > _SKIPPED_TOLD else "")
+        message = f"{result.folder}: edited, cut or missing, and made again by analyzing their trials: {told}"
+        tell(f"elbowscrew: warning: {one_line(message)} [changed-results]")
+
+
 def study_statement(result: StudyResult, skipped: Sequence[Skipped]) -> dict[str, Any]:
     """What a batch has done, ready for JSON."""
     return {
@@ -51,6 +59,7 @@ def study_statement(result: StudyResult, skipped: Sequence[Skipped]) -> dict[str
             for one in result.failed
         ],
         "skipped": [{"path": one.path, "reason": one.reason} for one in skipped],
+        "changed_results": list(result.changed),
         "other_results": list(result.others),
     }
 

@@ -322,8 +322,8 @@ class LandmarksSummary(TypedDict):
     """Center of the glenohumeral joint."""
 
 
-class AnalysisSummary(TypedDict):
-    """What an analysis found, before it is in a folder."""
+class Summary(TypedDict):
+    """What ``summary.json`` holds: results, quality, every setting, and where they come from."""
 
     elbowscrew: str
     """Version of the program."""
@@ -337,13 +337,6 @@ class AnalysisSummary(TypedDict):
     warnings: list[WarningSummary]
     versions: dict[str, str]
     """Versions of Python and of the libraries that the results depend on."""
-
-
-class Summary(AnalysisSummary):
-    """What ``summary.json`` holds: results, quality, every setting, and where they come from."""
-
-    files: dict[str, str]
-    """SHA-256 of the files beside it, all but the report."""
 
 
 class FileTrial(RecordingSummary):

@@ -7,23 +7,18 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from elbowscrew.errors import ElbowscrewError, ResultError
 
-if TYPE_CHECKING:
-    from elbowscrew.view.trial_view import TrialView
 
-
-def write_trial_page(folder: Path, trial: TrialView | None = None) -> Path:
+def write_trial_page(folder: Path) -> Path:
     """Write ``report.html`` of one result folder, whole or not at all.
 
     Parameters
     ----------
     folder : Path
-        As `elbowscrew.save_analysis` wrote it. A page of ours is replaced.
-    trial : TrialView, optional
-        What is in the folder, if it is at hand; else it is read.
+        As `elbowscrew.save_analysis` wrote it. A page of ours is replaced, and its digest in ``SHA256SUMS``.
 
     Returns
     -------
@@ -39,7 +34,7 @@ def write_trial_page(folder: Path, trial: TrialView | None = None) -> Path:
     """
     from elbowscrew.report.trial_page import write_trial_page as write
 
-    return write(folder, trial)
+    return write(folder)
 
 
 def write_study_page(folder: Path) -> Path:

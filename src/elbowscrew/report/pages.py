@@ -16,7 +16,6 @@ from markupsafe import Markup
 
 from elbowscrew._version import __version__
 from elbowscrew.errors import ResultError
-from elbowscrew.results.staging import write_files
 from elbowscrew.results.trial_views import UNREADABLE
 
 MARK: Final = 'name="generator" content="elbowscrew'
@@ -68,12 +67,6 @@ def json_for_script(data: Any) -> Markup:
     for character in "<>&":
         text = text.replace(character, f"\\u{ord(character):04x}")
     return Markup(text)  # noqa: S704 - escaped for this place
-
-
-def write_page(path: Path, text: str) -> Path:
-    """Write a page whole or not at all, over nothing but an earlier page of ours."""
-    write_files({path: text.encode("utf-8", "replace")}, replaceable=MARK)
-    return path
 
 
 def unshowable(folder: Path, error: Exception) -> ResultError:

@@ -11,7 +11,7 @@ from typing import Final, NamedTuple
 
 from elbowscrew.errors import SettingError
 from elbowscrew.report.figure_files import figure_files, files_of
-from elbowscrew.results.staging import write_files
+from elbowscrew.results.staging import settle, write_files
 from elbowscrew.results.trial_views import view_of_result
 from elbowscrew.view.figure_names import OVERLAY
 
@@ -65,14 +65,15 @@ def save_publication_figures(
     """
     from elbowscrew.plots.overlay import LEAST_TRIALS, mean_curve, overlay_figure
 
-    contents: dict[Path, bytes] = {}
+    contents: dict[str, bytes] = {}
     single = [name for name in names if name != OVERLAY]
     prefixes = _prefixes(results)
     curves, left_out, units = [], [], set()
     for result, prefix in zip(results, prefixes, strict=True):
+        settle(result)
         trial = view_of_result(result)
         for name, content in figure_files(trial, single, formats, width_mm).items():
-            contents[folder / f"{prefix}{name}"] = content
+            contents[f"{prefix}{name}"] = content
         if OVERLAY in names:
             curve = mean_curve(trial)
             if curve is None:
@@ -89,9 +90,9 @@ def save_publication_figures(
             raise SettingError(msg)
         unit = units.pop() if len(units) == 1 else "deg"
         drawn = files_of({OVERLAY: partial(overlay_figure, curves, width_mm=width_mm, unit=unit)}, formats)
-        contents |= {folder / name: content for name, content in drawn.items()}
-    write_files(contents, replaceable="" if force else None)
-    return Published(tuple(contents), tuple(left_out))
+        contents |= drawn
+    write_files(folder, contents, replaceable=("",) if force else None)
+    return Published(tuple(folder / name for name in contents), tuple(left_out))
 
 
 def _prefixes(results: Sequence[Path]) -> list[str]:

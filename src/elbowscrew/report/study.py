@@ -18,6 +18,7 @@ from elbowscrew.geometry.arrays import Float
 from elbowscrew.model.summary_types import Summary
 from elbowscrew.opening import open_text
 from elbowscrew.reading.source import longest_cell
+from elbowscrew.results.proof import proof_of
 from elbowscrew.results.summary_reading import read_summary, settings_in
 from elbowscrew.results.table_reading import read_columns
 from elbowscrew.results.trial_views import is_result
@@ -133,9 +134,10 @@ def read_study(folder: Path, factors: Sequence[str] | None = None) -> Study:
 
 
 def _trial(result: Path, name: str) -> StudyTrial:
-    summary = read_summary(result)
+    proof = proof_of(result)
+    summary = read_summary(proof)
     settings = settings_in(summary, result)
-    columns = read_columns(result / "screw.csv", _THETA, settings.angle_unit, settings.length_unit)
+    columns = read_columns(proof.file("screw.csv"), _THETA, settings.angle_unit, settings.length_unit)
     theta = np.degrees(columns["theta"])
     rows = drawn_rows(theta, keep_gaps=True, parts=_KEPT_BUCKETS)
     return StudyTrial(

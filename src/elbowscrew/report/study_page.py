@@ -14,8 +14,9 @@ from elbowscrew.geometry.arrays import Float
 from elbowscrew.model.summary_types import MotionSummary, Summary
 from elbowscrew.report.charts import path_of
 from elbowscrew.report.distributions import LEAST, LIMIT, modified_z, strip_chart
-from elbowscrew.report.pages import UNSHOWABLE, render, unshowable, write_page
+from elbowscrew.report.pages import MARK, UNSHOWABLE, render, unshowable
 from elbowscrew.report.study import CONDITION, Failure, Study, StudyTrial, read_study
+from elbowscrew.results.staging import write_files
 from elbowscrew.view.decimation import drawn_rows
 
 _THUMB: Final = (132.0, 34.0)
@@ -93,7 +94,8 @@ class Factor(TypedDict):
 def write_study_page(folder: Path, factors: Sequence[str] | None = None) -> Path:
     """Write ``index.html`` over the results in a folder; see `elbowscrew.report.write_study_page`."""
     study = read_study(folder, factors)
-    return write_page(folder / "index.html", study_page(study))
+    write_files(folder, {"index.html": study_page(study).encode("utf-8", "replace")}, replaceable=(MARK,))
+    return folder / "index.html"
 
 
 def study_page(study: Study) -> str:

@@ -15,7 +15,7 @@ from elbowscrew.joints import Joint
 from elbowscrew.model.joint_summary_types import EstimateSummary, JointSummary
 from elbowscrew.report.joint_words import joint_sentences
 from elbowscrew.report.methods import citations_of, methods_of
-from elbowscrew.report.pages import UNSHOWABLE, render, unshowable, write_page
+from elbowscrew.report.pages import MARK, UNSHOWABLE, render, unshowable
 from elbowscrew.report.scene import WIDEST, scene_of
 from elbowscrew.report.trial_charts import (
     axis_chart,
@@ -26,8 +26,12 @@ from elbowscrew.report.trial_charts import (
     theta_chart,
 )
 from elbowscrew.results.joint_summary import preferred_fit
+from elbowscrew.results.proof import proof_of
+from elbowscrew.results.result_files import SUMS
+from elbowscrew.results.staging import settle, write_files
 from elbowscrew.results.summary import settings_summary
-from elbowscrew.results.trial_views import view_of_result
+from elbowscrew.results.summary_reading import SUMMARY
+from elbowscrew.results.trial_views import view_of_proved
 from elbowscrew.settings import SETTINGS, Settings
 from elbowscrew.view.trial_view import TrialView
 
@@ -50,14 +54,20 @@ _FILES: Final = (
 )
 
 
-def write_trial_page(folder: Path, trial: TrialView | None = None) -> Path:
+PAGE: Final = "report.html"
+
+
+def write_trial_page(folder: Path) -> Path:
     """Write ``report.html`` into a result folder; see `elbowscrew.report.write_trial_page`."""
-    shown = view_of_result(folder) if trial is None else trial
+    settle(folder)
+    proof = proof_of(folder)
+    view = view_of_proved(proof)
     try:
-        page = trial_page(shown, folder)
+        page = trial_page(view, folder).encode("utf-8", "replace")
     except UNSHOWABLE as error:
         raise unshowable(folder, error) from error
-    return write_page(folder / "report.html", page)
+    write_files(folder, {PAGE: page, SUMS: proof.with_file(PAGE, page)}, replaceable=(MARK, f"  {SUMMARY}\n"))
+    return folder / PAGE
 
 
 def trial_page(trial: TrialView, folder: Path) -> str:

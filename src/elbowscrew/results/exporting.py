@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from elbowscrew.errors import UsageError
 from elbowscrew.model import Analysis
-from elbowscrew.model.summary_types import AnalysisSummary
+from elbowscrew.model.summary_types import Summary
 from elbowscrew.opening import create, write_new
 from elbowscrew.quantities import angle_in
 from elbowscrew.results.writing import results_by_table
@@ -39,13 +39,13 @@ def check_exports(formats: Sequence[str]) -> None:
             raise UsageError(msg)
 
 
-def write_exports(folder: Path, analysis: Analysis, summary: AnalysisSummary, formats: Sequence[str]) -> None:
+def write_exports(folder: Path, analysis: Analysis, summary: Summary, formats: Sequence[str]) -> None:
     """Write the tables in the formats asked for; the summary goes along where a format has a place for it."""
     for name in dict.fromkeys(formats):
         EXPORTS[name].write(folder, analysis, summary)
 
 
-def _write_parquet(folder: Path, analysis: Analysis, summary: AnalysisSummary) -> None:
+def _write_parquet(folder: Path, analysis: Analysis, summary: Summary) -> None:
     """Write each table as one file; what is not known is null, and the summary stands in the file's metadata."""
     import pyarrow as pa
     import pyarrow.parquet as pq
@@ -66,7 +66,7 @@ def _arrow_array(pa: Any, values: NDArray[Any]) -> Any:
     return pa.array(values.tolist() if values.dtype.kind == "U" else values)
 
 
-def _write_mat(folder: Path, analysis: Analysis, summary: AnalysisSummary) -> None:
+def _write_mat(folder: Path, analysis: Analysis, summary: Summary) -> None:
     """Write one file with a structure for each table, and the summary as JSON; not known is NaN."""
     from scipy.io import savemat
 
@@ -92,7 +92,7 @@ def _matlab_array(values: NDArray[Any]) -> NDArray[Any]:
     return values + 0.0 if values.dtype.kind == "f" else values
 
 
-def _write_sto(folder: Path, analysis: Analysis, _summary: AnalysisSummary) -> None:
+def _write_sto(folder: Path, analysis: Analysis, _summary: Summary) -> None:
     """Write the angle over time as OpenSim's storage: a few header lines, then a table with tabs.
 
     Frames without an angle say NaN: left out, OpenSim would draw its splines across the gap.
@@ -134,7 +134,7 @@ class Export(NamedTuple):
         The file it writes; one that begins with a point is the ending of one file for each table.
     """
 
-    write: Callable[[Path, Analysis, AnalysisSummary], None]
+    write: Callable[[Path, Analysis, Summary], None]
     library: str | None
     file: str
 

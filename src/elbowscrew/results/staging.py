@@ -1,50 +1,25 @@
-"""Results appear whole or not at all: written beside their destination and moved there in one step."""
+"""Results appear whole or not at all, never over anything that is not ours, and with the digests of all their files."""
 
 from __future__ import annotations
 
-import json
 import os
-import re
-import secrets
-import shutil
-from collections.abc import Iterable, Iterator, Mapping
-from contextlib import contextmanager, suppress
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
-from typing import Final, NamedTuple
 
-from elbowscrew.choices import DRAWN_FORMATS
+from elbowscrew.disk.file_sets import write_set
+from elbowscrew.disk.folders import make_parents, new_folder, remove_empty, sweep
+from elbowscrew.disk.placing import recover
 from elbowscrew.errors import OutputError
-from elbowscrew.opening import create, open_bytes, read_text
-from elbowscrew.results.exporting import EXPORTS
-from elbowscrew.tables import TABLES
-from elbowscrew.view.figure_names import SAVED_FIGURES
-
-_TABLE_ENDINGS: Final = (".csv", *(export.file for export in EXPORTS.values() if export.file.startswith(".")))
-RESULT_FILES: Final = (
-    "summary.json",
-    "joint.json",
-    *(f"{name}{ending}" for name in TABLES for ending in _TABLE_ENDINGS),
-    *(export.file for export in EXPORTS.values() if not export.file.startswith(".")),
-    "report.html",
-    *(f"figures/{name}.{kind}" for name in SAVED_FIGURES for kind in DRAWN_FORMATS),
+from elbowscrew.opening import open_bytes
+from elbowscrew.results.proof import seal
+from elbowscrew.results.result_files import (
+    ANALYSIS,
+    ResultKind,
+    files_in,
+    is_cut_summary,
+    is_summary,
 )
-"""All that a result folder may hold."""
-
-
-class ResultKind(NamedTuple):
-    """What a result folder may hold, and the JSON file in it that tells whose it is."""
-
-    files: tuple[str, ...]
-    summary: str
-
-
-ANALYSIS: Final = ResultKind(RESULT_FILES, "summary.json")
-COMPARISON: Final = ResultKind(
-    ("compare.csv", "compare.json", *(f"figures/compare.{kind}" for kind in DRAWN_FORMATS)), "compare.json"
-)
-
-_PREFIX: Final = ".elbowscrew-"
-_TEMPORARY: Final = re.compile(re.escape(_PREFIX) + r"[0-9a-f]{16}\.(partial|replaced)")
 
 
 @contextmanager
@@ -66,27 +41,37 @@ def result_folder(target: Path, *, force: bool, kind: ResultKind = ANALYSIS) -> 
         result is as it was.
     """
     check_result_folder(target, force=force, kind=kind)
-    staged, made = None, []
     try:
-        destination = target.resolve()
-        made = _make_parents(destination)
-        staged = _temporary(destination)
-        staged.mkdir()
-        yield staged
-        check_result_folder(target, force=force, kind=kind)  # somebody may have put something there meanwhile
-        _move_into_place(staged, destination, kind)
-        made = []
+        with new_folder(
+            target.resolve(),
+            check=lambda folder: _check_content(target, folder, force, kind),
+            finish=lambda folder: seal(folder, kind.files),
+        ) as staged:
+            yield staged
     except OSError as error:
-        raise _output_error(target, error) from error
-    finally:
-        if staged is not None:
-            shutil.rmtree(staged, ignore_errors=True)
-        _remove_empty(made)
+        raise output_error(target, error) from error
+
+
+def settle(folder: Path) -> None:
+    """Undo what a killed run has begun to do to a result folder, and sweep what it has left.
+
+    Raises
+    ------
+    OutputError
+        If the disk does not take it.
+    """
+    try:
+        recover(folder.resolve())
+        if folder.is_dir():
+            sweep(folder)
+    except OSError as error:
+        raise output_error(folder, error) from error
 
 
 def check_result_folder(target: Path, *, force: bool, kind: ResultKind = ANALYSIS) -> None:
-    """Raise `OutputError` if the result may not be put there."""
+    """Raise `OutputError` if the result may not be put there; what a killed run has left is undone first."""
     try:
+        settle(target)
         if not os.path.lexists(target):
             return
         if not target.is_dir():
@@ -95,71 +80,63 @@ def check_result_folder(target: Path, *, force: bool, kind: ResultKind = ANALYSI
         if target.resolve() == Path.cwd():
             msg = f"{target}: is the current folder; give --output a folder of its own"
             raise OutputError(msg)
-        present = {path.relative_to(target).as_posix() for path in target.rglob("*")} - {"figures"}
-        if not present:
-            return
-        unknown = sorted(present - set(kind.files))
-        if unknown or not is_summary(target / kind.summary):
-            what = f"holds {unknown[0]!r}, which is not ours" if unknown else "holds files but no elbowscrew result"
-            msg = f"{target}: the folder {what}; give another --output"
-            raise OutputError(msg)
+        _check_content(target, target, force, kind)
     except OSError as error:
-        raise _output_error(target, error) from error
+        raise output_error(target, error) from error
+
+
+def _check_content(target: Path, folder: Path, force: bool, kind: ResultKind) -> None:
+    """Raise `OutputError` if what is in the folder that is or was the target may not be replaced."""
+    known, empty = set(kind.files), True
+    for name in files_in(folder):
+        empty = False
+        if name not in known:
+            msg = f"{target}: the folder holds {name!r}, which is not ours; give another --output"
+            raise OutputError(msg)
+    if empty:
+        return
+    if not is_summary(folder / kind.summary) and not is_cut_summary(folder / kind.summary):
+        msg = f"{target}: the folder holds files but no elbowscrew result; give another --output"
+        raise OutputError(msg)
     if not force:
         msg = f"{target}: there is a result already; give --force to replace it, or another --output"
         raise OutputError(msg)
 
 
-def is_summary(path: Path) -> bool:
-    """Whether a file is the summary of a result."""
-    try:
-        summary = json.loads(read_text(path))
-    except (OSError, ValueError, RecursionError):
-        return False
-    return isinstance(summary, dict) and "elbowscrew" in summary
-
-
-def write_files(contents: Mapping[Path, Iterable[str] | bytes], *, replaceable: str | None) -> None:
+def write_files(
+    folder: Path, contents: Mapping[str, Iterable[str] | bytes], *, replaceable: Collection[str] | None
+) -> None:
     """Write files that belong together: all of them appear, each whole, or none.
 
     Parameters
     ----------
-    contents : mapping of Path to iterable of str, or bytes
-        Lines of each file, without line ends, or all of it.
-    replaceable : str or None
-        None to replace nothing; else an existing file is replaced if its first 4096 bytes hold this word, which tells
-        that it is one of ours.
+    folder : Path
+        Where to; it is made.
+    contents : mapping of str to iterable of str, or bytes
+        By names; lines of each file, without line ends, or all of it.
+    replaceable : collection of str, or None
+        None to replace nothing; else an existing file is replaced if it is empty, as a crash may leave it, or its first
+        4096 bytes hold one of these words, which tell that it is one of ours.
 
     Raises
     ------
     OutputError
-        If a file exists that may not be replaced, or the disk does not take them.
+        If a file exists that may not be replaced, or the disk does not take them. What was there is as it was.
     """
-    for target in contents:
-        _check_file(target, replaceable)
-    staged: dict[Path, Path] = {}
+    first = folder / next(iter(contents))
     made: list[Path] = []
-    target = next(iter(contents))
     try:
-        for target, lines in contents.items():
-            destination = _destination(target)
-            made += _make_parents(destination)
-            staged[target] = _temporary(destination)
-            with create(staged[target]) as stream:
-                if isinstance(lines, bytes):
-                    stream.write(lines)
-                else:
-                    stream.writelines(f"{line}\n".encode() for line in lines)
-        for target, temporary in staged.items():
-            _check_file(target, replaceable)
-            temporary.replace(_destination(target))
+        if folder.is_dir():
+            sweep(folder)
+        for name in contents:
+            _check_file(folder / name, folder / name, replaceable)
+        made = make_parents(first)
+        write_set(folder, contents, lambda path: _check_file(folder / path.name, path, replaceable))
         made = []
     except OSError as error:
-        raise _output_error(target, error) from error
+        raise output_error(first, error) from error
     finally:
-        for temporary in staged.values():
-            temporary.unlink(missing_ok=True)
-        _remove_empty(made)
+        remove_empty(made)
 
 
 def replace_file(target: Path, content: bytes) -> None:
@@ -170,107 +147,30 @@ def replace_file(target: Path, content: bytes) -> None:
     OutputError
         If the disk does not take it; an earlier file is as it was.
     """
-    temporary = _temporary(target)
     try:
-        with create(temporary) as stream:
-            stream.write(content)
-            stream.flush()
-            os.fsync(stream.fileno())
-        temporary.replace(target)
+        write_set(target.parent, {target.name: content}, lambda _former: None)
     except OSError as error:
-        raise _output_error(target, error) from error
-    finally:
-        with suppress(OSError):
-            temporary.unlink(missing_ok=True)
+        raise output_error(target, error) from error
 
 
-def remove_leftovers(folder: Path) -> None:
-    """Remove what runs that were killed have left in a folder: temporary files and folders of ours, nothing else."""
-    for path in folder.iterdir():
-        if not _TEMPORARY.fullmatch(path.name) or path.is_symlink():
-            continue
-        if path.is_dir():
-            shutil.rmtree(path, ignore_errors=True)
-        else:
-            path.unlink(missing_ok=True)
-
-
-def remove_damaged(target: Path) -> None:
-    """Remove a result that a power failure has cut: files of our names only, without a summary that can be read."""
-    if not target.is_dir() or target.is_symlink() or is_summary(target / "summary.json"):
+def _check_file(target: Path, path: Path, replaceable: Collection[str] | None) -> None:
+    """Raise `OutputError` if what is or was the target may not be replaced."""
+    if not os.path.lexists(path):
         return
-    present = {path.relative_to(target).as_posix() for path in target.rglob("*")} - {"figures"}
-    if "summary.json" in present and present <= set(RESULT_FILES):
-        for name in present:
-            (target / name).unlink(missing_ok=True)
-        _remove_empty([target / "figures"])
+    if path.is_symlink() or not path.is_file():
+        what = "is a link" if path.is_symlink() else "is not a file"
+        msg = f"{target}: exists already and {what}; give another name"
+        raise OutputError(msg)
+    if replaceable is None:
+        msg = f"{target}: exists already; give --force to replace it, or another name"
+        raise OutputError(msg)
+    with open_bytes(path) as stream:
+        head = stream.read(4096)
+    if head.strip(b"\0") and not any(word.encode() in head for word in replaceable):
+        msg = f"{target}: exists already and was not written by elbowscrew; give another name"
+        raise OutputError(msg)
 
 
-def _check_file(target: Path, replaceable: str | None) -> None:
-    try:
-        if not os.path.lexists(target):
-            return
-        if target.is_symlink() or not target.is_file():
-            what = "is a link" if target.is_symlink() else "is not a file"
-            msg = f"{target}: exists already and {what}; give another name"
-            raise OutputError(msg)
-        if replaceable is None:
-            msg = f"{target}: exists already; give --force to replace it, or another name"
-            raise OutputError(msg)
-        with open_bytes(target) as stream:
-            if replaceable.encode() not in stream.read(4096):
-                msg = f"{target}: exists already and was not written by elbowscrew; give another name"
-                raise OutputError(msg)
-    except OSError as error:
-        raise _output_error(target, error) from error
-
-
-def _destination(target: Path) -> Path:
-    """Follow the links that lead to the folder of a file, but never one in the place of the file."""
-    return target.parent.resolve() / target.name
-
-
-def _make_parents(destination: Path) -> list[Path]:
-    """Make the folders above a destination, and say which are new, the innermost first."""
-    missing = []
-    for parent in destination.parents:
-        if parent.exists():
-            break
-        missing.append(parent)
-    destination.parent.mkdir(parents=True, exist_ok=True)
-    return missing
-
-
-def _remove_empty(folders: Iterable[Path]) -> None:
-    for folder in folders:
-        with suppress(OSError):
-            folder.rmdir()
-
-
-def _move_into_place(staged: Path, destination: Path, kind: ResultKind) -> None:
-    """Move the staged folder to its destination; an earlier result steps aside, and is removed after or comes back."""
-    if not destination.is_dir() or not any(destination.iterdir()):
-        if os.name == "nt" and destination.is_dir():
-            destination.rmdir()
-        staged.rename(destination)  # over an empty folder, never over one that has just been filled
-        return
-    aside = staged.with_suffix(".replaced")
-    destination.rename(aside)
-    try:
-        staged.rename(destination)
-    except BaseException:
-        with suppress(OSError):
-            aside.rename(destination)
-        raise
-    for name in kind.files:
-        (aside / name).unlink(missing_ok=True)
-    _remove_empty([aside / "figures", aside])
-
-
-def _temporary(destination: Path) -> Path:
-    """Name a temporary thing beside a destination, before it is made: so it is removed whenever the run is stopped."""
-    return destination.parent / f"{_PREFIX}{secrets.token_hex(8)}.partial"
-
-
-def _output_error(target: Path, error: OSError) -> OutputError:
+def output_error(target: Path, error: OSError) -> OutputError:
+    """Say that the disk did not take something."""
     return OutputError(f"{target}: cannot be written: {error.strerror or error}; nothing was left behind")

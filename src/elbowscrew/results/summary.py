@@ -17,7 +17,6 @@ from elbowscrew.joints import side_between
 from elbowscrew.model import Analysis, JointAxis, Landmarks, Selection
 from elbowscrew.model.anatomy import Landmark
 from elbowscrew.model.summary_types import (
-    AnalysisSummary,
     JointAxisSummary,
     JointWords,
     LandmarksSummary,
@@ -26,6 +25,7 @@ from elbowscrew.model.summary_types import (
     MotionSummary,
     PhaseLawSummary,
     SelectionSummary,
+    Summary,
     TrialSummary,
 )
 from elbowscrew.motion.screws.frames import frame_called
@@ -37,7 +37,7 @@ from elbowscrew.settings import Settings
 _LIBRARIES: Final = ("numpy", "scipy", "matplotlib", "pandas", "pydantic")
 
 
-def summary_from_analysis(analysis: Analysis) -> AnalysisSummary:
+def summary_from_analysis(analysis: Analysis) -> Summary:
     """Results, quality, settings and provenance, ready for JSON; units in the names, None where nothing is known.
 
     Angles are degrees and lengths millimeters here, whatever the units of the tables.
@@ -49,7 +49,7 @@ def summary_from_analysis(analysis: Analysis) -> AnalysisSummary:
 
     Returns
     -------
-    AnalysisSummary
+    Summary
         What stands in ``summary.json``, but for the files beside it.
 
     Examples

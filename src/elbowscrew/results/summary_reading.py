@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 from functools import cache
 from pathlib import Path
 from typing import Any, Final, TypeVar
@@ -15,8 +14,8 @@ from elbowscrew.configuring import checked_settings
 from elbowscrew.errors import ResultError, UsageError
 from elbowscrew.model.joint_summary_types import JointSummary
 from elbowscrew.model.summary_types import Summary
-from elbowscrew.opening import read_text
 from elbowscrew.results.joint_summary import preferred_fit
+from elbowscrew.results.proof import Proof, ProvedFile
 from elbowscrew.settings import Settings
 
 SUMMARY: Final = "summary.json"
@@ -30,8 +29,8 @@ LARGEST: Final = 1e100
 Shape = TypeVar("Shape")
 
 
-def read_summary(folder: str | os.PathLike[str]) -> Summary:
-    """Read the ``summary.json`` of a result folder.
+def read_summary(proof: Proof) -> Summary:
+    """Read the ``summary.json`` of a result.
 
     Keys that it should not have are passed over.
 
@@ -43,24 +42,21 @@ def read_summary(folder: str | os.PathLike[str]) -> Summary:
     Raises
     ------
     ResultError
-        If there is none, it is damaged or edited (it names the key), or its keys are those of another version.
+        If there is none, it is not as it was written, or is of another version (it names the key).
     """
-    path = Path(folder) / SUMMARY
-    content = _read_object(path)
-    _check_version(path.parent, content)
-    return _checked(path, content, _summary_adapter())
+    return _checked(proof.folder / SUMMARY, _read_object(proof.file(SUMMARY)), _summary_adapter())
 
 
-def read_joint_summary(folder: str | os.PathLike[str]) -> JointSummary:
-    """Read the ``joint.json`` of a result folder; read ``summary.json`` first, which tells the version.
+def read_joint_summary(proof: Proof) -> JointSummary:
+    """Read the ``joint.json`` of a result; read ``summary.json`` first, which tells the version.
 
     Raises
     ------
     ResultError
-        If there is none, or it is damaged or edited; it names the key.
+        If there is none, it is not as it was written, or is of another version (it names the key).
     """
-    path = Path(folder) / JOINT
-    joint = _checked(path, _read_object(path), _joint_adapter())
+    path = proof.folder / JOINT
+    joint = _checked(path, _read_object(proof.file(JOINT)), _joint_adapter())
     if joint["preferred"] is not None and preferred_fit(joint) is None:
         msg = f"{path}: {joint['preferred']}: expected the preferred fit, found null; analyze the trial again"
         raise ResultError(msg)
@@ -92,9 +88,12 @@ def _joint_adapter() -> TypeAdapter[JointSummary]:
     return TypeAdapter(JointSummary)
 
 
-def _read_object(path: Path) -> dict[str, Any]:
+def _read_object(source: ProvedFile) -> dict[str, Any]:
+    path = source.path
     try:
-        content = json.loads(read_text(path), parse_float=_number, parse_constant=_number, parse_int=_whole)
+        with source.opened() as stream:
+            text = stream.read().decode("utf-8")
+        content = json.loads(text, parse_float=_number, parse_constant=_number, parse_int=_whole)
         json.dumps(content, ensure_ascii=False).encode()  # half a character is no text
     except OSError as error:
         msg = (
@@ -121,18 +120,6 @@ def _number(text: str) -> float:
 def _whole(text: str) -> int:
     _number(text)
     return int(text)
-
-
-def _check_version(folder: Path, content: dict[str, Any]) -> None:
-    """Refuse a result with the keys of version 0.1, in which the segments were an elbow's arm and forearm."""
-    trial = content.get("trial")
-    if isinstance(trial, dict) and "forearm" in trial:
-        written = " ".join(str(content.get("elbowscrew")).split())
-        msg = (
-            f"{folder}: written by elbowscrew {written}, whose names this version ({__version__}) does not read; "
-            "analyze the trial again"
-        )
-        raise ResultError(msg)
 
 
 def _checked(path: Path, content: dict[str, Any], adapter: TypeAdapter[Shape]) -> Shape:

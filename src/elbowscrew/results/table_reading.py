@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Collection, Iterator
+from io import TextIOWrapper
 from itertools import islice
-from pathlib import Path
 from typing import Any, Final, TextIO
 
 import numpy as np
@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from elbowscrew.choices import AngleUnit, LengthUnit
 from elbowscrew.errors import ResultError
 from elbowscrew.model.table_record import TableRecord
-from elbowscrew.opening import open_text
 from elbowscrew.quantities import Quantity, as_read_back, in_si, unit_suffixes
+from elbowscrew.results.proof import ProvedFile
 from elbowscrew.results.summary_reading import LARGEST
 from elbowscrew.tables import Column, attributes
 
@@ -55,13 +55,13 @@ def as_read(result: TableRecord, names: Collection[str], angle_unit: AngleUnit, 
 
 
 def read_columns(
-    path: Path, table: tuple[Column, ...], angle_unit: AngleUnit, length_unit: LengthUnit
+    source: ProvedFile, table: tuple[Column, ...], angle_unit: AngleUnit, length_unit: LengthUnit
 ) -> dict[str, NDArray[Any]]:
     """Read columns by their names without units; the inverse of `TableRecord.columns`.
 
     Parameters
     ----------
-    path : Path
+    source : ProvedFile
         A table that `elbowscrew.results.writing` wrote.
     table : tuple of Column
         Those wanted; there may be more.
@@ -76,17 +76,20 @@ def read_columns(
     Raises
     ------
     ResultError
-        If the table is missing, cut, or lacks a column.
+        If the table is missing, not as it was written, or lacks a column.
     """
-    values = _read(path, table, angle_unit, length_unit)
+    values = _read(source, table, angle_unit, length_unit)
     return {column.name: one for column, one in zip(table, values, strict=True)}
 
 
-def _read(path: Path, table: tuple[Column, ...], angle_unit: AngleUnit, length_unit: LengthUnit) -> list[NDArray[Any]]:
+def _read(
+    source: ProvedFile, table: tuple[Column, ...], angle_unit: AngleUnit, length_unit: LengthUnit
+) -> list[NDArray[Any]]:
     """Read columns, in the order of the table."""
-    suffixes = unit_suffixes(angle_unit, length_unit)
+    suffixes, path = unit_suffixes(angle_unit, length_unit), source.path
     try:
-        with open_text(path, newline="") as stream:
+        with source.opened() as binary:
+            stream = TextIOWrapper(binary, encoding="utf-8", newline="")
             header = stream.readline().rstrip("\n").split(",")
             places = [header.index(column.name + suffixes.get(column.quantity, "")) for column in table]
             blocks: list[list[NDArray[Any]]] = [[] for _ in table]
@@ -113,13 +116,17 @@ def _read(path: Path, table: tuple[Column, ...], angle_unit: AngleUnit, length_u
 
 
 def read_attributes(
-    path: Path, table: tuple[Column, ...], names: Collection[str], angle_unit: AngleUnit, length_unit: LengthUnit
+    source: ProvedFile,
+    table: tuple[Column, ...],
+    names: Collection[str],
+    angle_unit: AngleUnit,
+    length_unit: LengthUnit,
 ) -> Attributes:
     """Read attributes of a result back from its table; columns of no other are looked at.
 
     Parameters
     ----------
-    path : Path
+    source : ProvedFile
     table : tuple of Column
     names : collection of str
         Of the attributes wanted.
@@ -137,7 +144,7 @@ def read_attributes(
         As `read_columns`.
     """
     wanted = tuple(column for column in table if column.attribute in names)
-    return attributes(_read(path, wanted, angle_unit, length_unit), wanted)
+    return attributes(_read(source, wanted, angle_unit, length_unit), wanted)
 
 
 def _whole_lines(stream: TextIO) -> list[str]:

@@ -22,8 +22,9 @@ from elbowscrew.model.joint_axis import AxisPath
 from elbowscrew.model.joint_coordinates import JOINT_ANGLES
 from elbowscrew.model.joint_summary_types import JointSummary, PoseSummary, Vector
 from elbowscrew.model.joint_type import JointAngles
-from elbowscrew.model.summary_types import AnalysisSummary, ModelSummary, MovementSummary
+from elbowscrew.model.summary_types import ModelSummary, MovementSummary, Summary
 from elbowscrew.results.joint_summary import joint_summary, preferred_fit
+from elbowscrew.results.proof import Proof, proof_of
 from elbowscrew.results.summary import summary_from_analysis
 from elbowscrew.results.summary_reading import SUMMARY, read_joint_summary, read_summary, settings_in
 from elbowscrew.results.table_reading import Attributes, as_read, read_attributes, read_columns
@@ -69,21 +70,32 @@ def view_of_result(folder: Path) -> TrialView:
     Raises
     ------
     ResultError
-        If the folder holds no finished result, or a damaged one.
+        If the folder holds no finished result, or one that is damaged or was edited.
     """
-    summary = read_summary(folder)
-    joint = read_joint_summary(folder)
+    return view_of_proved(proof_of(folder))
+
+
+def view_of_proved(proof: Proof) -> TrialView:
+    """Do what `view_of_result` does, with digests that have been read."""
+    folder = proof.folder
+    proof.check_numbers()
+    summary = read_summary(proof)
+    joint = read_joint_summary(proof)
     settings = settings_in(summary, folder)
     units = settings.angle_unit, settings.length_unit
-    curve, angles, path = (folder / f"{name}.csv" for name in ("repetition_curve", "joint_angles", "axis_path"))
+    curve, angles, path = (
+        proof.file(f"{name}.csv") if proof.has(f"{name}.csv") else None
+        for name in ("repetition_curve", "joint_angles", "axis_path")
+    )
+    screw, model, cycles = (proof.file(f"{name}.csv") for name in ("screw", "interpolation", "repetitions"))
     try:
         read = _Tables(
-            screw=read_attributes(folder / "screw.csv", tables.SCREW_COLUMNS, _SCREW, *units),
-            model=read_attributes(folder / "interpolation.csv", tables.INTERPOLATION_COLUMNS, _MODEL, *units),
-            repetitions=read_attributes(folder / "repetitions.csv", tables.REPETITION_COLUMNS, _REPETITIONS, *units),
-            curve=read_columns(curve, tables.CURVE_COLUMNS, *units) if curve.exists() else None,
-            angles=read_attributes(angles, _angle_table(joint), _ANGLES, *units) if angles.exists() else None,
-            path=read_attributes(path, tables.AXIS_PATH_COLUMNS, _PATH, *units) if path.exists() else None,
+            screw=read_attributes(screw, tables.SCREW_COLUMNS, _SCREW, *units),
+            model=read_attributes(model, tables.INTERPOLATION_COLUMNS, _MODEL, *units),
+            repetitions=read_attributes(cycles, tables.REPETITION_COLUMNS, _REPETITIONS, *units),
+            curve=None if curve is None else read_columns(curve, tables.CURVE_COLUMNS, *units),
+            angles=None if angles is None else read_attributes(angles, _angle_table(joint), _ANGLES, *units),
+            path=None if path is None else read_attributes(path, tables.AXIS_PATH_COLUMNS, _PATH, *units),
         )
         return _view(summary, joint, settings, read)
     except UNREADABLE as error:
@@ -94,13 +106,13 @@ def view_of_result(folder: Path) -> TrialView:
         raise ResultError(" ".join(msg.split())) from error
 
 
-def view_of_analysis(analysis: Analysis, summary: AnalysisSummary, joint: JointSummary) -> TrialView:
+def view_of_analysis(analysis: Analysis, summary: Summary, joint: JointSummary) -> TrialView:
     """Give what `view_of_result` reads of the folder that an analysis is written to, to the last digit.
 
     Parameters
     ----------
     analysis : Analysis
-    summary : AnalysisSummary
+    summary : Summary
     joint : JointSummary
     """
     units = analysis.settings.angle_unit, analysis.settings.length_unit
@@ -133,7 +145,7 @@ class _Tables(NamedTuple):
     path: Attributes | None
 
 
-def _view(summary: AnalysisSummary, joint: JointSummary, settings: Settings, read: _Tables) -> TrialView:
+def _view(summary: Summary, joint: JointSummary, settings: Settings, read: _Tables) -> TrialView:
     trial, motion, bodies, words = summary["trial"], summary["motion"], joint["bodies"], summary["trial"]["joint"]
     screw, model, dispersion = read.screw, read.model, joint["dispersion"]
     frame, fit = _Frames(screw["frame"]), joint["mean_axis"] or preferred_fit(joint)

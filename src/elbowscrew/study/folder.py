@@ -10,9 +10,10 @@ from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import IO, Final
 
+from elbowscrew.disk.folders import sweep
 from elbowscrew.errors import OutputError
 from elbowscrew.opening import open_own
-from elbowscrew.results.staging import remove_leftovers
+from elbowscrew.results.result_files import is_stray
 
 MARK: Final = ".elbowscrew-batch.lock"
 """Its presence says that a folder is the output of a batch, and the system's lock on it that one is at work there."""
@@ -38,7 +39,7 @@ def batch_folder(folder: Path) -> Iterator[None]:
             folder.mkdir(parents=True, exist_ok=True)
             _hold(folder, held.enter_context(open_own(folder / MARK)))
             _wait_for_workers(folder)
-            remove_leftovers(folder)
+            sweep(folder, held=True)
         except OSError as error:
             msg = f"{folder}: cannot be written: {error.strerror or error}"
             raise OutputError(msg) from error
@@ -47,7 +48,7 @@ def batch_folder(folder: Path) -> Iterator[None]:
         finally:
             with suppress(OSError, OutputError):
                 _wait_for_workers(folder)
-                remove_leftovers(folder)
+                sweep(folder, held=True)
 
 
 def _hold(folder: Path, mark: IO[bytes]) -> None:
@@ -103,7 +104,7 @@ def _check_folder(folder: Path) -> None:
         raise OutputError(msg)
     if (folder / MARK).exists():
         return
-    stranger = next(iter(sorted(path.name for path in folder.iterdir())), None)
+    stranger = next((name for name in sorted(path.name for path in folder.iterdir()) if not is_stray(name)), None)
     if stranger is not None:
         msg = f"{folder}: the folder holds {stranger!r} and is no output of a batch; give another --output"
         raise OutputError(msg)

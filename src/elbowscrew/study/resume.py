@@ -2,37 +2,55 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 from elbowscrew._version import __version__
 from elbowscrew.choices import FRAMES, JOINT_NAMES
-from elbowscrew.errors import ResultError
+from elbowscrew.errors import OutputError, ResultError
 from elbowscrew.joints import ends_called, joints_of
 from elbowscrew.model.summary_types import Summary
 from elbowscrew.reading.source import sha256_of
+from elbowscrew.results.proof import proof_of
+from elbowscrew.results.staging import settle
 from elbowscrew.results.summary import landmarks_summary, library_versions, settings_summary
 from elbowscrew.results.summary_reading import read_summary
-from elbowscrew.saving import digests
 from elbowscrew.study.task import TrialTask
 
 
-def is_current(task: TrialTask) -> bool:
-    """Tell by the result's own summary.
+class Standing(NamedTuple):
+    """Whether a result is what analyzing again would give, and which of its files are not as they were written."""
+
+    current: bool
+    changed: tuple[str, ...] = ()
+
+
+def standing_of(task: TrialTask) -> Standing:
+    """Tell by the result's own summary and digests.
 
     The same are: program and libraries, every setting, the landmarks, name and SHA-256 of the recording; and the result
-    is whole: each file the summary tells of is there, with the SHA-256 it tells.
+    is whole: each file is there as it was written.
     """
+    if task.folder.is_symlink():  # it may lead out of the folder that is held
+        return Standing(False)
     try:
-        summary = read_summary(task.folder)
+        settle(task.folder)
+        proof = proof_of(task.folder)
+        changed = proof.changed()
+        return Standing(not changed and _is_of(task, read_summary(proof)), changed)
+    except (ResultError, OutputError):  # the trial's own failure, when it is analyzed
+        return Standing(False)
+
+
+def _is_of(task: TrialTask, summary: Summary) -> bool:
+    try:
         return (
             summary["elbowscrew"] == __version__
             and summary["versions"] == library_versions()
             and summary["settings"] == _settings(task, summary)
             and summary["landmarks"] == landmarks_summary(task.landmarks)
             and summary["source"]["sha256"] == sha256_of(task.path)
-            and summary["files"] == digests(task.folder)
         )
-    except (OSError, ResultError):
+    except OSError:
         return False
 
 

@@ -17,13 +17,15 @@ from elbowscrew.model.summary_types import Summary
 from elbowscrew.reading.landmarks import read_landmarks
 from elbowscrew.report.study_page import write_study_page
 from elbowscrew.results.exporting import check_exports
-from elbowscrew.results.staging import is_summary, replace_file
+from elbowscrew.results.proof import proof_of
+from elbowscrew.results.result_files import is_summary
+from elbowscrew.results.staging import replace_file
 from elbowscrew.results.summary_reading import SUMMARY, read_summary
 from elbowscrew.study.executors import OpenExecutor
 from elbowscrew.study.folder import batch_folder
 from elbowscrew.study.naming import result_names
 from elbowscrew.study.outcome import FailedTrial, Failure, StudyRow, failures_table, summary_table
-from elbowscrew.study.resume import is_current
+from elbowscrew.study.resume import standing_of
 from elbowscrew.study.running import run_tasks
 from elbowscrew.study.task import TrialTask, analyze_trial, versions_here
 from elbowscrew.study.trial import Trial
@@ -64,6 +66,8 @@ class StudyResult:
     warned : int
         Trials with a result that has warnings.
     failed : tuple of FailedTrial
+    changed : tuple of str
+        Files of earlier results that were not as they had been written, and have been made again.
     others : tuple of str
         Results in the folder that the tables do not tell of: of earlier trials, or of trials that fail now.
     """
@@ -73,6 +77,7 @@ class StudyResult:
     kept: int
     warned: int
     failed: tuple[FailedTrial, ...]
+    changed: tuple[str, ...]
     others: tuple[str, ...]
 
 
@@ -129,7 +134,8 @@ def run_study(
     check_exports(common.export)
     tasks = _tasks(trials, folder, config, dict(options or {}), landmarks)
     with batch_folder(folder):
-        pending = [k for k, task in enumerate(tasks) if restart or not is_current(task)]
+        standings = [standing_of(task) for task in tasks]
+        pending = [k for k, standing in enumerate(standings) if restart or not standing.current]
 
         @contextmanager
         def opened() -> Iterator[Executor]:
@@ -154,6 +160,11 @@ def run_study(
             kept=len(tasks) - len(pending),
             warned=sum(any(one["severity"] == "warning" for one in row.summary["warnings"]) for row in rows),
             failed=failures,
+            changed=tuple(
+                f"{task.folder.name}/{name}"
+                for task, standing in zip(tasks, standings, strict=True)
+                for name in standing.changed
+            ),
             others=_others(folder, {row.trial for row in rows}),
         )
 
@@ -249,7 +260,7 @@ def _remove_tables(folder: Path) -> None:
 
 def _summary_of(task: TrialTask) -> Summary:
     try:
-        return read_summary(task.folder)
+        return read_summary(proof_of(task.folder))
     except ResultError as error:
         msg = f"{task.folder}: the result is not there; the workers must share this folder, and nobody else write to it"
         raise OutputError(msg) from error

@@ -12,7 +12,6 @@ from elbowscrew._process import collect_garbage
 from elbowscrew._version import __version__
 from elbowscrew.errors import ElbowscrewError, OutputError, UsageError, shortened
 from elbowscrew.model import Landmarks
-from elbowscrew.results.staging import remove_damaged
 from elbowscrew.results.summary import library_versions
 from elbowscrew.saving import analyze_file, save_analysis
 from elbowscrew.settings import Settings
@@ -73,7 +72,6 @@ def analyze_trial(task: TrialTask) -> Failure | None:
             if task.folder.is_symlink():
                 msg = f"{task.folder}: is a link; a batch writes into its own folder alone: remove it"
                 raise OutputError(msg)
-            remove_damaged(task.folder)
             save_analysis(analyze_file(task.path, task.settings, landmarks=task.landmarks), task.folder, force=True)
             collect_garbage()
     except ElbowscrewError as error:

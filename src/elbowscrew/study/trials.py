@@ -14,7 +14,7 @@ from typing import Final
 from elbowscrew.errors import UsageError
 from elbowscrew.reading.registry import ENDINGS, FORMATS
 from elbowscrew.reading.source import first_bytes
-from elbowscrew.results.staging import is_summary
+from elbowscrew.results.result_files import is_summary
 from elbowscrew.study.folder import MARK
 from elbowscrew.study.manifest import is_manifest, read_manifest
 from elbowscrew.study.trial import Trial

@@ -17,7 +17,7 @@ from elbowscrew.model.joint_summary_types import JointSummary
 from elbowscrew.model.joint_type import JointAngles
 from elbowscrew.model.modeled import Keyframes
 from elbowscrew.model.repetitions import MovementPhases, Repetitions
-from elbowscrew.model.summary_types import AnalysisSummary
+from elbowscrew.model.summary_types import Summary
 
 if TYPE_CHECKING:
     from elbowscrew.settings import Settings
@@ -29,7 +29,7 @@ class TrialView(ArrayRecord):
 
     Attributes
     ----------
-    summary : AnalysisSummary
+    summary : Summary
         ``summary.json``, degrees and millimeters.
     joint_summary : JointSummary
         ``joint.json``.
@@ -74,7 +74,7 @@ class TrialView(ArrayRecord):
         the motion has no single axis.
     """
 
-    summary: AnalysisSummary
+    summary: Summary
     joint_summary: JointSummary
     settings: Settings
     named_joint: Joint

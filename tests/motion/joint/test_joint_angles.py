@@ -15,7 +15,7 @@ from elbowscrew.errors import UsageError
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.results.joint_summary import joint_summary
-from elbowscrew.results.staging import RESULT_FILES
+from elbowscrew.results.result_files import RESULT_FILES
 
 FLEXION = np.array([0.98, 0.1, 0.17]) / np.linalg.norm([0.98, 0.1, 0.17])
 

@@ -1,0 +1,93 @@
+"""What a result folder may hold, and how it is told from a folder of somebody else's."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Final, NamedTuple
+
+from elbowscrew.choices import DRAWN_FORMATS
+from elbowscrew.disk.temporary import is_temporary
+from elbowscrew.opening import open_bytes, read_text
+from elbowscrew.results.exporting import EXPORTS
+from elbowscrew.tables import TABLES
+from elbowscrew.view.figure_names import SAVED_FIGURES
+
+SUMS: Final = "SHA256SUMS"
+"""The file that has the digests of all others."""
+
+_TABLE_ENDINGS: Final = (".csv", *(export.file for export in EXPORTS.values() if export.file.startswith(".")))
+RESULT_FILES: Final = (
+    "summary.json",
+    "joint.json",
+    *(f"{name}{ending}" for name in TABLES for ending in _TABLE_ENDINGS),
+    *(export.file for export in EXPORTS.values() if not export.file.startswith(".")),
+    "report.html",
+    *(f"figures/{name}.{kind}" for name in SAVED_FIGURES for kind in DRAWN_FORMATS),
+    SUMS,
+)
+"""All that a result folder may hold."""
+
+
+class ResultKind(NamedTuple):
+    """What a result folder may hold, and the JSON file in it that tells whose it is."""
+
+    files: tuple[str, ...]
+    summary: str
+
+
+ANALYSIS: Final = ResultKind(RESULT_FILES, "summary.json")
+COMPARISON: Final = ResultKind(
+    ("compare.csv", "compare.json", *(f"figures/compare.{kind}" for kind in DRAWN_FORMATS), SUMS), "compare.json"
+)
+
+_STRAYS: Final = frozenset({".ds_store", "thumbs.db", "desktop.ini"})
+_BEGINS: Final = b'{\n  "elbowscrew": "'
+
+
+def is_stray(name: str) -> bool:
+    """Whether a file is one that a desktop leaves in every folder it shows."""
+    return name.casefold() in _STRAYS
+
+
+def files_in(folder: Path) -> Iterator[str]:
+    """Yield what is in a result folder and in its ``figures``, but strays and what a killed run has left."""
+    for path in folder.iterdir():
+        if is_stray(path.name) or is_temporary(path.name):
+            continue
+        if path.name == "figures" and path.is_dir() and not path.is_symlink():
+            yield from (f"figures/{inner.name}" for inner in path.iterdir() if not is_stray(inner.name))
+        else:
+            yield path.name
+
+
+def is_summary(path: Path) -> bool:
+    """Whether a file is the summary of a result."""
+    try:
+        summary = json.loads(read_text(path))
+    except (OSError, ValueError, RecursionError):
+        return False
+    return isinstance(summary, dict) and "elbowscrew" in summary
+
+
+def is_cut_summary(path: Path) -> bool:
+    """Whether a file is what a power failure leaves of a summary: nothing, zeros, or its beginning."""
+    try:
+        with open_bytes(path) as stream:
+            head = stream.read(4096).rstrip(b"\0")
+    except OSError:
+        return False
+    return _BEGINS.startswith(head[: len(_BEGINS)]) and not is_summary(path)
+
+
+def version_told(folder: Path) -> str | None:
+    """Version that the summary in a folder says it was written by; None if there is no file of that name."""
+    path = folder / ANALYSIS.summary
+    if not path.is_file():
+        return None
+    try:
+        told = json.loads(read_text(path))["elbowscrew"]
+    except (OSError, ValueError, RecursionError, LookupError, TypeError):
+        return "unknown"
+    return " ".join(str(told).split())[:40]
