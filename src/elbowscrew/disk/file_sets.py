@@ -72,19 +72,17 @@ def roll_back(staged: Path) -> bool:
     plan = _plan_of(staged)
     for k, (name, digest) in enumerate(plan.items()):
         target = staged.parent / name
-        taken = not os.path.lexists(_new(staged, k))
-        if taken and target.is_file() and not target.is_symlink():
-            with open_bytes(target) as stream:
-                if hashlib.file_digest(stream, "sha256").hexdigest() == digest:
-                    target.unlink()
+        moved = os.path.lexists(_former(staged, k)) or not os.path.lexists(_new(staged, k))
+        if moved and _digest(target) == digest:
+            target.unlink()
     stranded = False
     for k, name in enumerate(plan):
         former, target = _former(staged, k), staged.parent / name
         if os.path.lexists(former):
-            if os.path.lexists(target):
-                stranded = True
-            else:
+            if not os.path.lexists(target):
                 former.rename(target)
+            elif _digest(target) != _digest(former):
+                stranded = True
     if plan and not stranded:
         sync(staged.parent)
         (staged / PLAN).unlink()
@@ -116,6 +114,14 @@ def _plan_of(staged: Path) -> dict[str, str]:
         return {}
     names = isinstance(plan, dict) and all(isinstance(name, str) and Path(name).name == name for name in plan)
     return plan if names else {}
+
+
+def _digest(path: Path) -> str | None:
+    """SHA-256 of a file; None if it is not there, or is no regular file."""
+    if path.is_symlink() or not path.is_file():
+        return None
+    with open_bytes(path) as stream:
+        return hashlib.file_digest(stream, "sha256").hexdigest()
 
 
 def _write(path: Path, content: bytes | Iterable[str]) -> str:

@@ -1,0 +1,190 @@
+"""What is disturbed: every command that writes, from a state before it to the state after it."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from elbowscrew import (
+    analyze,
+    compare,
+    keyframes_of,
+    save_analysis,
+    save_comparison,
+    save_motion,
+    save_simulation,
+    simulate_trial,
+)
+from elbowscrew import interpolate as rebuild
+from elbowscrew.cli import main
+from elbowscrew.motion.interpolation.keyframe_sources import ComparisonPlan
+from elbowscrew.results.proof import seal
+from elbowscrew.saving import analyze_file
+from elbowscrew.settings import Settings
+
+FAST = ("--figure-format", "none", "-q")
+PLAN = ("--laws", "linear", "--counts", "2", "--data", "raw", "-q")
+SILENT = frozenset({"info"})
+"""Commands that write nothing."""
+
+Tree = dict[str, str]
+"""SHA-256 of files by their paths."""
+
+
+@dataclass(frozen=True)
+class Scenario:
+    """A command, what is there before it, and the parts of what it writes that are each the old one or the new one.
+
+    A part is one folder, one file, or several files that belong together. A part that is `passing` may be missing after
+    a disturbance: the tables of a batch that is not finished.
+    """
+
+    name: str
+    arguments: tuple[str, ...]
+    prepare: Callable[[Path], None]
+    parts: tuple[tuple[str, ...], ...]
+    passing: tuple[str, ...] = ()
+    quick: bool = True
+
+    @property
+    def command(self) -> str:
+        return self.arguments[0]
+
+
+def tree_of(folder: Path) -> Tree:
+    """Files below a folder, but locks and temporary ones."""
+    return {
+        path.relative_to(folder).as_posix(): hashlib.sha256(path.read_bytes()).hexdigest()
+        for path in sorted(folder.rglob("*"))
+        if path.is_file() and ".elbowscrew-" not in path.as_posix()
+    }
+
+
+def temporaries_of(folder: Path) -> list[str]:
+    return [str(path) for path in folder.rglob(".elbowscrew-*") if not path.name.endswith(".lock")]
+
+
+def part_of(tree: Tree, part: tuple[str, ...]) -> Tree:
+    return {path: digest for path, digest in tree.items() if any(_is_below(path, place) for place in part)}
+
+
+def _is_below(path: str, place: str) -> bool:
+    return path == place or path.startswith(f"{place}/")
+
+
+def _trial(folder: Path, name: str = "t.csv", seed: int = 1) -> Path:
+    export, truth = save_simulation(simulate_trial(frames=60, inversion=30, seed=seed), folder / name)
+    truth.unlink()
+    return export
+
+
+def _result(folder: Path) -> None:
+    _trial(folder)
+    analysis = analyze_file(folder / "t.csv", Settings(min_angle_deg=12.0))
+    save_analysis(analysis, folder / "t_elbowscrew", figure_formats=())
+
+
+def _result_with_old_page(folder: Path) -> None:
+    _result(folder)
+    result = folder / "t_elbowscrew"
+    page = (result / "report.html").read_text(encoding="utf-8")
+    (result / "report.html").write_text(re.sub("<title>", "<title>Old ", page), encoding="utf-8")
+    (result / "SHA256SUMS").unlink()
+    seal(result)
+
+
+def _study(folder: Path) -> None:
+    for k in range(2):
+        _trial(folder, f"in/t{k}.csv", seed=k)
+
+
+def _study_done(folder: Path) -> None:
+    """One recording has changed since, of another result a number was doubled, and of a third the summary is cut."""
+    _study(folder)
+    _trial(folder, "in/t2.csv", seed=2)
+    for k in range(3):
+        analysis = analyze_file(folder / "in" / f"t{k}.csv", Settings(figure_format=("none",)))
+        save_analysis(analysis, folder / "batch_elbowscrew" / f"t{k}", figure_formats=())
+    out = folder / "batch_elbowscrew"
+    (out / ".elbowscrew-batch.lock").touch()
+    (out / "summary.csv").write_text("old table\n", encoding="utf-8")
+    (out / "index.html").write_bytes(b"")
+    _trial(folder, "in/t0.csv", seed=9)
+    text = (out / "t1" / "summary.json").read_text(encoding="utf-8")
+    summary = json.loads(text)
+    summary["motion"]["theta_max_deg"] = 999.5
+    (out / "t1" / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
+    (out / "t2" / "summary.json").write_text(text[:100], encoding="utf-8")
+
+
+def _simulated(folder: Path) -> None:
+    save_simulation(simulate_trial(frames=40, inversion=20, seed=8), folder / "s.csv")
+
+
+def _motion(folder: Path) -> None:
+    analysis = analyze(simulate_trial(frames=60, inversion=30).recording)
+    result = save_analysis(analysis, folder / "r", figure_formats=(), report=False)
+    save_motion(rebuild(keyframes_of(analysis), 10), folder / "keyframes_motion.csv")
+    assert (result / "keyframes.csv").exists()
+
+
+def _compared(folder: Path) -> None:
+    _trial(folder)
+    plan = ComparisonPlan(laws=("cycloidal",), counts=(2,), data=("raw",))
+    recording = simulate_trial(frames=60, inversion=30).recording
+    save_comparison(compare(recording, plan=plan), folder / "t_compare", figure_formats=())
+
+
+def _figures(folder: Path) -> None:
+    _result(folder)
+    (folder / "figs").mkdir()
+    for name in ("theta.png", "error.png"):
+        (folder / "figs" / name).write_text("old", encoding="utf-8")
+
+
+def _nothing(_folder: Path) -> None:
+    """Make nothing."""
+
+
+_R, _OUT = "t_elbowscrew", "batch_elbowscrew"
+_TABLES = (f"{_OUT}/summary.csv", f"{_OUT}/failures.csv", f"{_OUT}/index.html")
+_SIMULATE = ("simulate", "s.csv", "--frames", "40", "--inversion", "20", "--seed", "3")
+_FIGURES = ("report", _R, "--figures", "theta,error", "--figure-format", "png", "-o", "figs", "-q")
+_PARTS = (*((f"{_OUT}/t{k}",) for k in range(3)), *((table,) for table in _TABLES))
+
+SCENARIOS = (
+    Scenario("analyze", ("analyze", "t.csv", *FAST), _trial, ((_R,),)),  # type: ignore[arg-type]
+    Scenario("analyze --force", ("analyze", "t.csv", *FAST, "--force"), _result, ((_R,),)),
+    Scenario("analyze with figures", ("analyze", "t.csv", "-q", "--force"), _result, ((_R,),), quick=False),
+    Scenario("batch", ("batch", "in", *FAST), _study, _PARTS, passing=_TABLES),
+    Scenario("batch again", ("batch", "in", *FAST), _study_done, _PARTS, passing=_TABLES),
+    Scenario("report", ("report", _R, "-q"), _result_with_old_page, ((f"{_R}/report.html", f"{_R}/SHA256SUMS"),)),
+    Scenario("report of all", ("report", ".", "-q"), _result_with_old_page,
+             ((f"{_R}/report.html", f"{_R}/SHA256SUMS"), ("index.html",)), quick=False),
+    Scenario("report --figures", _FIGURES, _result, (("figs/theta.png", "figs/error.png"),), quick=False),
+    Scenario("report --figures --force", (*_FIGURES, "--force"), _figures, (("figs/theta.png", "figs/error.png"),)),
+    Scenario("compare", ("compare", "t.csv", *PLAN), _trial, (("t_compare",),), quick=False),  # type: ignore[arg-type]
+    Scenario("compare --force", ("compare", "t.csv", *PLAN, "--force"), _compared, (("t_compare",),)),
+    Scenario("interpolate", ("interpolate", "r/keyframes.csv", "--frames", "30", "-o", "m.csv"), _motion,
+             (("m.csv",),), quick=False),
+    Scenario("interpolate --force", ("interpolate", "r/keyframes.csv", "--frames", "30", "--force"), _motion,
+             (("keyframes_motion.csv",),)),
+    Scenario("simulate", _SIMULATE, _nothing, (("s.csv", "s.truth.json"),)),
+    Scenario("simulate --force", (*_SIMULATE, "--force"), _simulated, (("s.csv", "s.truth.json"),)),
+    Scenario("paper --figures", ("paper", "--figures", "figs"), _nothing,
+             (("figs/figures_7_and_8.png", "figs/figures_9_and_10.png"),), quick=False),
+)  # fmt: skip
+
+
+def check_complete() -> None:
+    """Fail if the program has a command that nobody disturbs."""
+    from elbowscrew.cli.app import app
+
+    commands = {one.callback.__name__ for one in app.registered_commands if one.callback is not None}
+    missing = commands - {scenario.command for scenario in SCENARIOS} - SILENT
+    assert not missing, f"no scenario for {', '.join(sorted(missing))}"
+    assert main is not None
