@@ -151,6 +151,8 @@ def freeze() -> None:
 
 def compute_once() -> None:
     """Let results be computed once in this process, and be at hand in all its forks."""
+    import typer.main
+
     import elbowscrew.motion.interpolation.comparison as comparison
     import elbowscrew.report.figure_files as figure_files
     import elbowscrew.report.publication as publication
@@ -189,5 +191,7 @@ def compute_once() -> None:
     patched.analyze_file = saving.analyze_file
     patched = publication
     patched.figure_files = figure_files.figure_files
+    patched = typer.main
+    patched.get_command = cache(typer.main.get_command)
     patched = executors
     patched.open_executor = lambda _scheduler, _workers: partial(_executor)
