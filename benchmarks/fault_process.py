@@ -161,14 +161,14 @@ def compute_once() -> None:
     import elbowscrew.study.executors as executors
     import elbowscrew.study.task as task
 
-    cache: dict[str, Any] = {}
+    known: dict[str, Any] = {}
 
     def once(function: Callable[..., Any], key_of: Callable[..., str]) -> Callable[..., Any]:
         def call(*args: Any, **kwargs: Any) -> Any:
             key = f"{function.__name__} {key_of(*args, **kwargs)}"
-            if key not in cache:
-                cache[key] = function(*args, **kwargs)
-            return cache[key]
+            if key not in known:
+                known[key] = function(*args, **kwargs)
+            return known[key]
 
         return call
 

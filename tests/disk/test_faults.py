@@ -1,4 +1,4 @@
-"""A few points of what `benchmarks/faults.py` does at every call; it also fails if a command is not disturbed at all."""
+"""A few points of what `benchmarks/faults.py` does at every call; a command that nobody disturbs fails it, too."""
 
 from __future__ import annotations
 
