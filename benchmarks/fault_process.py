@@ -194,4 +194,4 @@ def compute_once() -> None:
     patched = typer.main
     patched.get_command = cache(typer.main.get_command)
     patched = executors
-    patched.open_executor = lambda _scheduler, _workers: partial(_executor)
+    patched.open_executor = lambda *_given: partial(_executor)

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import pytest
 
+from elbowscrew.disk.temporary import replaced_of
 from elbowscrew.errors import OutputError
 from elbowscrew.study.folder import MARK, at_work, batch_folder
 
@@ -75,9 +76,16 @@ def test_workers_do_not_hinder_each_other(tmp_path: Path) -> None:
 
 def test_leftovers_of_ours_go_and_nothing_else(tmp_path: Path) -> None:
     out = tmp_path / "out"
-    kept = ["trial", ".elbowscrew-notes.partial", ".elbowscrew-0123456789abcdef.txt", "0123456789abcdef.partial"]
+    former = ".elbowscrew-fedcba9876543210.replaced"  # of a result that is not there: it may be all that is left of it
+    kept = [
+        former,
+        "trial",
+        ".elbowscrew-notes.partial",
+        ".elbowscrew-0123456789abcdef.txt",
+        "0123456789abcdef.partial",
+    ]
     with batch_folder(out):
-        for name in (*kept, ".elbowscrew-0123456789abcdef.partial", ".elbowscrew-fedcba9876543210.replaced"):
+        for name in (*kept, ".elbowscrew-0123456789abcdef.partial", replaced_of(out, "trial").name):
             (out / name / "figures").mkdir(parents=True)
             (out / name / "figures" / "theta.png").touch()
         (out / ".elbowscrew-0123456789abcde0.partial").write_text("half a table")
