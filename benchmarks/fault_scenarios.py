@@ -113,6 +113,7 @@ def _study_done(folder: Path) -> None:
     (out / ".elbowscrew-batch.lock").touch()
     (out / "summary.csv").write_text("old table\n", encoding="utf-8")
     (out / "index.html").write_bytes(b"")
+    (folder / "in" / "t0.csv").unlink()
     _trial(folder, "in/t0.csv", seed=9)
     text = (out / "t1" / "summary.json").read_text(encoding="utf-8")
     summary = json.loads(text)
