@@ -81,14 +81,10 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
     max_gap_s: float = setting(0.1, "Longest gap that is filled, in seconds.", MOTION, metavar="SECONDS", ge=0)
     frozen: Literal["lost", "keep"] = setting("lost", "How to treat poses that repeat to the last digit.", BODIES)
     max_turn_deg_s: float = setting(
-        3000.0,
-        "Fastest rotation of a body, in degrees per second; anything faster is a leap.",
-        BODIES,
-        metavar="DEG/S",
-        gt=0,
+        3000.0, "Fastest rotation of a body, in degrees per second; more is a leap.", BODIES, metavar="DEG/S", gt=0
     )
     max_speed_m_s: float = setting(
-        15.0, "Fastest motion of a body, in meters per second; anything faster is a leap.", BODIES, metavar="M/S", gt=0
+        15.0, "Fastest motion of a body, in meters per second; more is a leap.", BODIES, metavar="M/S", gt=0
     )
     min_tracked_percent: float = setting(
         50.0, "Smallest share of tracked frames, in percent.", BODIES, metavar="PERCENT", ge=0, le=100
@@ -101,22 +97,13 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
         None, "Rate to resample the recording to, in hertz.", MOTION, metavar="HZ", shown="the file's", gt=0
     )
     min_rate_rad_s: float = setting(
-        0.25,
-        "Smallest angular velocity with an instantaneous axis, in radians per second.",
-        MOTION,
-        metavar="RAD/S",
-        gt=0,
+        0.25, "Least angular velocity with an instantaneous axis, in rad per second.", MOTION, metavar="RAD/S", gt=0
     )
     min_angle_deg: float = setting(
-        10.0,
-        "Smallest angle with an axis, in degrees.",
-        MOTION,
-        metavar="DEG",
-        gt=0,
-        lt=180,
+        10.0, "Smallest angle with an axis, in degrees.", MOTION, metavar="DEG", gt=0, lt=180
     )
     axis_sd_deg: Angle | None = setting(
-        None, "Give an axis where its direction is known to within this angle (2deg), instead of --min-angle.", MOTION,
+        None, "Give an axis where its direction is known to this angle (2deg), instead of --min-angle.", MOTION,
         metavar="DEG", gt=0, lt=90,
     )  # fmt: skip
     step_deg: float | None = setting(
@@ -157,10 +144,10 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
         metavar="F1,F2,...", shown="start, inversion, end", min_length=2,
     )  # fmt: skip
     phases: Literal["movement", "whole"] = setting(
-        "movement", "Find phases from the movement's turns and rests, or take the whole recording.", MODEL
+        "movement", "Phases by the movement's turns and rests, or the whole recording.", MODEL
     )
     tolerance_mm: Length | None = setting(
-        None, "Choose the fewest keyframes that keep the RMS displacement below this length (2mm).", MODEL,
+        None, "Fewest keyframes that keep the RMS displacement below this length (2mm).", MODEL,
         metavar="LENGTH", ge=1e-3, le=1e5,
     )  # fmt: skip
     method: MethodName | None = setting(
