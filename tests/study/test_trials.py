@@ -120,7 +120,7 @@ def test_links_out_of_the_folder_are_followed_on_request_only(study: Path, tmp_p
     [
         ("nowhere", "no such file or folder"),
         ("study/*.trc", "no file fits this pattern"),
-        ("empty", "no trial found: expected files that end in .csv, .trc, .c3d"),
+        ("empty", "no trial found: expected files that end in .csv, .trc, .tsv, .c3d"),
         ("parent", "--recursive looks into the folders below, such as 'study'"),
     ],
 )

@@ -7,7 +7,8 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowscrew.geometry.arrays import Float
+from elbowscrew.geometry.arrays import Bool, Float
+from elbowscrew.geometry.quaternion import quat_from_rotation_matrix
 from elbowscrew.model import (
     Marker,
     QualityWarning,
@@ -21,6 +22,9 @@ from elbowscrew.model import (
 
 # More than a joint is fitted to; of four markers 3 MB.
 _MOST_THINNED: Final = 65_536
+
+# As far as a quaternion may be from unit length: matrices are printed with three decimals, too.
+_ORTHOGONAL: Final = 5e-3
 
 
 class ArrayBuilder:
@@ -95,6 +99,23 @@ class BodyBuilder:
         self._loss.append(block.loss)
         self._invalid += int((block.loss == TrackingLoss.INVALID).sum())
         return block.dual_quat_lab_body
+
+    def append_matrices(self, rotation: Float, position: Float) -> None:
+        """Add frames: rotation matrices (n, 3, 3), body to laboratory, and positions (n, 3) in meters.
+
+        Zeros and blanks are what is written for a body that was not solved; any other matrix that is no rotation is
+        damage.
+        """
+        known: Bool = np.all(np.isfinite(rotation), axis=(1, 2))
+        R = np.where(known[:, None, None], rotation, 0.0)
+        with np.errstate(all="ignore"):
+            departure = np.abs(np.swapaxes(R, 1, 2) @ R - np.eye(3)).max(axis=(1, 2))
+            proper = (departure < _ORTHOGONAL) & (np.linalg.det(R) > 0.0)
+        loss = np.where(known & ~proper, TrackingLoss.INVALID, TrackingLoss.NONE).astype(np.uint8)
+        loss[known & ~R.any(axis=(1, 2))] = TrackingLoss.ZERO
+        quat = np.full((len(R), 4), np.nan)
+        quat[proper] = quat_from_rotation_matrix(R[proper])
+        self.append(quat, position, loss)
 
     def finish(self, *, identifier: str = "", marker_offsets: Float | None = None) -> RigidBody:
         """Give the body."""

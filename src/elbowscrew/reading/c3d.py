@@ -19,10 +19,10 @@ import numpy as np
 from elbowscrew._search_path import guarded_environment
 from elbowscrew.errors import RecordingError
 from elbowscrew.geometry.arrays import Float
-from elbowscrew.model import QualityWarning, Recording, RigidBody, Source, invalid_warning, out_of_reach
+from elbowscrew.model import QualityWarning, Recording, RigidBody, Source
 from elbowscrew.quantities import METERS
 from elbowscrew.reading import c3d_worker
-from elbowscrew.reading.builders import MarkerBuilder
+from elbowscrew.reading.builders import BodyBuilder, MarkerBuilder
 from elbowscrew.reading.c3d_mending import mended
 from elbowscrew.reading.c3d_parameters import check_sizes, read_statements
 from elbowscrew.reading.clock import is_rate
@@ -176,24 +176,9 @@ def _bodies(content: _Content, scale: float) -> tuple[list[RigidBody], list[Qual
     if not rotations.size:
         return [], []
     labels = content.labels("ROTATION")
-    bodies, warnings = [], []
+    builders = []
     for k in range(rotations.shape[2]):
         matrix = np.moveaxis(rotations[:, :, k], -1, 0)
-        name = labels[k] if k < len(labels) else f"rotation {k + 1}"
-        R = matrix[:, :3, :3]
-        with np.errstate(all="ignore"):
-            departure = np.abs(np.swapaxes(R, 1, 2) @ R - np.eye(3)).max(axis=(1, 2))
-            solved = (departure < _ORTHOGONAL) & (np.linalg.det(np.where(np.isfinite(R), R, 0.0)) > 0.0)
-            position = scale * matrix[:, :3, 3]
-        solved &= ~out_of_reach(position)
-        # Zeros and NaN are what is written for a body that was not solved; anything else is damage.
-        invalid = ~solved & np.isfinite(R).all(axis=(1, 2)) & R.any(axis=(1, 2))
-        if invalid.any():
-            warnings.append(invalid_warning(name, int(invalid.sum())))
-        matrix = np.where(solved[:, None, None], matrix, np.nan)
-        bodies.append(RigidBody.from_matrices(name, matrix[:, :3, :3], np.where(solved[:, None], position, np.nan)))
-    return bodies, warnings
-
-
-# Single precision leaves 1e-6; a block of zeros, or of anything else, is no rotation.
-_ORTHOGONAL: Final = 1e-3
+        builders.append(BodyBuilder(labels[k] if k < len(labels) else f"rotation {k + 1}"))
+        builders[-1].append_matrices(matrix[:, :3, :3], scale * matrix[:, :3, 3])
+    return [body.finish() for body in builders], [warning for body in builders for warning in body.warnings()]

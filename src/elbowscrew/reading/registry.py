@@ -12,7 +12,7 @@ from typing import Final, Generic, TypeVar
 from elbowscrew.errors import RecordingError, SettingError, UsageError
 from elbowscrew.model import Recording
 from elbowscrew.quantities import METERS
-from elbowscrew.reading import c3d, motive_columns, plain_table, row_tagged, trc
+from elbowscrew.reading import c3d, motive_columns, plain_table, qualisys, row_tagged, trc
 from elbowscrew.reading.cells import parse_number
 from elbowscrew.reading.options import ReadOptions
 from elbowscrew.reading.source import TextSource, first_bytes, open_source
@@ -67,6 +67,13 @@ FORMATS: Final[tuple[Format[list[str], TextSource], ...]] = (
     ),
     Format(name="TRC", endings=(".trc",), recognizes=trc.recognizes, read=trc.read, accepts=_UNITS | _MARKERS),
     Format(
+        name="Qualisys 6D",
+        endings=(".tsv",),
+        recognizes=qualisys.recognizes,
+        read=qualisys.read,
+        accepts=frozenset(),
+    ),
+    Format(
         name="row-tagged",
         endings=(".csv",),
         recognizes=row_tagged.recognizes,
@@ -99,7 +106,7 @@ def read_recording(
     ----------
     path : path-like
         An OptiTrack export (Motive's column layout 1.1 to 1.25, the row-tagged layout 1.0 and 1.1), a plain table, a
-        TRC file, or a C3D file (with the extra ``[c3d]``).
+        TRC file, a 6D export of Qualisys, or a C3D file (with the extra ``[c3d]``).
     units : {"m", "cm", "mm"}, optional
         Unit of length, for a file that states none. A file's own statement is not overruled.
     rotation : str, optional

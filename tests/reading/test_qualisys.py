@@ -1,0 +1,92 @@
+"""Qualisys's 6D export: poses by its matrices, which stand column by column; blanks and zeros are lost."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from oracles import known_trial
+
+from elbowscrew import analyze, read_recording
+from elbowscrew.errors import RecordingError, SettingError
+
+TRIAL = known_trial(110.0, frames=60, inversion=30, seed=9)
+
+
+def lines() -> list[str]:
+    """A whole file, by the description of the format."""
+    stated = [("NO_OF_FRAMES", "60"), ("NO_OF_CAMERAS", "8"), ("NO_OF_BODIES", "2"), ("FREQUENCY", "100")]
+    stated += [
+        ("TIME_STAMP", "2024-03-14, 10:11:12\t1.5"),
+        ("DATA_INCLUDED", "6D"),
+        ("BODY_NAMES", "Upper Arm\tForearm"),
+    ]
+    columns = ["Y", "Z", "Roll", "Pitch", "Yaw", "Residual", *(f"Rot[{k}]" for k in range(9))]
+    rows = ["\t".join(pair) for pair in stated]
+    rows.append("\t".join(["Frame", "Time", "Upper Arm X", *columns, "Forearm X", *columns]) + "\t")
+    for k in range(60):
+        cells = [str(k + 1), f"{k / 100:.5f}"]
+        for R, p in ((TRIAL.proximal_R, TRIAL.proximal_p), (TRIAL.distal_R, TRIAL.distal_p)):
+            down = [R[k][row][column] for column in range(3) for row in range(3)]
+            cells += [f"{x:.9f}" for x in (*(1000.0 * p[k]), 1.0, 2.0, 3.0, 0.4, *down)]
+        rows.append("\t".join(cells) + "\t")
+    return rows
+
+
+def write(path: Path, rows: list[str]) -> Path:
+    path.write_text("\r\n".join(rows) + "\r\n")
+    return path
+
+
+def test_poses(tmp_path: Path) -> None:
+    recording = read_recording(write(tmp_path / "t.tsv", lines()))
+    assert [body.name for body in recording.bodies] == ["Upper Arm", "Forearm"]
+    assert recording.rate_hz == pytest.approx(100.0)
+    assert recording.warnings == ()
+    assert analyze(recording).screw.angle == pytest.approx(TRIAL.angle, abs=1e-7)
+
+
+def test_blank_and_zero_poses_are_lost_and_others_that_are_none_are_told(tmp_path: Path) -> None:
+    rows = lines()
+    for row, written in ((12, ""), (14, "0.000"), (16, "0.7"), (18, "nan")):
+        cells = rows[row].split("\t")
+        rows[row] = "\t".join([*cells[:18], *([written] * 16), ""])
+    found = read_recording(write(tmp_path / "t.tsv", rows))
+    assert found.bodies[0].tracked.all()
+    assert found.bodies[1].loss_counts() == {"blank": 2, "zero": 1, "invalid": 1}
+    assert [warning.code for warning in found.warnings] == ["invalid-pose"]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "says"),
+    [
+        ("Rot[4]", "Rot[5]", "has not X, Y, Z and Rot"),
+        ("Forearm X", "Hand X", "body 'Forearm' has not X"),
+        ("BODY_NAMES\tUpper Arm\tForearm", "BODY_NAMES\tUpper Arm", "1 bodies are named, and 2"),
+        ("BODY_NAMES\tUpper Arm\tForearm", "MARKER_NAMES\ta\tb", "no line BODY_NAMES"),
+        ("Frame\tTime", "Time\tFrame", "nothing says which column"),
+    ],
+)
+def test_what_does_not_fit_is_refused(tmp_path: Path, old: str, new: str, says: str) -> None:
+    with pytest.raises(RecordingError, match=says):
+        read_recording(write(tmp_path / "t.tsv", [row.replace(old, new) for row in lines()]))
+
+
+def test_lines_that_are_cut_and_options_that_mean_nothing_are_refused(tmp_path: Path) -> None:
+    rows = lines()
+    cut = write(tmp_path / "t.tsv", [*rows[:20], rows[20].rpartition("\t")[0].rpartition("\t")[0], *rows[21:]])
+    with pytest.raises(RecordingError, match=r"t\.tsv:21: expected 35 cells, found 33"):
+        read_recording(cut)
+    with pytest.raises(SettingError, match="Qualisys 6D"):
+        read_recording(write(tmp_path / "u.tsv", rows), units="mm")
+
+
+def test_files_at_hand(real_data: Path) -> None:
+    case = read_recording(real_data / "cases" / "qtm_6D.tsv")
+    analysis = analyze(case)
+    assert np.degrees(np.nanmax(analysis.screw.angle)) == pytest.approx(120.0, abs=0.01)
+    direction = analysis.mean_axis.direction
+    assert direction == pytest.approx(np.array([0.98, 0.1, 0.17]) / np.linalg.norm([0.98, 0.1, 0.17]), abs=1e-3)
+    real = read_recording(real_data / "real" / "qtm_6D_floating_body.tsv")
+    assert [(body.name, int(body.tracked.sum())) for body in real.bodies] == [("PSVH", 3000)]
