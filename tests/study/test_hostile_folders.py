@@ -6,6 +6,7 @@ import csv
 import os
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -24,8 +25,9 @@ def take(samples: Path) -> bytes:
     return (samples / "elbow_paper.csv").read_bytes()
 
 
-def test_a_tree_is_searched_however_deep_it_is(tmp_path: Path, take: bytes) -> None:
-    inner = tmp_path
+@pytest.fixture
+def deep(tmp_path: Path, take: bytes) -> Iterator[Path]:
+    """A take 1300 folders below: more than Python's own functions remove, so that it is done here."""
     here = Path.cwd()
     try:
         os.chdir(tmp_path)
@@ -33,15 +35,23 @@ def test_a_tree_is_searched_however_deep_it_is(tmp_path: Path, take: bytes) -> N
             Path("d").mkdir()
             os.chdir("d")
         Path("take.csv").write_bytes(take)
-        inner = Path.cwd()
+        yield Path.cwd()
     finally:
+        for name in os.listdir():  # noqa: PTH208
+            Path(name).unlink()
+        while Path.cwd() != tmp_path:
+            os.chdir("..")
+            Path("d").rmdir()
         os.chdir(here)
+
+
+def test_a_tree_is_searched_however_deep_it_is(tmp_path: Path, deep: Path) -> None:
     (found,) = find_trials([str(tmp_path)], recursive=True).trials
-    assert found.path == inner / "take.csv"
+    assert found.path == deep / "take.csv"
     assert list(result_folders(tmp_path)) == []
-    (inner / "summary.json").touch()
-    (inner / "screw.csv").touch()
-    assert list(result_folders(tmp_path)) == [inner]
+    Path("summary.json").touch()
+    Path("screw.csv").touch()
+    assert list(result_folders(tmp_path)) == [deep]
 
 
 def test_links_in_a_circle_and_into_nothing_are_failures_of_their_own(tmp_path: Path, take: bytes) -> None:
