@@ -25,7 +25,8 @@ from elbowscrew.configuring import settings_from
 from elbowscrew.cycle_times import read_cycle_times
 from elbowscrew.errors import ElbowscrewError, UsageError
 from elbowscrew.report import remake_pages
-from elbowscrew.results.staging import check_result_folder, is_summary
+from elbowscrew.results.result_files import is_summary
+from elbowscrew.results.staging import check_result_folder
 from elbowscrew.study.trials import find_trials
 
 LONGEST_S = 1.0
