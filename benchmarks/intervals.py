@@ -4,7 +4,7 @@
 
 Prints a table in Markdown: share of trials whose 95 % interval holds the true line, direction and place in the proximal
 and in the distal body; mean radius over the 95th percentile of the error; and how often a pitch is told.
-With ``--rms`` the markers tell no more than their RMS in each frame, as in `analyze`; else their non-rigid coordinates.
+As in `analyze` of a file with markers; with ``--rms`` they tell no more than their RMS in each frame.
 """
 
 from __future__ import annotations
