@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from elbowscrew.disk import placing
+from elbowscrew.disk import folders, placing
 from elbowscrew.disk.file_sets import write_set
 from elbowscrew.disk.folders import new_folder, sweep
 from elbowscrew.disk.placing import put, recover
@@ -18,6 +18,7 @@ from elbowscrew.disk.syncing import exchange, signals_held
 from elbowscrew.disk.temporary import held_folder, partial_of, replaced_of
 from elbowscrew.errors import OutputError
 from elbowscrew.results.staging import check_result_folder, result_folder, write_files
+from elbowscrew.study.folder import batch_folder
 
 posix = pytest.mark.skipif(sys.platform == "win32", reason="POSIX locks and signals")
 OLD, NEW = '{"elbowscrew": "old"}', '{"elbowscrew": "new"}'
@@ -320,3 +321,30 @@ def test_everything_is_synced_before_it_takes_its_place_and_the_place_after(
     assert before[-1] == place
     assert before.index(f"{place}/figures/x") < before.index(f"{place}/figures")
     assert after == ["/deep"]
+
+
+@pytest.mark.parametrize("writer", ["result", "files", "batch"])
+def test_folders_made_on_the_way_are_synced_into_theirs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, writer: str
+) -> None:
+    synced: list[Path] = []
+    monkeypatch.setattr(folders, "sync", synced.append)
+    out = tmp_path / "a" / "b"
+    if writer == "result":
+        replace(out / "r")
+    elif writer == "files":
+        write_files(out, {"x": b"x"}, replaceable=None)
+    else:
+        with batch_folder(out):
+            pass
+    assert {tmp_path, tmp_path / "a"} <= set(synced)
+
+
+def test_folders_made_on_the_way_go_when_they_cannot_be_synced(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def failing(_path: Path) -> None:
+        raise OSError(5, "Input/output error")
+
+    monkeypatch.setattr(folders, "sync", failing)
+    with pytest.raises(OutputError, match="Input/output error"):
+        write_files(tmp_path / "a" / "b", {"x": b"x"}, replaceable=None)
+    assert list(tmp_path.iterdir()) == []

@@ -41,8 +41,6 @@ def new_folder(destination: Path, check: Callable[[Path], None], finish: Callabl
     """
     made = make_parents(destination)
     try:
-        for folder in made:
-            sync(folder.parent)
         recover(destination)
         with held_folder(destination.parent, destination.name) as staged:
             yield staged
@@ -57,13 +55,25 @@ def new_folder(destination: Path, check: Callable[[Path], None], finish: Callabl
 
 
 def make_parents(destination: Path) -> list[Path]:
-    """Make the folders above a destination, and say which are new, the innermost first."""
-    missing = []
+    """Make the folders above a destination, to stay, and say which are new, the innermost first.
+
+    Raises
+    ------
+    OSError
+        If the disk does not take them; none is left then.
+    """
+    missing: list[Path] = []
     for parent in destination.parents:
         if parent.exists():
             break
         missing.append(parent)
-    destination.parent.mkdir(parents=True, exist_ok=True)
+    try:
+        destination.parent.mkdir(parents=True, exist_ok=True)
+        for folder in missing:
+            sync(folder.parent)
+    except BaseException:
+        remove_empty(missing)
+        raise
     return missing
 
 

@@ -10,7 +10,7 @@ from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import IO, Final
 
-from elbowscrew.disk.folders import sweep
+from elbowscrew.disk.folders import make_parents, sweep
 from elbowscrew.errors import OutputError
 from elbowscrew.opening import open_own
 from elbowscrew.results.result_files import is_stray
@@ -36,7 +36,7 @@ def batch_folder(folder: Path) -> Iterator[None]:
     with ExitStack() as held:
         try:
             _check_folder(folder)
-            folder.mkdir(parents=True, exist_ok=True)
+            make_parents(folder / MARK)
             _hold(folder, held.enter_context(open_own(folder / MARK)))
             _wait_for_workers(folder)
             sweep(folder, held=True)
