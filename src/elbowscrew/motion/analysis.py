@@ -27,6 +27,7 @@ from elbowscrew.motion.joint.measured import (
     measured_joint_type,
 )
 from elbowscrew.motion.movements.measured import cut_warnings, measured_cuts
+from elbowscrew.motion.movements.peak_speed import speed_doubts
 from elbowscrew.motion.movements.phases import movement_phases
 from elbowscrew.motion.movements.repetitions import (
     angle_warnings,
@@ -106,6 +107,9 @@ def analyze(recording: Recording, settings: Settings | None = None, *, landmarks
     )
     if sense.signed and np.isfinite(velocity).any():
         warnings += speed_warnings(repetitions, cuts.cycles.sense)
+        if not isinstance(wanted.lowpass_hz, float):  # a filter that was given is meant
+            recorded = measured.unfiltered
+            warnings += speed_doubts(recorded.relative[:, :4], recorded.elapsed, cuts.cycles, repetitions)
     warnings += angle_warnings(repetitions)
     curves = cycle_curves_of(cuts.cycles, screw.angle, elapsed)
     cycles = cuts.cycles.start_s

@@ -41,10 +41,7 @@ def measured_course(measured: Measurement, settings: Settings, joint_type: Joint
     reference about the dominant or leading direction u (`Sense.twist`), positive as theta is. It is on the poses' own
     clock.
     """
-    bodies = measured.unfiltered
-    relative = bodies.distal.dual_quat_lab_body
-    if bodies.proximal is not None:
-        relative = multiply(conjugate(bodies.proximal.dual_quat_lab_body), relative)
+    bodies, relative = measured.unfiltered, measured.unfiltered.relative
     known: Bool = np.asarray(np.isfinite(relative).all(axis=1))
     if not known.any():
         return np.full(len(relative), np.nan)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from elbowscrew.choices import ExpressIn
 from elbowscrew.errors import AnalysisError, SettingError
 from elbowscrew.geometry.arrays import Float
-from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat
+from elbowscrew.geometry.dual_quaternion import conjugate, multiply, pose_from_dual_quat
 from elbowscrew.joints import Joint
 from elbowscrew.model import BodyQuality, JointMotion, QualityWarning, Recording, RigidBody, ScrewMotion, Sense
 from elbowscrew.motion.screws.frames import frame_called
@@ -54,6 +54,12 @@ class Unfiltered(NamedTuple):
     elapsed: Float
     rate_hz: float
     broken_rows: NDArray[np.intp]
+
+    @property
+    def relative(self) -> Float:
+        """Pose of the distal body in the proximal one, shape (M, 8); NaN where either has none."""
+        distal = self.distal.dual_quat_lab_body
+        return distal if self.proximal is None else multiply(conjugate(self.proximal.dual_quat_lab_body), distal)
 
 
 class Measurement(NamedTuple):

@@ -1,0 +1,166 @@
+"""Highest speeds of strokes by local fits: what a filter's overshoot and the noise's own maximum add is told."""
+
+from __future__ import annotations
+
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from elbowscrew.geometry import dual_quaternion, quaternion
+from elbowscrew.geometry._blocks import evenly_thinned
+from elbowscrew.geometry._small_angle import length
+from elbowscrew.geometry.arrays import Float
+from elbowscrew.model import QualityWarning, Repetitions
+from elbowscrew.motion.movements.boundaries import Cycles
+
+# Widths of the fits, frames to either side: from five poses to most of a stroke.
+_LEAST_HALF: Final = 2
+_WIDTH_STEP: Final = 1.25
+_WIDEST_SHARE: Final = 0.6
+# A fit is as good as narrower ones that differ by no more than so many standard deviations; the one taken is some
+# steps narrower, so that what it leaves out is less than its noise.
+_ALIKE: Final = 2.0
+_STEPS_BACK: Final = 2
+
+# Sum of the squared binomials: the variance of a fifth difference of white noise.
+_FIFTH_DIFFERENCE: Final = 252.0
+_MAD: Final = 0.6745
+
+_MOST_CYCLES: Final = 40
+_MOST_ROWS: Final = 400
+_TOLD_SHARE: Final = 0.02
+_TOLD_SD: Final = 3.0
+
+
+class PeakSpeed(NamedTuple):
+    """Highest speed and its standard deviation, units of the rotation a second."""
+
+    speed: float
+    sd: float
+
+
+def peak_speed(rotation: Float, first: int, last: int, step_s: float, noise: float) -> PeakSpeed | None:
+    """Highest speed between two rows of a rotation, by cubic fits to its neighbors.
+
+    Where it is highest is taken from straight fits, whose slope is a mean of speeds and overshoots nowhere. The width
+    is the largest at which the cubic fit agrees there with all narrower ones.
+
+    Parameters
+    ----------
+    rotation : ndarray, shape (N, 3)
+        Rotation vectors summed over time.
+    first, last : int
+        Rows of the stroke; rows beside it are used as well.
+    step_s : float
+        Seconds from row to row.
+    noise : float
+        Standard deviation of a component in a row.
+
+    Returns
+    -------
+    PeakSpeed or None
+        None where no fit has its rows.
+
+    References
+    ----------
+    Lepski 1991, Theory of Probability and its Applications 35 (choice of the width).
+    """
+    fits: list[tuple[Float, Float, float]] = []
+    half = float(_LEAST_HALF)
+    while half <= max(_WIDEST_SHARE * (last - first), _LEAST_HALF):
+        fit = _fits(rotation, first, last, round(half))
+        if fit is None:
+            break
+        fits.append((fit[0] / step_s, fit[1] / step_s, noise * fit[2] / step_s))
+        half = max(_WIDTH_STEP * half, half + 1.0)
+    for k in range(len(fits) - 1, -1, -1):
+        straight, cubic, sd = fits[k]
+        at = int(np.nanargmax(straight))
+        differences = np.array([abs(cubic[at] - other[at]) for _, other, _ in fits[:k]])
+        allowed = np.array([_ALIKE * np.sqrt(max(more**2 - sd**2, 0.0)) for _, _, more in fits[:k]])
+        if not (differences > allowed).any():
+            _, taken, taken_sd = fits[max(k - _STEPS_BACK, 0)]
+            return PeakSpeed(float(taken[at]), float(np.hypot(taken_sd, 0.5 * abs(cubic[at] - taken[at]))))
+    return None
+
+
+def _fits(rotation: Float, first: int, last: int, half: int) -> tuple[Float, Float, float] | None:
+    """Speeds a row by straight and by cubic fits, and the noise of the latter for noise 1; NaN beside what is lost."""
+    low, high = max(first - half, 0), min(last + half + 1, len(rotation))
+    if high - low < 2 * half + 1:
+        return None
+    offset = np.arange(-half, half + 1.0)
+    cubic = np.linalg.pinv((offset / half)[:, None] ** np.arange(4))[1] / half
+    centers = slice(low + half - first, high - half - first)
+    speeds = np.full((2, last - first + 1), np.nan)
+    for row, weights in zip(speeds, (offset / (offset @ offset), cubic), strict=True):
+        derivative = [np.convolve(one, weights[::-1], mode="valid") for one in rotation[low:high].T]
+        row[centers] = length(np.stack(derivative, axis=1))
+    if not np.isfinite(speeds).any():
+        return None
+    return speeds[0], speeds[1], float(length(cubic))
+
+
+def summed_rotation(quat: Float) -> Float:
+    """Rotation vectors from pose to pose, summed, shape (N, 3); its derivative is the angular velocity.
+
+    Parameters
+    ----------
+    quat : ndarray, shape (N, 4)
+        NaN where there is no pose: after a gap the sum begins anew.
+    """
+    step = quaternion.multiply(quat[1:], quaternion.conjugate(quat[:-1]))
+    padded = np.zeros((len(step), 8))
+    padded[:, :4] = step
+    turn = 2.0 * dual_quaternion.log(dual_quaternion.canonical(padded))[:, :3]
+    total = np.concatenate([np.zeros((1, 3)), np.cumsum(np.nan_to_num(turn), axis=0)])
+    return np.where(np.isfinite(quat[:, :1]), total, np.nan)
+
+
+def speed_doubts(quat: Float, elapsed: Float, cycles: Cycles, repetitions: Repetitions) -> tuple[QualityWarning, ...]:
+    """Tell of strokes whose highest speed, of filtered poses, differs from that by local fits to the poses themselves.
+
+    Parameters
+    ----------
+    quat : ndarray, shape (N, 4)
+        Rotations as they were recorded.
+    elapsed : ndarray, shape (N,)
+        Their clock, seconds.
+    cycles : Cycles
+    repetitions : Repetitions
+        With the highest speeds of the same cycles.
+    """
+    time = elapsed - elapsed[0]
+    off: list[tuple[float, float, PeakSpeed]] = []
+    for k in evenly_thinned(np.arange(cycles.start_s.size), _MOST_CYCLES).tolist():
+        times = (cycles.start_s[k], cycles.inversion_s[k], cycles.end_s[k])
+        start, top, end = (int(np.argmin(np.abs(time - one))) for one in times)
+        ways = (repetitions.outward_speed[k], repetitions.back_speed[k])
+        before, after = ways if cycles.sense[k] > 0.0 else ways[::-1]  # speeds are empty where there is no sense
+        for first, last, told in ((start, top, before), (top, end, after)):
+            every = -(-(last - first + 1) // _MOST_ROWS)
+            room = last - first
+            part = slice(max(first - room, 0), last + room + 1)
+            series = summed_rotation(quat[part])[::every]
+            if not np.isfinite(told) or last - first < 2 * _LEAST_HALF * every or len(series) < 12:
+                continue
+            wobble = np.abs(np.diff(series, 5, axis=0))
+            if not np.isfinite(wobble).any():
+                continue
+            noise = float(np.nanmedian(wobble)) / _MAD / np.sqrt(_FIFTH_DIFFERENCE)
+            begin = (first - part.start) // every
+            step_s = float(np.median(np.diff(time[part]))) * every
+            found = peak_speed(series, begin, begin + (last - first) // every, step_s, noise)
+            if found is not None and abs(told - found.speed) > max(_TOLD_SHARE * found.speed, _TOLD_SD * found.sd):
+                off.append((abs(told / found.speed - 1.0), float(told), found))
+    if not off:
+        return ()
+    share, told, found = max(off, key=lambda one: one[0])
+    strokes = "1 stroke" if len(off) == 1 else f"{len(off)} strokes"
+    message = (
+        f"the highest speed of {strokes} is off by more than {100.0 * _TOLD_SHARE:.0f} %, by {100.0 * share:.0f} % at "
+        f"worst: {np.degrees(told):.4g} deg/s by the filter, {np.degrees(found.speed):.4g} (sd "
+        f"{np.degrees(found.sd):.2g}) by a local fit to the poses; a filter overshoots where a motion sets in or turns "
+        "at once, and smooths what is faster than its cut-off (--lowpass HZ sets it)"
+    )
+    return (QualityWarning(code="speeds-off", message=message, count=len(off)),)
