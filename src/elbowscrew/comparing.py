@@ -61,7 +61,9 @@ def compare_trials(
     failures: list[tuple[str, ElbowscrewError]] = []
     for path in paths:
         try:
-            recording = read_recording(path, units=wanted.units, rotation=wanted.rotation, markers=wanted.markers)
+            recording = read_recording(
+                path, units=wanted.units, rotation=wanted.rotation, rate_hz=wanted.rate_hz, markers=wanted.markers
+            )
             found.append(compare(recording, wanted, plan))
         except ElbowscrewError as error:
             failures.append((str(path), error))

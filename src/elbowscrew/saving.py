@@ -42,7 +42,9 @@ def analyze_file(path: Path, settings: Settings, *, landmarks: Landmarks | None 
         As `elbowscrew.read_recording` and `elbowscrew.analyze` do.
     """
     markers = (*settings.markers, *(() if landmarks is None else landmarks.markers))
-    recording = read_recording(path, units=settings.units, rotation=settings.rotation, markers=markers)
+    recording = read_recording(
+        path, units=settings.units, rotation=settings.rotation, rate_hz=settings.rate_hz, markers=markers
+    )
     try:
         return analyze(recording, settings, landmarks=landmarks)
     except ElbowscrewError as error:

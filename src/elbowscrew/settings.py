@@ -175,6 +175,9 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
     export: tuple[ExportName, ...] = setting((), "Also write the tables in these formats.", OUTPUT, shown="none")
     units: FileUnit | None = setting(None, "Unit of length, if the file states none.", BODIES)
     rotation: RotationType | None = setting(None, "Rotation type, if the file states none.", BODIES)
+    rate_hz: float | None = setting(
+        None, "Frames a second, if the file has no times, in hertz.", BODIES, metavar="HZ", ge=1e-3, le=1e6
+    )
 
     # An elbow's own words for the two bodies, as they were before: taken and given, but not stored.
     if TYPE_CHECKING:

@@ -135,7 +135,13 @@ def compare(
     else:
         from elbowscrew.motion.interpolation.comparison import compare as compare_recording
 
-        recording = read_recording(trial, units=settings.units, rotation=settings.rotation, markers=settings.markers)
+        recording = read_recording(
+            trial,
+            units=settings.units,
+            rotation=settings.rotation,
+            rate_hz=settings.rate_hz,
+            markers=settings.markers,
+        )
         try:
             comparison = compare_recording(recording, settings, plan)
         except ElbowscrewError as error:

@@ -11,7 +11,7 @@ from elbowscrew.cli import options
 from elbowscrew.cli.analysis_options import settings_options
 
 
-@settings_options("units", "rotation", "frozen", "max-turn", "max-speed")
+@settings_options("units", "rotation", "rate", "frozen", "max-turn", "max-speed")
 def info(
     trial: Annotated[
         Path, typer.Argument(metavar="TRIAL", help="An OptiTrack export, plain table, TRC or C3D.", show_default=False)
@@ -35,11 +35,12 @@ def info(
 
     settings = settings_from(None, given)
     wanted = options.parts("markers", markers) or ()
+    stated: dict[str, Any] = {"units": settings.units, "rotation": settings.rotation, "rate_hz": settings.rate_hz}
     try:
-        recording = read_recording(trial, units=settings.units, rotation=settings.rotation, markers=wanted)
+        recording = read_recording(trial, **stated, markers=wanted)
     except NoBodiesError:
         # Its markers are what there is to tell of.
-        recording = read_recording(trial, units=settings.units, rotation=settings.rotation, markers=wanted or ("*",))
+        recording = read_recording(trial, **stated, markers=wanted or ("*",))
     summary = summary_from_recording(recording, settings)
     render.warnings(summary["warnings"])
     if json_output:

@@ -35,12 +35,15 @@ class ReadOptions:
         Unit of length of a file that states none.
     rotation : str or None
         Rotation type of a file that states none.
+    rate_hz : float or None
+        Frames a second of a file that has no times.
     markers : tuple of str
         Names or patterns of the markers wanted; the others are not read.
     """
 
     units: str | None = None
     rotation: str | None = None
+    rate_hz: float | None = None
     markers: tuple[str, ...] = ()
 
     def wants(self, marker: str) -> bool:

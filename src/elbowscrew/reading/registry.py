@@ -14,12 +14,14 @@ from elbowscrew.model import Recording
 from elbowscrew.quantities import METERS
 from elbowscrew.reading import c3d, motive_columns, plain_table, qualisys, row_tagged, trc
 from elbowscrew.reading.cells import parse_number
+from elbowscrew.reading.clock import is_rate
 from elbowscrew.reading.options import ReadOptions
 from elbowscrew.reading.source import TextSource, first_bytes, open_source
 
 _HEAD_BYTES: Final = 16
 _UNITS: Final = frozenset({"units"})
 _MARKERS: Final = frozenset({"markers"})
+_RATE: Final = frozenset({"rate_hz"})
 _ALL: Final = _UNITS | _MARKERS | {"rotation"}
 
 
@@ -63,7 +65,7 @@ FORMATS: Final[tuple[Format[list[str], TextSource], ...]] = (
         endings=(".csv",),
         recognizes=plain_table.recognizes,
         read=plain_table.read,
-        accepts=_MARKERS,
+        accepts=_MARKERS | _RATE,
     ),
     Format(name="TRC", endings=(".trc",), recognizes=trc.recognizes, read=trc.read, accepts=_UNITS | _MARKERS),
     Format(
@@ -98,6 +100,7 @@ def read_recording(
     *,
     units: str | None = None,
     rotation: str | None = None,
+    rate_hz: float | None = None,
     markers: str | Sequence[str] = (),
 ) -> Recording:
     """Read a recording.
@@ -111,6 +114,8 @@ def read_recording(
         Unit of length, for a file that states none. A file's own statement is not overruled.
     rotation : str, optional
         "quaternion" or an Euler order such as "XYZ", for a file that states none.
+    rate_hz : float, optional
+        Frames a second, for a plain table that has no times.
     markers : str or sequence of str, optional
         Names of markers to read, or patterns such as "Arm*"; none by default.
 
@@ -124,10 +129,10 @@ def read_recording(
     RecordingError
         If the file cannot be read safely; the message says where and why.
     SettingError
-        If the file lacks a statement that `units` or `rotation` must supply, or they contradict it, or its format
-        knows no such thing.
+        If the file lacks a statement that `units`, `rotation` or `rate_hz` must supply, or they contradict it, or its
+        format knows no such thing.
     UsageError
-        If `units` is no possible one.
+        If `units` or `rate_hz` is no possible one.
 
     Examples
     --------
@@ -140,8 +145,11 @@ def read_recording(
     if units is not None and units not in METERS:
         msg = f"units: expected one of {', '.join(METERS)}, found {units!r}"
         raise UsageError(msg)
+    if rate_hz is not None and not is_rate(rate_hz):
+        msg = f"rate_hz: expected a frame rate in hertz, found {rate_hz!r}"
+        raise UsageError(msg)
     patterns = (markers,) if isinstance(markers, str) else tuple(markers)
-    options = ReadOptions(units=units, rotation=rotation, markers=patterns)
+    options = ReadOptions(units=units, rotation=rotation, rate_hz=rate_hz, markers=patterns)
     file = Path(path)
     head = first_bytes(file, _HEAD_BYTES)
     for binary in BINARY_FORMATS:
@@ -159,10 +167,10 @@ def read_recording(
 
 
 def _check_options(path: Path, name: str, options: ReadOptions, accepted: frozenset[str]) -> None:
-    given = {key for key in _ALL if getattr(options, key)}
+    given = {key for key in _ALL | _RATE if getattr(options, key)}
     unknown = sorted(given - accepted)
     if unknown:
-        told = ", ".join(unknown)
+        told = ", ".join(key.removesuffix("_hz") for key in unknown)
         msg = f"{path}: {told}: a file of this format ({name}) states or has no such thing; leave it out"
         raise SettingError(msg)
 
