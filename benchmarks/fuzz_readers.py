@@ -63,6 +63,19 @@ def seeds(folder: Path) -> None:
         for k in range(FRAMES)
     ]
     (folder / "markers.trc").write_text("\n".join(trc) + "\n")
+    (folder / "commas.trc").write_text("\n".join(trc).replace("\t", ",") + "\n")
+    (folder / "names.trc").write_text("\n".join([*trc[:3], trc[3] + "\tV\t\t\ta1", *trc[4:]]) + "\n")
+    (folder / "times.csv").write_text("\n".join(row.partition(",")[2] for row in rows) + "\n")
+    qualisys = ["NO_OF_FRAMES\t12", "FREQUENCY\t100", "BODY_NAMES\tarm\tforearm"]
+    cells = ["Y", "Z", "Roll", "Pitch", "Yaw", "Residual", *(f"Rot[{k}]" for k in range(9))]
+    qualisys.append("\t".join(["Frame", "Time", "arm X", *cells, "forearm X", *cells]))
+    for k in range(FRAMES):
+        c, s = np.cos(0.05 * k), np.sin(0.05 * k)
+        qualisys.append(
+            f"{k + 1}\t{k / 100}\t1\t2\t3\t0\t0\t0\t0.4\t1\t0\t0\t0\t1\t0\t0\t0\t1\t"
+            f"4\t{k}\t6\t0\t0\t0\t0.4\t{c}\t{s}\t0\t{-s}\t{c}\t0\t0\t0\t1"
+        )
+    (folder / "qualisys.tsv").write_text("\n".join(qualisys) + "\n")
     for path in folder.glob("*.truth.json"):
         path.unlink()
 

@@ -90,6 +90,19 @@ def test_one_body_under_two_names_is_said_so() -> None:
         analyze(Recording.from_bodies(bodies, rate_hz=RATE))
 
 
+def test_bodies_that_turn_on_the_spot_to_the_last_digit_have_no_measured_positions() -> None:
+    R, _ = held_flexion()
+    arm = Rotation.from_rotvec(np.linspace(0.0, 0.3, 120)[:, None] * [0.0, 1.0, 0.0]).as_matrix()
+    still = np.tile([0.1, 0.2, 0.3], (120, 1))
+    bodies = [RigidBody.from_matrices("upper arm", arm, still), RigidBody.from_matrices("forearm", arm @ R, 0 * still)]
+    with pytest.raises(AnalysisError, match="turn while their positions stay exactly as they are"):
+        analyze(Recording.from_bodies(bodies, rate_hz=RATE))
+    moving = RigidBody.from_matrices("forearm", arm @ R, 1e-6 * np.random.default_rng(2).normal(size=(120, 3)))
+    assert analyze(Recording.from_bodies([bodies[0], moving], rate_hz=RATE)).screw.valid.all()
+    fixed = RigidBody.from_matrices("upper arm", 0 * arm + np.eye(3), still)
+    assert analyze(Recording.from_bodies([fixed, bodies[1]], rate_hz=RATE)).screw.valid.all()
+
+
 def test_cases(real_data: Path) -> None:
     cases = real_data / "cases"
     markers = Settings(proximal_markers=("A?",), distal_markers=("F?",))
@@ -99,3 +112,5 @@ def test_cases(real_data: Path) -> None:
     assert first.screw.valid[0]
     with pytest.raises(AnalysisError, match="one and the same pose"):
         analyze(read_recording(cases / "same_pose.csv"))
+    with pytest.raises(AnalysisError, match="no measured positions"):
+        analyze(read_recording(cases / "imu_zero_pos.csv"))

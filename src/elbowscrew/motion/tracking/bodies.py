@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +16,8 @@ from elbowscrew.motion.tracking.marker_poses import body_from_markers
 from elbowscrew.motion.tracking.quality import check_bodies
 from elbowscrew.motion.tracking.selection import ChosenBodies, choose_bodies
 from elbowscrew.settings import Settings
+
+_NOT_ANALYZED: Final = ("same-pose", "constant-positions")
 
 
 class TrackedBodies(NamedTuple):
@@ -72,9 +74,9 @@ def tracked_bodies(recording: Recording, settings: Settings) -> TrackedBodies:
                 + "".join(f"; {warning.message}" for warning in found.warnings if warning.code == "leap")
             )
             raise AnalysisError(msg)
-    same = next((warning for warning in checked.warnings if warning.code == "same-pose"), None)
-    if same is not None:
-        msg = f"{same.message}; choose another body"
+    unusable = next((warning for warning in checked.warnings if warning.code in _NOT_ANALYZED), None)
+    if unusable is not None:
+        msg = f"{unusable.message}; choose other bodies, or export the take again"
         raise AnalysisError(msg)
     proximal = None if proximal is None else checked.bodies[0].body
     broken_rows = np.unique(np.concatenate([found.broken_rows for found in checked.bodies]))

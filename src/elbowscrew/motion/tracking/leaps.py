@@ -50,6 +50,10 @@ _ROOM_ABOVE: Final = 1.2
 _CROSSED_SHARE: Final = 0.25
 _LEAST_SWAP_M: Final = 0.05
 
+# Positions that were never measured: constant to the arithmetic's last digits while the body turns.
+_CONSTANT_M: Final = 1e-12
+_TURNED: Final = np.radians(1.0)
+
 _FRAMES_TOLD: Final = 10
 
 
@@ -406,6 +410,21 @@ def check_same_pose(one: RigidBody, other: RigidBody) -> tuple[QualityWarning, .
         "names has: nothing moves between them"
     )
     return (QualityWarning(code="same-pose", message=message, count=int(rows.size)),)
+
+
+def check_constant_positions(one: RigidBody, other: RigidBody) -> tuple[QualityWarning, ...]:
+    """Tell of two bodies, unchecked, that both turn while the positions of both are exactly constant."""
+    for body in (one, other):
+        rotation, position = pose_from_dual_quat(body.dual_quat_lab_body[body.tracked])
+        if len(position) < 2 or (np.ptp(position, axis=0) > _CONSTANT_M).any():
+            return ()
+        if (np.abs(rotation @ rotation[0]) > np.cos(_TURNED / 2.0)).all():
+            return ()
+    message = (
+        f"bodies {one.name!r} and {other.name!r} turn while their positions stay exactly as they are: these are no "
+        "measured positions, and nothing says where the joint is"
+    )
+    return (QualityWarning(code="constant-positions", message=message),)
 
 
 def _lost(body: RigidBody, rows: Index, reason: TrackingLoss) -> RigidBody:

@@ -12,7 +12,14 @@ from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import BodyQuality, ClockQuality, QualityWarning, Recording, RigidBody, Spread
 from elbowscrew.motion.difference import angle_between, origin_distance
 from elbowscrew.motion.tracking.clock import allowed_offset, elapsed_time
-from elbowscrew.motion.tracking.leaps import CheckedBody, check_same_pose, check_swaps, check_tracking, frames_warning
+from elbowscrew.motion.tracking.leaps import (
+    CheckedBody,
+    check_constant_positions,
+    check_same_pose,
+    check_swaps,
+    check_tracking,
+    frames_warning,
+)
 from elbowscrew.settings import Settings
 
 _LARGE_RESIDUAL_M: Final = 0.005
@@ -58,6 +65,7 @@ def check_bodies(recording: Recording, bodies: tuple[RigidBody, ...], settings: 
         warnings += [warning for check in BODY_CHECKS for warning in check(body, recording)]
     for one, other in combinations(bodies, 2):
         warnings += check_same_pose(one, other)
+        warnings += check_constant_positions(one, other)
         warnings += check_swaps(one, other, recording, elapsed)
     quality = tuple(_body_quality(found, flipped.size, elapsed) for found, flipped in zip(checked, flips, strict=True))
     return CheckedRecording(elapsed, checked, quality, tuple(warnings))
