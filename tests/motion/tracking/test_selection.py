@@ -178,6 +178,34 @@ def test_several_joints_are_listed_and_joint_decides() -> None:
     assert choose_bodies(bodies, None, None, "wrist").distal.name == "Hand"
 
 
+@pytest.mark.parametrize(
+    ("names", "joint", "why"),
+    [
+        (("Rigid Body 1", "Rigid Body 2"), None, "no names say which"),
+        (("Rigid Body 1", "Rigid Body 2"), "knee", "no names speak of the knee"),
+        (("Thigh", "Shank"), "elbow", "no names speak of the elbow"),
+        (
+            ("L Thigh", "L Shank", "R Thigh", "R Shank"),
+            None,
+            r"2 choices \('L Thigh' and 'L Shank'; 'R Thigh' and 'R Shank'\)",
+        ),
+    ],
+)
+def test_a_joint_is_not_advised_where_it_decides_nothing(names: tuple[str, ...], joint: str | None, why: str) -> None:
+    with pytest.raises(SettingError, match=why) as caught:
+        choose_bodies(recording(*names), None, None, joint)
+    assert "--joint" not in str(caught.value)
+    assert "--proximal NAME and --distal NAME" in str(caught.value)
+
+
+@pytest.mark.parametrize("given", [("none", None), ("Plate", None)])
+def test_a_joint_is_advised_where_it_decides(given: tuple[str, None]) -> None:
+    bodies = recording("Plate", "Forearm", "Hand")
+    with pytest.raises(SettingError, match=r"2 choices .*--joint elbow"):
+        choose_bodies(bodies, *given)
+    assert choose_bodies(bodies, *given, "wrist").distal.name == "Hand"
+
+
 def test_a_joint_that_the_names_contradict_is_warned_of() -> None:
     chosen = choose_bodies(recording("Upper Arm", "Forearm"), "#1", "#2", "knee")
     assert [one.code for one in chosen.warnings] == ["joint-differs"]

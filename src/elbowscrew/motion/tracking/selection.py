@@ -83,7 +83,8 @@ def _alone(bodies: tuple[RigidBody, ...], joint: str | None) -> RigidBody:
         return body
     found = [body for body in bodies if _speaks_as_distal(body, joint)]
     if len(found) != 1:
-        raise SettingError(_unclear(bodies, "distal", len(found)))
+        ends = {one.distal for one in joints_of(joint)} & {segment_of(body.name) for body in bodies}
+        raise SettingError(_unclear(bodies, "distal", [repr(body.name) for body in found], joint, len(ends) > 1))
     return found[0]
 
 
@@ -126,7 +127,9 @@ def _speaking_pair(
         told = "; ".join(f"{joint.name}: {one.name!r} and {other.name!r}" for joint, one, other in agreeing)
         msg = f"the bodies' names fit several joints ({told}): give --joint NAME, or --proximal NAME and --distal NAME"
         raise SettingError(msg)
-    raise SettingError(_unclear(bodies, "distal" if first is not None else "proximal", len(ends)))
+    role = "distal" if first is not None else "proximal"
+    choices = [f"{one.name!r} and {other.name!r}" for _, one, other in agreeing]
+    raise SettingError(_unclear(bodies, role, list(dict.fromkeys(choices)), name, len(names) > 1))
 
 
 def _sides_differ(first: RigidBody, second: RigidBody) -> bool:
@@ -134,12 +137,18 @@ def _sides_differ(first: RigidBody, second: RigidBody) -> bool:
     return None not in sides and sides[0] != sides[1]
 
 
-def _unclear(bodies: tuple[RigidBody, ...], role: str, found: int) -> str:
-    why = "no names say which" if not found else f"the names allow {found} choices"
+def _unclear(
+    bodies: tuple[RigidBody, ...], role: str, choices: list[str], joint: str | None, several_joints: bool
+) -> str:
+    """Say that the names do not tell, which choices they leave, and what helps: --joint only between several joints."""
+    if choices:
+        why = f"the names allow {len(choices)} choices ({'; '.join(choices)})"
+    else:
+        why = f"no names speak of the {joint}" if joint is not None else "no names say which"
     return (
         f"which body is the {role} one? {why}; the file has {_listed(bodies)}: give --proximal NAME and --distal NAME "
-        f"(--proximal {STILL} for one that stands still and is not in the file), or --joint "
-        f"{', '.join(JOINT_NAMES)}"
+        f"(--proximal {STILL} for one that stands still and is not in the file)"
+        + (f", or --joint {', '.join(JOINT_NAMES)}" if several_joints else "")
     )
 
 
