@@ -183,7 +183,11 @@ def compute_once() -> None:
     for patched, name, key in (
         (saving, "analyze_file", of_file),
         (simulate, "simulate_trial", lambda simulation=None, **more: f"{simulation!r} {more!r}"),
-        (comparison, "compare", lambda recording, settings, plan: f"{recording.source!r} {settings!r} {plan!r}"),
+        (
+            comparison,
+            "compare",
+            lambda recording, settings=None, plan=None: f"{recording.source!r} {settings!r} {plan!r}",
+        ),
         (figure_files, "figure_files", of_figures),
     ):
         setattr(patched, name, once(getattr(patched, name), key))

@@ -166,11 +166,11 @@ def main() -> int:
         for scenario in SCENARIOS:
             if (given.names and scenario.name not in given.names) or (given.quick and not scenario.quick):
                 continue
-            step = 23 if given.quick else given.step
+            step = 97 if given.quick else given.step
             disturb(scenario.name, Path(scratch) / "faults", tally, step=step)
             if scenario.name in ("analyze --force", "compare --force", "simulate --force"):
                 disturb(scenario.name, Path(scratch) / "faults", tally, step=step, exchange=False)
-            cut_power(scenario.name, Path(scratch) / "power", tally, step=step)
+            cut_power(scenario.name, Path(scratch) / "power", tally, step=step, sync_step=7 if given.quick else 1)
             print(f"{time.perf_counter() - begun:7.1f} s  {dict(tally.points)}", flush=True)
             for line in tally.wrong[:20]:
                 print("WRONG", line, flush=True)

@@ -114,8 +114,8 @@ def calls_in(journal: Path) -> Iterator[tuple[str, str, str, bytes]]:
             yield call, one, other, stream.read(int(size))
 
 
-def cut_power(name: str, scratch: Path, tally: Tally, *, step: int) -> None:
-    """Cut power during one scenario: at every sync, and at every `step`-th call."""
+def cut_power(name: str, scratch: Path, tally: Tally, *, step: int, sync_step: int) -> None:
+    """Cut power during one scenario: at every `sync_step`-th sync, and at every `step`-th call."""
     from fault_scenarios import SCENARIOS, part_of, temporaries_of, tree_of
     from faults import warm_up
 
@@ -133,11 +133,12 @@ def cut_power(name: str, scratch: Path, tally: Tally, *, step: int) -> None:
     calls = list(calls_in(journal))
     shutil.rmtree(work)
     shutil.copytree(before, work)
-    disk = Disk(work)
+    disk, syncs = Disk(work), 0
     for k, call in enumerate(calls):
         disk.play(*call)
         last = k == len(calls) - 1
-        if call[0] != "fsync" and k % step and not last:
+        syncs += call[0] == "fsync"
+        if not last and k % step and not (call[0] == "fsync" and syncs % sync_step == 0):
             continue
         for strict in (False, True):
             shutil.rmtree(work, ignore_errors=True)
