@@ -63,3 +63,10 @@ def test_what_the_filter_leaves_out_at_the_ends_of_a_recording_is_not_lost() -> 
     assert np.isnan(speed[[0, -1]]).all()
     assert np.isfinite([found.repetitions.outward_speed[0], found.repetitions.back_speed[0]]).all()
     assert "speeds-unknown" not in codes(found)
+
+
+def test_a_gap_over_a_whole_stroke_but_its_slow_ends_leaves_its_speed_empty() -> None:
+    broken = analyzed(list(range(15, 136)))
+    assert np.isnan(broken.repetitions.outward_speed[0])
+    assert np.degrees(broken.repetitions.back_speed[0]) == pytest.approx(90.0 * 1.875 / 1.5, rel=0.03)
+    assert "speeds-unknown" in codes(broken)

@@ -9,6 +9,7 @@ import numpy as np
 from elbowscrew.geometry import quaternion
 from elbowscrew.geometry.arrays import Bool, Float, Index
 from elbowscrew.geometry.dual_quaternion import conjugate, continuous_signs, multiply
+from elbowscrew.geometry.quaternion import rotate
 from elbowscrew.model.joint_coordinates import JointCoordinates
 from elbowscrew.model.joint_type import JointType
 from elbowscrew.motion.joint.coordinates import joint_angles_of
@@ -55,7 +56,10 @@ def measured_course(measured: Measurement, settings: Settings, joint_type: Joint
         angle = _first_angle(measured, relative, reference, joint) if filtered else joint_type.angle[:, 0]
         return np.where(known, angle, np.nan)
     turned = quaternion.multiply(quaternion.conjugate(relative[reference, :4]), relative[:, :4])
-    return sense_of(turned, bodies.elapsed, reference, signed=settings.signed).twist
+    own = sense_of(turned, bodies.elapsed, reference, signed=settings.signed)
+    # A filter, or a mean over the reference window, may make the other one of two like excursions the larger.
+    along = rotate(quaternion.conjugate(measured.change[:4]), measured.sense.direction)
+    return own.twist if own.direction @ along >= 0.0 else -own.twist
 
 
 def course_of_frames(measured: Measurement, joint_type: JointType | None) -> Float:

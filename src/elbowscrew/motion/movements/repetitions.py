@@ -54,16 +54,19 @@ def repetitions_of(
     moving = np.flatnonzero(np.isfinite(angular_velocity))
     given = (int(moving[0]), int(moving[-1])) if moving.size else (0, 0)
     gaps = gaps_of(screw.angle, time)
+    unseen = _mean_in_gaps(screw.angle, angular_velocity, time)
     for k, (first, turn, last) in enumerate(zip(start.tolist(), top.tolist(), end.tolist(), strict=True)):
         rows = slice(first, last + 1)
         known = first + np.flatnonzero(screw.valid[rows] & np.isfinite(line[rows]).all(axis=1))
         highest[k], span[k] = _largest(screw.angle, first, last, gaps)
         way = float(cycles.sense[k])
-        before, after = way * angular_velocity[first : turn + 1], -way * angular_velocity[turn : last + 1]
         # What the filter leaves out at the ends of the recording is not lost in it.
-        before, after = before[max(given[0] - first, 0) :], after[: max(given[-1] + 1 - turn, 0)]
+        strokes = [(max(given[0], first), first, turn + 1, way), (turn, turn, last + 1, -way)]
         if way != 0.0:
-            speed[k] = np.array([_highest(before, least_rate), _highest(after, least_rate)])[:: int(way)]
+            speed[k] = [
+                _highest(to * angular_velocity[begin : min(end, given[1] + 1)], to * unseen[whole:end], least_rate)
+                for begin, whole, end, to in strokes
+            ][:: int(way)]
         if known.size:
             direction[k], point[k] = mean_line_of(screw.angle[known], line[known])
             slides = screw.slide[rows]
@@ -290,10 +293,31 @@ def _cycles_called(numbers: NDArray[np.int64]) -> str:
     return f"cycle{'s' if numbers.size > 1 else ''} {told}"
 
 
-def _highest(speed: Float, least_rate: float) -> float:
-    """Highest of the speeds of a stroke; NaN where it may lie among those that are not known, beside fast ones.
+def _mean_in_gaps(angle: Float, speed: Float, time: Float) -> Float:
+    """Mean speed of each stretch of frames without one, by the angles at its two ends, shape (N,); NaN elsewhere.
 
-    Speeds under `least_rate` are not known either, and those beside them little above it.
+    Of an end of the recording it is given where frames are lost there.
+    """
+    found = np.full(speed.size, np.nan)
+    known = np.flatnonzero(np.isfinite(speed) & np.isfinite(angle))
+    if not known.size:
+        return found
+    posed = np.flatnonzero(np.isfinite(angle))
+    for end, nearest in ((posed[0], known[0]), (posed[-1], known[-1])):
+        if np.isnan(angle[min(end, nearest) : max(end, nearest)]).any():
+            known = np.union1d(known, end)
+    place = np.searchsorted(known, np.arange(speed.size))
+    inside = np.isnan(speed) & (place > 0) & (place < known.size)
+    before, after = known[place[inside] - 1], known[place[inside]]
+    found[inside] = (angle[after] - angle[before]) / (time[after] - time[before])
+    return found
+
+
+def _highest(speed: Float, unseen: Float, least_rate: float) -> float:
+    """Highest of the speeds of a stroke; NaN where it may lie among those that are not known.
+
+    That is beside fast ones, and where the joint is fast in the mean of the frames without a speed (`unseen`). Speeds
+    under `least_rate` are not known either, and those beside them little above it.
     """
     known = np.isfinite(speed)
     if not known.any():
@@ -301,4 +325,4 @@ def _highest(speed: Float, least_rate: float) -> float:
     highest = float(speed[known].max())
     beside = known & (np.append(~known[1:], False) | np.insert(~known[:-1], 0, False))
     fast = max(_FAST_SHARE * highest, _ABOVE_LEAST * least_rate)
-    return float("nan") if (speed[beside] >= fast).any() else highest
+    return float("nan") if (speed[beside] >= fast).any() or (unseen >= fast).any() else highest
