@@ -145,6 +145,23 @@ def test_a_cut_in_a_gap_is_in_doubt() -> None:
     assert not found.inversion_reasons[1]
 
 
+@pytest.mark.parametrize("length", [0.2, 0.4, 0.7])
+def test_what_is_told_from_a_gap_is_known_no_better_than_the_gap_allows(length: float) -> None:
+    """Cycle 2 lasts from 2.9 to 4.5 s: a straight line over a gap puts its foot up to 0.4 s outside the gap."""
+    for begin in np.arange(2.3, 4.6, 0.1):
+        trial = several().trial(RATE, 0.05, still())
+        trial.angle[(trial.time_s > begin) & (trial.time_s < begin + length)] = np.nan
+        found = trial.found()
+        if found.cycles.start_s.size != 4:
+            assert len(found.hidden_s)
+            continue
+        away = np.abs(found.cycles.times_s[1] - [2.9, 3.7, 4.5])
+        cycles = found.cycles
+        sd = np.array([cycles.start_sd_s[1], cycles.inversion_sd_s[1], cycles.end_sd_s[1]])
+        told = ["gap" in codes[1] for codes in (cycles.start_reasons, cycles.inversion_reasons, cycles.end_reasons)]
+        assert (away <= np.where(told, 2.0, 4.0) * sd + 0.02).all()
+
+
 def test_a_fast_burst_in_a_slow_motion_is_told() -> None:
     motion = Motion().hold(0.5)
     for _ in range(4):

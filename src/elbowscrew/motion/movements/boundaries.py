@@ -20,7 +20,7 @@ REASONS: Final[dict[str, str]] = {
     "law": "the motion does not begin and end there as gently as it is taken to, or the noise hides whether it does",
     "rest-in-doubt": "a stop there lasts about as long as the shortest rest",
     "fast": "the motion has faster parts than its rhythm, which the cuts do not follow",
-    "gap": "it lies where there is no pose",
+    "gap": "it lies, or the height that it is told from, where there is no pose",
     "no-dominant-axis": "the rotation has no dominant axis",
     "two-axes": "the joint seems to have two axes, and the cuts are on the rotation about the direction between",
     "unsigned": "theta is to have no sense (--signed no)",
@@ -173,7 +173,8 @@ def long_gaps(elapsed: Float, known: NDArray[np.intp]) -> Float:
     return np.column_stack([time[long], time[long + 1]])
 
 
-def in_gap(second: float, gaps: Float) -> bool:
-    """Whether a time lies in one of the gaps (G, 2)."""
-    k = int(np.searchsorted(gaps[:, 0], second, side="right")) - 1
-    return k >= 0 and second < float(gaps[k, 1])
+def gap_at(seconds: Float, gaps: Float) -> Float:
+    """Length of the longest of the gaps (G, 2) that one of the times of a row (K, P) lies in, shape (K,); 0 if none."""
+    inside = (gaps[:, 0] <= seconds[..., None]) & (seconds[..., None] < gaps[:, 1])
+    lengths: Float = np.where(inside, gaps[:, 1] - gaps[:, 0], 0.0).max(axis=(1, 2), initial=0.0)
+    return lengths

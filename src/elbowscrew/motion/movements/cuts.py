@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowscrew.geometry.arrays import Float
-from elbowscrew.motion.movements.boundaries import Cuts, Cycles, Movements, in_gap, long_gaps, no_cycles, no_movements
+from elbowscrew.motion.movements.boundaries import Cuts, Cycles, Movements, long_gaps, no_cycles, no_movements
 from elbowscrew.motion.movements.cycles import Flanks, cycles_of, flanks_of
 from elbowscrew.motion.movements.rests import Strokes, strokes_of
 from elbowscrew.motion.movements.swings import fast_content, noise_of, swings_of
@@ -72,8 +72,8 @@ def cut(
     even = _even(twist, elapsed, rate_hz, known)
     sigma = noise_of(twist) if noise is None else noise
     swings = swings_of(even, rate_hz, sigma, least_swing)
-    strokes = strokes_of(swings)
     gaps = long_gaps(elapsed, known)
+    strokes = strokes_of(swings, gaps)
     flanks = flanks_of(swings, strokes)
     fast = bool(flanks.tops.size) and fast_content(swings, flanks.median_rise)
     cycles = cycles_of(swings, flanks, gaps, fast=fast)
@@ -82,7 +82,7 @@ def cut(
     lost = (hidden[:, 0, None] < spans[:, 1]) & (hidden[:, 1, None] > spans[:, 0])
     return Cuts(
         cycles=replace(cycles, incomplete=cycles.incomplete | lost.any(axis=0)),
-        movements=_movements(strokes, swings.rate_hz, _turns(strokes, flanks, cycles, swings.rate_hz), gaps, fast=fast),
+        movements=_movements(strokes, swings.rate_hz, _turns(strokes, flanks, cycles, swings.rate_hz), fast=fast),
         cutoff_hz=swings.cutoff_hz,
         noise=swings.noise,
         least_swing=swings.least,
@@ -111,7 +111,7 @@ def _turns(strokes: Strokes, flanks: Flanks, cycles: Cycles, rate_hz: float) -> 
     return turns
 
 
-def _movements(strokes: Strokes, rate_hz: float, turns: Float, gaps: Float, *, fast: bool) -> Movements:
+def _movements(strokes: Strokes, rate_hz: float, turns: Float, *, fast: bool) -> Movements:
     parts = strokes.movements()
     first, last = parts.T
     begin, end = strokes.begin / rate_hz, strokes.end / rate_hz
@@ -127,13 +127,16 @@ def _movements(strokes: Strokes, rate_hz: float, turns: Float, gaps: Float, *, f
                     ("law", other),
                     ("rest-in-doubt", doubt[side]),
                     ("fast", fast),
-                    ("gap", in_gap(at, gaps)),
+                    ("gap", gap > 0.0),
                 )
                 if holds
             )
-            for side, at, other in zip(sides.tolist(), times.tolist(), laws.tolist(), strict=True)
+            for side, gap, other in zip(sides.tolist(), lost_s.tolist(), laws.tolist(), strict=True)
         )
-        for sides, times, laws in ((first, onset, law[0]), (last + 1, offset, law[1]))
+        for sides, lost_s, laws in (
+            (first, strokes.begin_gap_s[first], law[0]),
+            (last + 1, strokes.end_gap_s[last], law[1]),
+        )
     ]
     return Movements(
         onset_s=onset,

@@ -7,8 +7,9 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from elbowscrew.geometry.arrays import Float, Index
-from elbowscrew.motion.movements.boundaries import REASONS, Cycles, Reasons, in_gap
+from elbowscrew.motion.movements.boundaries import REASONS, Cycles, Reasons, gap_at
 from elbowscrew.motion.movements.feet import (
+    GAP_SD,
     LAW_SD,
     LOW_SHARE,
     Feet,
@@ -144,7 +145,9 @@ def cycles_of(swings: Swings, flanks: Flanks, gaps: Float, *, fast: bool) -> Cyc
     """
     samples, sd = _cycle_samples(swings, flanks)
     seconds, sd = samples / swings.rate_hz, sd / swings.rate_hz
-    reasons = _cycle_reasons(swings, flanks, seconds, gaps, fast=fast)
+    lost_s = _lost_beside(flanks, samples, gaps * swings.rate_hz) / swings.rate_hz
+    sd = np.hypot(sd, GAP_SD * lost_s)
+    reasons = _cycle_reasons(swings, flanks, lost_s, fast=fast)
     values, tops, last = flanks.values, flanks.tops, flanks.reversals.size - 2
     incomplete = np.zeros(tops.size, dtype=np.bool_)
     if tops.size and tops[0] == 1:
@@ -166,9 +169,26 @@ def cycles_of(swings: Swings, flanks: Flanks, gaps: Float, *, fast: bool) -> Cyc
     )
 
 
-def _cycle_reasons(
-    swings: Swings, flanks: Flanks, seconds: Float, gaps: Float, *, fast: bool
-) -> list[tuple[Reasons, ...]]:
+def _lost_beside(flanks: Flanks, samples: Float, gaps: Float) -> Float:
+    """Gap that starts, inversions and ends (C, 3) lie in, or a crossing that they are told from; samples, 0 if none."""
+    start, top, end = samples.T
+    rising, falling = flanks.rising, flanks.falling
+    lost = np.column_stack(
+        [
+            gap_at(np.column_stack(times), gaps)
+            for times in (
+                (start, rising.low_at, rising.half),
+                (top, rising.half, rising.top_at, falling.top_at, falling.half),
+                (end, falling.half, falling.low_at),
+            )
+        ]
+    )
+    shared = np.flatnonzero(end[:-1] == start[1:])
+    lost[shared, 2] = lost[shared + 1, 0] = np.maximum(lost[shared, 2], lost[shared + 1, 0])
+    return lost
+
+
+def _cycle_reasons(swings: Swings, flanks: Flanks, lost: Float, *, fast: bool) -> list[tuple[Reasons, ...]]:
     """Why starts, inversions and ends are uncertain, for each cycle."""
     found: list[list[Reasons]] = [[], [], []]
     close = swings.close_removed
@@ -189,7 +209,7 @@ def _cycle_reasons(
             reasons |= {"law"} if law else set()
             reasons |= {"rest-in-doubt"} if rest else set()
             reasons |= {"fast"} if fast else set()
-            reasons |= {"gap"} if in_gap(float(seconds[k, which]), gaps) else set()
+            reasons |= {"gap"} if lost[k, which] > 0.0 else set()
             found[which].append(tuple(code for code in REASONS if code in reasons))
     return [tuple(one) for one in found]
 

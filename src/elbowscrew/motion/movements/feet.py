@@ -33,6 +33,8 @@ _TRUE: Final = np.array([0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.2, 1.4, 1.6, 
 
 LAW_SD: Final = 0.015
 """Uncertainty of the distance from the half-way crossing to a foot by minimum jerk, as a share of it."""
+GAP_SD: Final = 0.5
+"""Uncertainty of a foot that is told from a height in a gap, as a share of the gap."""
 KIN_SD: Final = 0.02
 """Flanks whose feet differ by less than this share of their length are taken for the same movement."""
 _POOLED: Final = 3.0
@@ -52,6 +54,8 @@ class Feet(NamedTuple):
         Variances of the three by the noise alone.
     low_foot_var, top_foot_var : ndarray
         Variances of the feet themselves: an error of the half-way crossing moves its distance to the foot, too.
+    low_at, top_at : ndarray
+        Crossings that the distances to the two feet are told from, beside the half-way one.
     share : ndarray
         Height, as a share of the rise, that the feet are told from; over 10 % the noise has decided.
     """
@@ -64,6 +68,8 @@ class Feet(NamedTuple):
     top_var: Float
     low_foot_var: Float
     top_foot_var: Float
+    low_at: Float
+    top_at: Float
     share: Float
 
 
@@ -89,7 +95,7 @@ def feet_of(
     ----------
     Flash and Hogan 1985, Journal of Neuroscience 5 (minimum jerk).
     """
-    found = np.empty((lows.size, 9))
+    found = np.empty((lows.size, 11))
     ends = zip(lows.tolist(), tops.tolist(), low_values.tolist(), top_values.tolist(), strict=True)
     for k, (low, top, base, peak) in enumerate(ends):
         rise = max(peak - base, _LEAST_SLOPE)
@@ -112,6 +118,8 @@ def feet_of(
             (top_gain * scale) ** 2 * (variances[0] + variances[2]),
             (low_gain * scale - 1.0) ** 2 * variances[0] + (low_gain * scale) ** 2 * variances[1],
             (top_gain * scale - 1.0) ** 2 * variances[0] + (top_gain * scale) ** 2 * variances[2],
+            foot,
+            shoulder,
             share,
         )
     return Feet(*found.T)

@@ -7,7 +7,8 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from elbowscrew.geometry.arrays import Bool, Float, Index
-from elbowscrew.motion.movements.feet import LOW_SHARE, Feet, feet_of, moves_at_end, pooled, pooled_feet
+from elbowscrew.motion.movements.boundaries import gap_at
+from elbowscrew.motion.movements.feet import GAP_SD, LOW_SHARE, Feet, feet_of, moves_at_end, pooled, pooled_feet
 from elbowscrew.motion.movements.foot_laws import Distances, Shapes, Sharp, by_shape, shapes_of, sharp_of
 from elbowscrew.motion.movements.phases import runs_of
 from elbowscrew.motion.movements.swings import Swings
@@ -31,6 +32,8 @@ class Strokes(NamedTuple):
     begin, end : ndarray
         Feet of the stroke; where two strokes overlap there, both at the turn between them.
     begin_sd, end_sd : ndarray
+    begin_gap_s, end_gap_s : ndarray
+        Gap that the foot lies in, or a crossing that it is told from; seconds, 0 where there is none.
     outward : ndarray of bool
         Whether the rotation increases.
     reverses : ndarray of bool, shape (K - 1,)
@@ -48,6 +51,8 @@ class Strokes(NamedTuple):
     end: Float
     begin_sd: Float
     end_sd: Float
+    begin_gap_s: Float
+    end_gap_s: Float
     begin_in_doubt: Bool
     end_in_doubt: Bool
     sharp: Sharp
@@ -74,10 +79,11 @@ class Strokes(NamedTuple):
         return np.column_stack([first, last])[: self.begin.size]
 
 
-def strokes_of(swings: Swings) -> Strokes:
+def strokes_of(swings: Swings, gaps: Float) -> Strokes:
     """Part the motion at every turn, and at every stop on the way: speed below a tenth of the stroke's highest.
 
-    The local rule has no part in this: a hesitation that is no cycle is movement all the same.
+    The local rule has no part in this: a hesitation that is no cycle is movement all the same. The gaps (G, 2) are in
+    seconds (`long_gaps`).
     """
     bounds, values = _with_stops(swings)
     count = max(bounds.size - 1, 0)
@@ -96,8 +102,13 @@ def strokes_of(swings: Swings) -> Strokes:
     begins, ends = _by_shape(before, first, outward), _by_shape(after, last, outward)
     before, after = begins.kappa, ends.kappa
     begin, end = feet.half - before, feet.half + after
-    begin_sd = np.sqrt(before_var + begins.law_var)
-    end_sd = np.sqrt(after_var + ends.law_var)
+    begin_at, end_at = np.where(outward, [feet.low_at, feet.top_at], [feet.top_at, feet.low_at])
+    begin_gap_s, end_gap_s = (
+        gap_at(np.column_stack([foot, at, feet.half]) / swings.rate_hz, gaps)
+        for foot, at in ((begin, begin_at), (end, end_at))
+    )
+    begin_sd = np.hypot(np.sqrt(before_var + begins.law_var), GAP_SD * begin_gap_s * swings.rate_hz)
+    end_sd = np.hypot(np.sqrt(after_var + ends.law_var), GAP_SD * end_gap_s * swings.rate_hz)
     rest_s = (begin[1:] - end[:-1]) / swings.rate_hz
     rest_sd_s = np.hypot(begin_sd[1:], end_sd[:-1]) / swings.rate_hz
     over = rest_s < 0.0
@@ -115,6 +126,8 @@ def strokes_of(swings: Swings) -> Strokes:
         end=np.clip(end, 0.0, swings.smooth.size - 1.0),
         begin_sd=begin_sd,
         end_sd=end_sd,
+        begin_gap_s=begin_gap_s,
+        end_gap_s=end_gap_s,
         begin_in_doubt=begins.in_doubt,
         end_in_doubt=ends.in_doubt,
         sharp=sharp,
