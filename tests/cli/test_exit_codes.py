@@ -151,6 +151,8 @@ def test_a_folder_is_no_trial(take: Path, capsys: pytest.CaptureFixture[str]) ->
         (["--inversion", "60", "--keyframes", "0,119"], 2, "inversion"),
         (["--arm", "Leg"], 4, "no such body; the file has 'Upper Arm'"),
         (["--arm", "Forearm", "--forearm", "Forearm"], 4, "both as proximal and as distal"),
+        (["--arm", "Upper Arm", "--proximal", "#1"], 2, "--proximal is given twice, as 'Upper Arm' and '#1'"),
+        (["--distal", "Forearm", "--distal", "#2"], 2, "--distal is given twice"),
         (["--reference", "120"], 4, "frames 0 to 119"),
         (["--inversion", "-3"], 4, "no such frame"),
         (["--keyframes", "0,30,1000"], 4, "no such frame"),

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from elbowscrew.cli import options
+from elbowscrew.errors import UsageError, shown
 
 if TYPE_CHECKING:
     from elbowscrew.declaring import Setting
@@ -63,7 +64,7 @@ def settings_options(
 
 
 def _parameter(name: str, setting: Setting, defaults: Mapping[str, str]) -> inspect.Parameter:
-    kind = list[str] if setting.several else setting.kind
+    kind = list[str] if setting.several or setting.former else setting.kind  # of two names both are heard
     names = [f"--{one}" for one in (setting.option, *setting.former)]
     if kind is bool and not setting.option.startswith("no-"):
         names = [f"{names[0]}/--no-{setting.option}"]
@@ -81,7 +82,18 @@ def _parameter(name: str, setting: Setting, defaults: Mapping[str, str]) -> insp
 
 
 def _value(setting: Setting, given: Any) -> Any:
+    if setting.former and not setting.several:
+        return _only(setting.option, given or [])
     if given is None or not setting.several:
         return given
     parts = options.parts(setting.option, given, once=setting.kind not in (int, float))
     return options.whole_numbers(setting.option, parts) if setting.kind is int else parts
+
+
+def _only(option: str, given: list[str]) -> str | None:
+    """Take the one value of an option that has several names, None if it is not given."""
+    different = list(dict.fromkeys(given))
+    if len(different) > 1:
+        msg = f"--{option} is given twice, as {' and '.join(map(shown, different))}; keep one"
+        raise UsageError(msg)
+    return different[0] if different else None
