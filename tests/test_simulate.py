@@ -12,6 +12,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from elbowscrew import Settings, Simulation, analyze, read_recording, simulate_trial
+from elbowscrew.choices import JOINT_NAMES, JointName
 from elbowscrew.errors import OutputError, UsageError
 from elbowscrew.geometry.quaternion import rotation_matrix_from_quat
 from elbowscrew.saving import save_simulation
@@ -25,6 +26,12 @@ TYPES: dict[str, dict[str, Any]] = {
     "skin": {"joint_type": "two-axes", "joint": "wrist", "skin_mm": 4.0},
 }
 SHORT: dict[str, Any] = {"frames": 120, "inversion": 55, "marker_noise_mm": 0.0, "proximal": "moving"}
+
+
+@pytest.mark.parametrize("joint", JOINT_NAMES)
+def test_every_joint_can_be_simulated_and_its_bodies_speak_of_it(joint: JointName) -> None:
+    recording = simulate_trial(joint=joint, **SHORT).recording
+    assert analyze(recording).named_joint.name == joint
 
 
 @pytest.mark.parametrize("express_in", ["distal", "proximal", "lab"])

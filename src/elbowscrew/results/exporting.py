@@ -144,4 +144,4 @@ EXPORTS: Final = {
     "mat": Export(_write_mat, "scipy", "trial.mat"),
     "sto": Export(_write_sto, None, "joint_angle.sto"),
 }
-"""A new format is one function and one entry here, and its name in `Settings.export`."""
+"""A new format is one function and one entry here, and its name in `elbowscrew.choices.ExportName`."""
