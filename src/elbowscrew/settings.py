@@ -144,7 +144,7 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
         metavar="F1,F2,...", shown="start, inversion, end", min_length=2,
     )  # fmt: skip
     phases: Literal["movement", "whole"] = setting(
-        "movement", "Phases by the movement's turns and rests, or the whole recording.", MODEL
+        "movement", "Phases by the movement's reversals and rests, or the whole recording.", MODEL
     )
     tolerance_mm: Length | None = setting(
         None, "Fewest keyframes that keep the RMS displacement below this length (2mm).", MODEL,

@@ -358,9 +358,10 @@ DECISIONS: dict[str, tuple[Outcome, Sentences]] = {
     "other joint": (
         lambda case: next((kind for kind in ("two_axes", "ball") if case.told.joint[kind] is not None), "none"),
         lambda case: {
-            "two_axes": "the joint is two axes, one fixed in each segment "
-            f"({case.told.joint['joint_type']['status']}), θ mixing its rotations",
-            "ball": f"the joint is a ball joint ({case.told.joint['joint_type']['status']}), θ mixing its rotations",
+            "two_axes": "the joint has two axes, one fixed in each segment "
+            f"({case.told.joint['joint_type']['status']}), so that θ mixes its rotations",
+            "ball": f"the joint is a ball joint ({case.told.joint['joint_type']['status']}), "
+            "so that θ mixes its rotations",
         },
     ),
     "robust": (
@@ -428,7 +429,7 @@ DECISIONS: dict[str, tuple[Outcome, Sentences]] = {
             "chosen": f"{phase_count(case)};",
             "inversion": f"{phase_count(case)}, with the inversion at frame {case.settings.inversion};",
             "whole": f"{phase_count(case)} between start, inversion and end of the recording;",
-            "movement": f"{phase_count(case)} between turns and rests of the joint;",
+            "movement": f"{phase_count(case)} between reversals and rests of the joint;",
         },
     ),
     "law": (

@@ -193,10 +193,10 @@ def _other_joint(joint: JointSummary) -> Iterator[str]:
     if two is None and ball is None:
         return
     status = "stated" if kind["status"] == "forced" else kind["status"]
-    found = "two axes, one fixed in each segment" if two is not None else "a ball joint"
+    found = "has two axes, one fixed in each segment" if two is not None else "is a ball joint"
     yield (
-        f"By maximum likelihood of all relative poses the joint is {found} ({status}), θ mixing its rotations; its own "
-        "angles are given for each frame."
+        f"By maximum likelihood of all relative poses, the joint {found} ({status}), so that θ mixes its rotations; "
+        "its own angles are given for each frame."
     )
     if kind["interval_method"] is not None:
         yield f"The 95 % intervals are those of the marker clusters' frames, {kind['interval_method']}."
@@ -241,7 +241,7 @@ def _laws(trial: TrialView, model: ModelSummary) -> Iterator[str]:
     elif settings.phases == "whole" or not trial.summary["motion"]["movements"]:
         between = f"{count} between start, inversion and end of the recording"
     else:
-        between = f"{count} between turns and rests of the joint"
+        between = f"{count} between reversals and rests of the joint"
     match settings.model_law:
         case "best":
             found = ", ".join(dict.fromkeys(law["law"] for law in model["phase_laws"]))
