@@ -13,6 +13,8 @@ from typing import Any
 
 import pytest
 
+from elbowscrew import save_simulation, simulate_trial
+from elbowscrew.cli import main
 from elbowscrew.errors import UsageError
 from elbowscrew.study.executors import open_executor
 
@@ -96,6 +98,34 @@ def test_tls_works_with_the_certificates_of_dasks_configuration(certificates: An
         assert there.scheduler_address.startswith("tls://")
         with open_executor(there.scheduler_address, 1)() as executor:
             assert executor.submit(max, 1, 2).result() == 2
+
+
+OTHER = """
+import sys
+import elbowscrew._version
+elbowscrew._version.__version__ = "0.0.1"
+from distributed.cli.dask_worker import main
+main([sys.argv[1], "--no-nanny", "--no-dashboard", "--nthreads", "1"])
+"""
+
+
+def test_workers_of_other_versions_are_told_and_cost_no_tables(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    save_simulation(simulate_trial(frames=60, inversion=30), tmp_path / "take.csv")
+    common = ["batch", str(tmp_path / "take.csv"), "-o", str(tmp_path / "out"), "--figure-format", "none", "-q"]
+    assert main([*common, "--workers", "1"]) == 0
+    before = {path.name: path.read_bytes() for path in (tmp_path / "out").glob("*.csv")}
+    assert set(before) == {"summary.csv", "failures.csv"}
+    with cluster(0) as there:
+        address = there.scheduler_address
+        with subprocess.Popen(
+            [sys.executable, "-c", OTHER, address], cwd=tmp_path, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+        ) as worker:
+            try:
+                assert main([*common, "--restart", "--scheduler", address, "--wait", "60"]) == 2
+            finally:
+                worker.terminate()
+    assert "the worker has elbowscrew 0.0.1: expected the same versions as here" in capsys.readouterr().err
+    assert {path.name: path.read_bytes() for path in (tmp_path / "out").glob("*.csv")} == before
 
 
 def test_a_cluster_without_workers_is_told_and_waited_for_on_request_alone() -> None:

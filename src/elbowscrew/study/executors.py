@@ -18,6 +18,7 @@ from typing import Any, Final
 
 from elbowscrew._search_path import CurrentFolderLeftOut
 from elbowscrew.errors import UsageError
+from elbowscrew.study.task import told_apart, versions_here
 from elbowscrew.study.worker import prepare_worker
 
 LOCAL_CLUSTER: Final = "local-cluster"
@@ -136,6 +137,7 @@ def _cluster(scheduler: str, workers: int, wait_s: float) -> Iterator[Executor]:
             raise UsageError(msg) from error
         executor = client.get_executor(pure=False, retries=0)
         try:
+            _check_workers(client, scheduler)
             yield executor
         except BaseException:
             executor.shutdown(wait=False)
@@ -146,6 +148,18 @@ def _cluster(scheduler: str, workers: int, wait_s: float) -> Iterator[Executor]:
                 client.close()
                 if cluster is not None:
                     cluster.close(timeout=_LONGEST_CLOSE_S)
+
+
+def _check_workers(client: Any, scheduler: str) -> None:
+    """Ask every worker that is there for its versions; of one that comes later its first trial tells."""
+    for told in client.run(versions_here, on_error="return").values():
+        if isinstance(told, Exception):
+            message = f"the workers cannot do the work: {type(told).__name__}: {told}; install the same program there"
+        else:
+            message = told_apart(told, versions_here())
+        if message:
+            msg = f"--scheduler {scheduler}: {message}"
+            raise UsageError(msg)
 
 
 @contextmanager

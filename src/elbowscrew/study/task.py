@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 import traceback
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -53,6 +54,12 @@ def versions_here() -> dict[str, str]:
     return {"elbowscrew": __version__, **library_versions()}
 
 
+def told_apart(worker: Mapping[str, str], expected: Mapping[str, str]) -> str:
+    """Say what a worker has in other versions than the batch; nothing if it has the same."""
+    told = ", ".join(f"{name} {version}" for name, version in worker.items() if version != expected.get(name))
+    return f"the worker has {told}: expected the same versions as here; install them there" if told else ""
+
+
 def analyze_trial(task: TrialTask) -> Failure | None:
     """Analyze one trial into its folder, in the place of an earlier result.
 
@@ -61,11 +68,8 @@ def analyze_trial(task: TrialTask) -> Failure | None:
     Failure or None
         None if the result is in its place.
     """
-    if versions_here() != task.versions:
-        told = ", ".join(
-            f"{name} {version}" for name, version in versions_here().items() if version != task.versions[name]
-        )
-        message = f"the worker has {told}: expected the same versions as here; install them there"
+    message = told_apart(versions_here(), task.versions)
+    if message:
         return Failure(error_class="UsageError", message=message, exit_code=UsageError.exit_code, stops_all=True)
     try:
         with _ONE_AT_A_TIME, at_work(task.folder.parent):
