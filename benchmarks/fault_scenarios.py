@@ -158,10 +158,10 @@ _FIGURES = ("report", _R, "--figures", "theta,error", "--figure-format", "png", 
 _PARTS = (*((f"{_OUT}/t{k}",) for k in range(3)), *((table,) for table in _TABLES))
 
 SCENARIOS = (
-    Scenario("analyze", ("analyze", "t.csv", *FAST), _trial, ((_R,),)),  # type: ignore[arg-type]
+    Scenario("analyze", ("analyze", "t.csv", *FAST), _trial, ((_R,),), quick=False),  # type: ignore[arg-type]
     Scenario("analyze --force", ("analyze", "t.csv", *FAST, "--force"), _result, ((_R,),)),
     Scenario("analyze with figures", ("analyze", "t.csv", "-q", "--force"), _result, ((_R,),), quick=False),
-    Scenario("batch", ("batch", "in", *FAST), _study, _PARTS, passing=_TABLES),
+    Scenario("batch", ("batch", "in", *FAST), _study, _PARTS, passing=_TABLES, quick=False),
     Scenario("batch again", ("batch", "in", *FAST), _study_done, _PARTS, passing=_TABLES),
     Scenario("report", ("report", _R, "-q"), _result_with_old_page, ((f"{_R}/report.html", f"{_R}/SHA256SUMS"),)),
     Scenario("report of all", ("report", ".", "-q"), _result_with_old_page,
@@ -174,7 +174,7 @@ SCENARIOS = (
              (("m.csv",),), quick=False),
     Scenario("interpolate --force", ("interpolate", "r/keyframes.csv", "--frames", "30", "--force"), _motion,
              (("keyframes_motion.csv",),)),
-    Scenario("simulate", _SIMULATE, _nothing, (("s.csv", "s.truth.json"),)),
+    Scenario("simulate", _SIMULATE, _nothing, (("s.csv", "s.truth.json"),), quick=False),
     Scenario("simulate --force", (*_SIMULATE, "--force"), _simulated, (("s.csv", "s.truth.json"),)),
     Scenario("paper --figures", ("paper", "--figures", "figs"), _nothing,
              (("figs/figures_7_and_8.png", "figs/figures_9_and_10.png"),), quick=False),

@@ -7,6 +7,7 @@ import re
 import shutil
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 from urllib.parse import unquote
 
 import numpy as np
@@ -16,11 +17,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 from sealed import resealed
 
+from elbowscrew.cli import main
 from elbowscrew.errors import OutputError, ResultError
 from elbowscrew.report import remake_pages, results_in, write_study_page
 from elbowscrew.report.distributions import LEAST, LIMIT, modified_z
 from elbowscrew.report.study import read_study
 from elbowscrew.report.study_page import study_page, thumbnail
+from elbowscrew.results.proof import ProvedFile
+from elbowscrew.results.table_reading import read_columns
 
 STUDY_MOST_BYTES = 10_000_000
 
@@ -133,6 +137,31 @@ def test_a_damaged_result_is_a_failure_of_its_own(result: Path, tmp_path: Path) 
     assert "axis_dispersion_deg" in page
 
 
+def test_what_could_not_be_read_for_the_page_alone_is_an_error(
+    result: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for name in ("one", "two"):
+        shutil.copytree(result, tmp_path / name)
+
+    def read(source: ProvedFile, *rest: Any) -> Any:
+        if source.path.parent.name == "two":
+            msg = f"{source.path}: cannot be read: Input/output error"
+            raise ResultError(msg)
+        return read_columns(source, *rest)
+
+    monkeypatch.setattr("elbowscrew.report.study.read_columns", read)
+    assert main(["report", str(tmp_path)]) == 3
+    told = capsys.readouterr()
+    assert f"{tmp_path / 'index.html'}: shows a trial as failed: {tmp_path / 'two' / 'screw.csv'}" in told.err
+    assert told.out.splitlines() == [
+        str(tmp_path / name) for name in ("one/report.html", "two/report.html", "index.html")
+    ]
+    assert "1 failed" in text_of(tmp_path)
+    monkeypatch.undo()
+    assert main(["report", str(tmp_path), "-q"]) == 0
+    assert "failed" not in text_of(tmp_path)
+
+
 def test_a_folder_without_results_is_told(tmp_path: Path) -> None:
     with pytest.raises(ResultError, match="analyze trials"):
         write_study_page(tmp_path)
@@ -158,7 +187,7 @@ def test_nothing_of_the_users_is_replaced(result: Path, tmp_path: Path) -> None:
 
 def test_the_same_results_give_the_same_bytes(study: Path) -> None:
     before = text_of(study)
-    assert study_page(read_study(study)) == before
+    assert study_page(read_study(study)).html == before
     assert write_study_page(study).read_text(encoding="utf-8") == before
 
 
@@ -168,7 +197,7 @@ def test_a_thousand_trials_make_a_page_of_less_than_ten_megabytes(study: Path) -
         replace(found.trials[k % 18], folder=f"folder {k}/a trial with a rather long name {k}", page=True)
         for k in range(1000)
     ]
-    page = study_page(replace(found, trials=tuple(many)))
+    page = study_page(replace(found, trials=tuple(many))).html
     assert len(links(page)) == 1000
     assert len(page.encode()) < STUDY_MOST_BYTES
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import errno
+import os
 from collections.abc import Iterator
 from pathlib import Path
 from typing import get_args
@@ -104,6 +106,24 @@ def test_a_summary_of_something_else_is_no_result(tmp_path: Path) -> None:
     (target / "summary.json").write_text('{"my": "data"}')
     with pytest.raises(OutputError, match="no elbowscrew result"), result_folder(target, force=True):
         pass
+
+
+def test_a_summary_that_cannot_be_read_is_not_called_somebody_elses(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    target = earlier_result(tmp_path / "result")
+
+    def fail(path: Path, *_rest: object, **_more: object) -> str:
+        raise OSError(errno.EIO, os.strerror(errno.EIO), str(path))
+
+    monkeypatch.setattr("elbowscrew.results.result_files.read_text", fail)
+    with (
+        pytest.raises(OutputError, match=r"summary\.json: cannot be read \(Input/output error\)") as told,
+        result_folder(target, force=True),
+    ):
+        pass
+    assert not isinstance(told.value.__cause__, OSError)  # in a batch it stops no other trial
+    assert [path.name for path in tmp_path.iterdir()] == ["result"]
 
 
 @pytest.mark.parametrize("force", [False, True])

@@ -109,7 +109,9 @@ main([sys.argv[1], "--no-nanny", "--no-dashboard", "--nthreads", "1"])
 """
 
 
-def test_workers_of_other_versions_are_told_and_cost_no_tables(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_workers_of_other_versions_are_told_and_cost_no_tables(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     save_simulation(simulate_trial(frames=60, inversion=30), tmp_path / "take.csv")
     common = ["batch", str(tmp_path / "take.csv"), "-o", str(tmp_path / "out"), "--figure-format", "none", "-q"]
     assert main([*common, "--workers", "1"]) == 0

@@ -12,8 +12,9 @@ from pathlib import Path
 import pytest
 
 from elbowscrew.cli import main
-from elbowscrew.errors import UsageError
+from elbowscrew.errors import ResultError, UsageError
 from elbowscrew.report.study import result_folders
+from elbowscrew.results.proof import ProvedFile
 from elbowscrew.study.manifest import read_manifest
 from elbowscrew.study.trials import find_trials
 
@@ -168,6 +169,27 @@ def test_a_usage_error_costs_no_tables(tmp_path: Path, take: bytes) -> None:
                   ["--restart", "--scheduler", "127.0.0.1:1"]):  # fmt: skip
         assert main([*common, *wrong]) == 2
         assert {path.name: path.read_bytes() for path in out.glob("*.csv")} == before
+
+
+def test_what_the_page_cannot_read_is_an_error_and_costs_no_row(
+    tmp_path: Path, take: bytes, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "take.csv").write_bytes(take)
+    out = tmp_path / "out"
+    common = ["batch", str(tmp_path / "take.csv"), "-o", str(out), "--figure-format", "none", "--workers", "1", "-q"]
+
+    def fail(source: ProvedFile, *_rest: object) -> None:
+        msg = f"{source.path}: cannot be read: Input/output error"
+        raise ResultError(msg)
+
+    with monkeypatch.context() as patched:
+        patched.setattr("elbowscrew.report.study.read_columns", fail)
+        assert main(common) == 3
+    told = capsys.readouterr().err
+    assert f"{out / 'index.html'}: shows a trial as failed: " in told
+    assert len((out / "summary.csv").read_text().splitlines()) == 2
+    assert main(common) == 0
+    assert capsys.readouterr().err == ""
 
 
 def test_one_bad_result_stops_no_other_page(tmp_path: Path, take: bytes, capsys: pytest.CaptureFixture[str]) -> None:

@@ -98,6 +98,7 @@ def batch(
     """
     from elbowscrew.cli import render, render_study
     from elbowscrew.cli.progress import shown_progress
+    from elbowscrew.errors import ResultError
     from elbowscrew.study.executors import LOCAL_CLUSTER, available_cores, open_executor
     from elbowscrew.study.study import run_study
     from elbowscrew.study.trials import find_trials
@@ -125,5 +126,8 @@ def batch(
         render.json_object(render_study.study_statement(result, study.skipped))
     elif not quiet:
         render_study.study_table(result)
+    render_study.unread_results(result)
     if result.failed:
         raise typer.Exit(SOME_FAILED)
+    if result.unread:
+        raise typer.Exit(ResultError.exit_code)

@@ -40,6 +40,12 @@ def changed_results(result: StudyResult) -> None:
         tell(f"elbowscrew: warning: {one_line(message)} [changed-results]")
 
 
+def unread_results(result: StudyResult) -> None:
+    """Tell of results that the page could not show, although they had just been finished."""
+    for message in result.unread:
+        tell(f"elbowscrew: error: {one_line(message)}")
+
+
 def study_statement(result: StudyResult, skipped: Sequence[Skipped]) -> dict[str, Any]:
     """What a batch has done, ready for JSON."""
     return {

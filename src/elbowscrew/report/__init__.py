@@ -40,6 +40,8 @@ def write_trial_page(folder: Path) -> Path:
 def write_study_page(folder: Path) -> Path:
     """Write ``index.html`` over all result folders inside a folder, whole or not at all.
 
+    Results that cannot be read stand there as failures.
+
     Parameters
     ----------
     folder : Path
@@ -59,11 +61,12 @@ def write_study_page(folder: Path) -> Path:
     """
     from elbowscrew.report.study_page import write_study_page as write
 
-    return write(folder)
+    page, _ = write(folder)
+    return page
 
 
 class Remade(NamedTuple):
-    """Pages that were made, and why some could not be: a damaged result, or a page's place taken, stops no other."""
+    """Pages that were made, and why some could not be, or show a trial as failed: that stops no other page."""
 
     pages: tuple[Path, ...]
     errors: tuple[ElbowscrewError, ...]
@@ -85,18 +88,25 @@ def remake_pages(folders: Iterable[Path]) -> Remade:
     ResultError
         If a folder neither is nor holds a finished result.
     """
+    from elbowscrew.report.study_page import not_shown
+    from elbowscrew.report.study_page import write_study_page as write_index
     from elbowscrew.results.trial_views import is_result
 
-    pages, errors = [], []
+    pages: list[Path] = []
+    errors: list[ElbowscrewError] = []
     for folder in folders:
+        told: set[Path] = set()
         for result in results_in([folder]):
             try:
                 pages.append(write_trial_page(result))
             except ElbowscrewError as error:
                 errors.append(error)
+                told.add(result)
         try:
             if not is_result(folder):
-                pages.append(write_study_page(folder))
+                page, unread = write_index(folder)
+                pages.append(page)
+                errors += [ResultError(not_shown(page, one)) for one in unread if folder / one.path not in told]
         except ElbowscrewError as error:
             errors.append(error)
     return Remade(tuple(dict.fromkeys(pages)), tuple(errors))

@@ -73,7 +73,8 @@ class Failure:
 class Study:
     """Trials of a folder by their folders, the columns that the manifest brought, and what failed.
 
-    Where there is a ``summary.csv``, trials are those that it names; `others` are results beside them.
+    Where there is a ``summary.csv``, trials are those that it names; `others` are results beside them. `unread` are
+    trials whose results could not be read just now.
     """
 
     name: str
@@ -81,6 +82,7 @@ class Study:
     factors: tuple[str, ...]
     failures: tuple[Failure, ...]
     others: tuple[str, ...] = ()
+    unread: tuple[Failure, ...] = ()
 
 
 def result_folders(folder: Path) -> Iterator[Path]:
@@ -111,14 +113,14 @@ def read_study(folder: Path, factors: Sequence[str] | None = None) -> Study:
     ResultError
         If there are neither results nor failures, or a table is no table. A damaged result is a failure of its trial.
     """
-    trials, failures = [], _failures(folder / "failures.csv")
+    trials, unread, failures = [], [], _failures(folder / "failures.csv")
     for result in result_folders(folder):
         name = result.relative_to(folder).as_posix()
         try:
             trials.append(_trial(result, name))
         except ResultError as error:
-            failures.append(Failure(path=name, kind="ResultError", message=str(error)))
-    if not trials and not failures:
+            unread.append(Failure(path=name, kind="ResultError", message=str(error)))
+    if not trials and not unread and not failures:
         msg = f"{folder}: holds no finished results; analyze trials into it first"
         raise ResultError(msg)
     said = _said_of(folder / "summary.csv", {trial.folder for trial in trials})
@@ -130,7 +132,7 @@ def read_study(folder: Path, factors: Sequence[str] | None = None) -> Study:
     )
     others = tuple(trial.folder for trial in trials if said and trial.folder not in said)
     name = folder.resolve().name or "study"
-    return Study(name=name, trials=kept, factors=chosen, failures=tuple(failures), others=others)
+    return Study(name=name, trials=kept, factors=chosen, failures=tuple(failures), others=others, unread=tuple(unread))
 
 
 def _trial(result: Path, name: str) -> StudyTrial:

@@ -19,6 +19,7 @@ from elbowscrew.report.study import CONDITION, Failure, Study, StudyTrial, read_
 from elbowscrew.results.staging import write_files
 from elbowscrew.view.decimation import drawn_rows
 
+_INDEX: Final = "index.html"
 _THUMB: Final = (132.0, 34.0)
 _THUMB_BUCKETS: Final = 40
 _MOST_STRIPS: Final = 24
@@ -76,6 +77,13 @@ class TrialRow(TypedDict):
     outlier: list[str]
 
 
+class StudyPage(NamedTuple):
+    """One HTML file, and the trials whose results it could not show."""
+
+    html: str
+    unread: tuple[Failure, ...]
+
+
 class GroupRow(TypedDict):
     """Trials alike in a factor: of each measure its decimals, and its median and quartiles."""
 
@@ -91,14 +99,19 @@ class Factor(TypedDict):
     levels: list[str]
 
 
-def write_study_page(folder: Path, factors: Sequence[str] | None = None) -> Path:
-    """Write ``index.html`` over the results in a folder; see `elbowscrew.report.write_study_page`."""
-    study = read_study(folder, factors)
-    write_files(folder, {"index.html": study_page(study).encode("utf-8", "replace")}, replaceable=(MARK,))
-    return folder / "index.html"
+def write_study_page(folder: Path, factors: Sequence[str] | None = None) -> tuple[Path, tuple[Failure, ...]]:
+    """Write ``index.html`` over the results in a folder, and give it and the trials that it could not show."""
+    page = study_page(read_study(folder, factors))
+    write_files(folder, {_INDEX: page.html.encode("utf-8", "replace")}, replaceable=(MARK,))
+    return folder / _INDEX, page.unread
 
 
-def study_page(study: Study) -> str:
+def not_shown(page: Path, trial: Failure) -> str:
+    """Say that the page shows as failed a trial that has a result."""
+    return f"{page}: shows a trial as failed: {trial.message}"
+
+
+def study_page(study: Study) -> StudyPage:
     """Make the page of a study.
 
     Parameters
@@ -108,10 +121,10 @@ def study_page(study: Study) -> str:
 
     Returns
     -------
-    str
-        One HTML file that needs no other but the trials' pages it links to. The same results give the same bytes.
+    StudyPage
+        It needs no other file but the trials' pages it links to. The same results give the same bytes.
     """
-    trials, failures = [], list(study.failures)
+    trials, unread = [], list(study.unread)
     rows: list[TrialRow] = []
     scale = _scale(study.trials)
     for trial in study.trials:
@@ -119,7 +132,7 @@ def study_page(study: Study) -> str:
             rows.append(_row(trial, scale))
             trials.append(trial)
         except UNSHOWABLE as error:
-            failures.append(Failure(path=trial.folder, kind="ResultError", message=str(unshowable(Path(), error))))
+            unread.append(Failure(path=trial.folder, kind="ResultError", message=str(unshowable(Path(), error))))
     groups = _groups(study, trials)
     _mark_outliers(rows, groups)
     content = {
@@ -131,14 +144,15 @@ def study_page(study: Study) -> str:
         "measures": MEASURES,
         "columns": COLUMNS,
         "charts": _charts(rows, groups),
-        "failures": failures,
+        "failures": [*study.failures, *unread],
         "others": study.others,
         "outliers": sum(bool(row["outlier"]) for row in rows),
         "warned": sum(bool(row["warnings"]) for row in rows),
         "limit": LIMIT,
         "least": LEAST,
     }
-    return render("study.html", styles=("page.css", "study.css"), script="study.js", data={}, content=content)
+    html = render("study.html", styles=("page.css", "study.css"), script="study.js", data={}, content=content)
+    return StudyPage(html, tuple(unread))
 
 
 def thumbnail(time_s: Float, theta: Float, scale: tuple[float, float]) -> Markup:

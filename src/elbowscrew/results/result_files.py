@@ -9,7 +9,7 @@ from typing import Final, NamedTuple
 
 from elbowscrew.choices import DRAWN_FORMATS
 from elbowscrew.disk.temporary import is_temporary
-from elbowscrew.opening import open_bytes, read_text
+from elbowscrew.opening import read_text
 from elbowscrew.results.exporting import EXPORTS
 from elbowscrew.tables import TABLES
 from elbowscrew.view.figure_names import SAVED_FIGURES
@@ -43,7 +43,7 @@ COMPARISON: Final = ResultKind(
 )
 
 _STRAYS: Final = frozenset({".ds_store", "thumbs.db", "desktop.ini"})
-_BEGINS: Final = b'{\n  "elbowscrew": "'
+_BEGINS: Final = '{\n  "elbowscrew": "'
 
 
 def is_stray(name: str) -> bool:
@@ -65,20 +65,31 @@ def files_in(folder: Path) -> Iterator[str]:
 def is_summary(path: Path) -> bool:
     """Whether a file is the summary of a result."""
     try:
-        summary = json.loads(read_text(path))
-    except (OSError, ValueError, RecursionError):
+        return _tells_of_us(read_text(path))
+    except (OSError, ValueError):
+        return False
+
+
+def is_or_was_summary(path: Path) -> bool:
+    """Whether a file is the summary of a result, or what a power failure leaves of one: nothing, zeros, its beginning.
+
+    Raises
+    ------
+    OSError
+        If the file is there and cannot be read.
+    """
+    if not path.is_file():
+        return False
+    text = read_text(path, encoding="latin-1")  # it may be cut inside a character
+    return _BEGINS.startswith(text.rstrip("\0")[: len(_BEGINS)]) or _tells_of_us(text)
+
+
+def _tells_of_us(text: str) -> bool:
+    try:
+        summary = json.loads(text)
+    except (ValueError, RecursionError):
         return False
     return isinstance(summary, dict) and "elbowscrew" in summary
-
-
-def is_cut_summary(path: Path) -> bool:
-    """Whether a file is what a power failure leaves of a summary: nothing, zeros, or its beginning."""
-    try:
-        with open_bytes(path) as stream:
-            head = stream.read(4096).rstrip(b"\0")
-    except OSError:
-        return False
-    return _BEGINS.startswith(head[: len(_BEGINS)]) and not is_summary(path)
 
 
 def version_told(folder: Path) -> str | None:

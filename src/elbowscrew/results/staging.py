@@ -17,8 +17,7 @@ from elbowscrew.results.result_files import (
     ANALYSIS,
     ResultKind,
     files_in,
-    is_cut_summary,
-    is_summary,
+    is_or_was_summary,
 )
 
 
@@ -95,7 +94,15 @@ def _check_content(target: Path, folder: Path, force: bool, kind: ResultKind) ->
             raise OutputError(msg)
     if empty:
         return
-    if not is_summary(folder / kind.summary) and not is_cut_summary(folder / kind.summary):
+    try:
+        ours = is_or_was_summary(folder / kind.summary)
+    except OSError as error:
+        why = error.strerror or error
+        msg = (
+            f"{target / kind.summary}: cannot be read ({why}), so that nothing tells whose it is; give another --output"
+        )
+        raise OutputError(msg) from None  # of this folder alone: others may be written
+    if not ours:
         msg = f"{target}: the folder holds files but no elbowscrew result; give another --output"
         raise OutputError(msg)
     if not force:

@@ -15,7 +15,7 @@ from elbowscrew.errors import OutputError, ResultError, UsageError
 from elbowscrew.model import Landmarks
 from elbowscrew.model.summary_types import Summary
 from elbowscrew.reading.landmarks import read_landmarks
-from elbowscrew.report.study_page import write_study_page
+from elbowscrew.report.study_page import not_shown, write_study_page
 from elbowscrew.results.exporting import check_exports
 from elbowscrew.results.proof import proof_of
 from elbowscrew.results.result_files import is_summary
@@ -70,6 +70,8 @@ class StudyResult:
         Files of earlier results that were not as they had been written, and have been made again.
     others : tuple of str
         Results in the folder that the tables do not tell of: of earlier trials, or of trials that fail now.
+    unread : tuple of str
+        Why the page shows trials as failed that have a row in ``summary.csv``: their tables could not be read.
     """
 
     folder: Path
@@ -79,6 +81,7 @@ class StudyResult:
     failed: tuple[FailedTrial, ...]
     changed: tuple[str, ...]
     others: tuple[str, ...]
+    unread: tuple[str, ...]
 
 
 def run_study(
@@ -153,7 +156,8 @@ def run_study(
         carried = list(dict.fromkeys(name for trial in trials for name in trial.columns))
         replace_file(folder / FAILURES_TABLE, failures_table(failures))
         replace_file(folder / SUMMARY_TABLE, summary_table(rows, carried, common.angle_unit, common.length_unit))
-        write_study_page(folder, carried)
+        page, unread = write_study_page(folder, carried)
+        told = {row.trial for row in rows}
         return StudyResult(
             folder=folder,
             names=tuple(task.folder.name for task in tasks),
@@ -165,7 +169,8 @@ def run_study(
                 for task, standing in zip(tasks, standings, strict=True)
                 for name in standing.changed
             ),
-            others=_others(folder, {row.trial for row in rows}),
+            others=_others(folder, told),
+            unread=tuple(not_shown(page, one) for one in unread if one.path in told),
         )
 
 
