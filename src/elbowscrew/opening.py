@@ -7,6 +7,7 @@ ever, and a link in the output lead a writer to somebody else's file.
 from __future__ import annotations
 
 import errno
+import hashlib
 import io
 import os
 import stat
@@ -34,6 +35,23 @@ def open_bytes(path: Path) -> io.BufferedReader:
     """
     _check_regular(path.stat().st_mode)  # a device is not even opened
     return open(path, "rb", opener=partial(_open_regular, more=_AT_ONCE))
+
+
+def sha256_of(path: Path) -> str:
+    """SHA-256 of a file, in hexadecimal digits.
+
+    Raises
+    ------
+    OSError
+        If it cannot be read.
+    """
+    with open_bytes(path) as stream:
+        return digest_of(stream)
+
+
+def digest_of(stream: io.BufferedReader) -> str:
+    """SHA-256 of what is left of a stream, in hexadecimal digits."""
+    return hashlib.file_digest(stream, "sha256").hexdigest()
 
 
 def open_text(path: Path, encoding: str = "utf-8", newline: str | None = None) -> io.TextIOWrapper:

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from elbowscrew.opening import sha256_of
 from elbowscrew.quantities import Quantity
-from elbowscrew.reading.source import sha256_of
 from elbowscrew.results.proof import ProvedFile
 from elbowscrew.results.table_reading import read_columns
 from elbowscrew.results.writing import write_csv

@@ -15,7 +15,7 @@ from elbowscrew._version import __version__
 from elbowscrew.cli import main
 from elbowscrew.errors import OutputError, ResultError
 from elbowscrew.motion.interpolation.keyframe_sources import ComparisonPlan
-from elbowscrew.reading.source import sha256_of
+from elbowscrew.opening import sha256_of
 from elbowscrew.report import write_study_page, write_trial_page
 from elbowscrew.results.proof import ProvedFile, proof_of
 from elbowscrew.results.staging import check_result_folder

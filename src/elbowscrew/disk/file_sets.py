@@ -17,7 +17,7 @@ from pathlib import Path
 from elbowscrew.disk.placing import put
 from elbowscrew.disk.syncing import signals_held, sync, sync_tree
 from elbowscrew.disk.temporary import PLAN, held_folder
-from elbowscrew.opening import create, open_bytes, write_new
+from elbowscrew.opening import create, open_bytes, sha256_of, write_new
 
 
 def write_set(folder: Path, contents: Mapping[str, bytes | Iterable[str]], check: Callable[[Path], None]) -> None:
@@ -120,8 +120,7 @@ def _digest(path: Path) -> str | None:
     """SHA-256 of a file; None if it is not there, or is no regular file."""
     if path.is_symlink() or not path.is_file():
         return None
-    with open_bytes(path) as stream:
-        return hashlib.file_digest(stream, "sha256").hexdigest()
+    return sha256_of(path)
 
 
 def _write(path: Path, content: bytes | Iterable[str]) -> str:

@@ -20,6 +20,7 @@ from elbowscrew._search_path import guarded_environment
 from elbowscrew.errors import RecordingError
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import QualityWarning, Recording, RigidBody, Source
+from elbowscrew.opening import sha256_of
 from elbowscrew.quantities import METERS
 from elbowscrew.reading import c3d_worker
 from elbowscrew.reading.builders import BodyBuilder, MarkerBuilder
@@ -27,7 +28,6 @@ from elbowscrew.reading.c3d_mending import mended
 from elbowscrew.reading.c3d_parameters import check_sizes, read_statements
 from elbowscrew.reading.clock import is_rate
 from elbowscrew.reading.options import ReadOptions, nothing_wanted, stated_unit
-from elbowscrew.reading.source import sha256_of
 
 _LONGEST_OPENING_S: Final = 600
 

@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import csv
-import hashlib
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from io import BufferedReader
 from pathlib import Path
 from typing import Final, TextIO
 
 from elbowscrew.errors import RecordingError
-from elbowscrew.opening import open_bytes, open_text
+from elbowscrew.opening import digest_of, open_bytes, open_text
 
 _HEAD_BYTES: Final = 65536
 _MAX_LINE: Final = 1 << 24
@@ -139,22 +137,6 @@ def longest_cell(characters: int) -> Iterator[None]:
             csv.field_size_limit(before)
 
 
-def sha256_of(path: Path) -> str:
-    """SHA-256 of a file, in hexadecimal digits.
-
-    Raises
-    ------
-    OSError
-        If it cannot be read.
-    """
-    with open_bytes(path) as stream:
-        return _digest(stream)
-
-
-def _digest(stream: BufferedReader) -> str:
-    return hashlib.file_digest(stream, "sha256").hexdigest()
-
-
 def first_bytes(path: Path, count: int) -> bytes:
     """Read the first bytes of a file; none if it is no regular file or cannot be read, as `open_source` reports."""
     try:
@@ -176,7 +158,7 @@ def open_source(path: Path) -> TextSource:
         with open_bytes(path) as stream:
             head = stream.read(_HEAD_BYTES)
             stream.seek(0)
-            digest = _digest(stream)
+            digest = digest_of(stream)
             last = b""
             if head:
                 stream.seek(-1, 2)

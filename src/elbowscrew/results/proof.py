@@ -16,7 +16,7 @@ from typing import IO, TYPE_CHECKING, Final
 
 from elbowscrew._version import __version__
 from elbowscrew.errors import ResultError
-from elbowscrew.opening import open_bytes, write_new
+from elbowscrew.opening import open_bytes, sha256_of, write_new
 from elbowscrew.results.result_files import RESULT_FILES, SUMS, files_in, version_told
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ def seal(folder: Path, names: Sequence[str] = RESULT_FILES) -> None:
         What may be there, in the order of the lines.
     """
     present = set(files_in(folder))
-    sums = {name: _digest(folder / name) for name in names if name in present and name != SUMS}
+    sums = {name: sha256_of(folder / name) for name in names if name in present and name != SUMS}
     write_new(folder / SUMS, _lines(sums))
 
 
@@ -177,14 +177,9 @@ class _Digested(io.RawIOBase):
             self.sha256.update(data)
 
 
-def _digest(path: Path) -> str:
-    with open_bytes(path) as stream:
-        return hashlib.file_digest(stream, "sha256").hexdigest()
-
-
 def _has(path: Path, digest: str) -> bool:
     try:
-        return _digest(path) == digest
+        return sha256_of(path) == digest
     except OSError:
         return False
 

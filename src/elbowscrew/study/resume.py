@@ -9,7 +9,7 @@ from elbowscrew.choices import FRAMES, JOINT_NAMES
 from elbowscrew.errors import OutputError, ResultError
 from elbowscrew.joints import ends_called, joints_of
 from elbowscrew.model.summary_types import Summary
-from elbowscrew.reading.source import sha256_of
+from elbowscrew.opening import sha256_of
 from elbowscrew.results.proof import proof_of
 from elbowscrew.results.staging import settle
 from elbowscrew.results.summary import landmarks_summary, library_versions, settings_summary
