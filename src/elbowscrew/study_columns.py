@@ -42,6 +42,8 @@ STUDY_COLUMNS: Final = (
     _study(Quantity.NUMBER, "trial", "duration_s"),
     _study(Quantity.LABEL, "trial", "proximal", "name", name="proximal_body"),
     _study(Quantity.LABEL, "trial", "distal", "name", name="distal_body"),
+    _study(Quantity.LABEL, "trial", "joint", "name", name="joint_name"),
+    _study(Quantity.LABEL, "trial", "joint", "side", name="joint_side"),
     _study(Quantity.NUMBER, "trial", "proximal", "tracked_share", name="proximal_tracked_share"),
     _study(Quantity.NUMBER, "trial", "distal", "tracked_share", name="distal_tracked_share"),
     _study(Quantity.INTEGER, "trial", "measured_frames"),

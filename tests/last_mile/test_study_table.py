@@ -19,6 +19,8 @@ from elbowscrew.cli import main
 NAMED: dict[str, tuple[str | int, ...]] = {
     "proximal_body": ("trial", "proximal", "name"),
     "distal_body": ("trial", "distal", "name"),
+    "joint_name": ("trial", "joint", "name"),
+    "joint_side": ("trial", "joint", "side"),
     "proximal_tracked_share": ("trial", "proximal", "tracked_share"),
     "distal_tracked_share": ("trial", "distal", "tracked_share"),
     "dominant_axis_ratio": ("motion", "dominant_axis", "ratio"),
@@ -100,3 +102,5 @@ def test_cells_are_those_of_the_results(
                 assert match is None or match[1] in (angle, length), column
     assert {"", "screw_hinge"} <= set(table["joint_model"])
     assert {0, 1} == set(table["signed"])
+    sides = set(zip(table["joint_name"], table["joint_side"], strict=True))
+    assert sides == {("joint", ""), ("elbow", "left"), ("knee", "")}
