@@ -107,9 +107,8 @@ def analyze(recording: Recording, settings: Settings | None = None, *, landmarks
     )
     if sense.signed and np.isfinite(velocity).any():
         warnings += speed_warnings(repetitions, cuts.cycles.sense)
-        if not isinstance(wanted.lowpass_hz, float):  # a filter that was given is meant
-            recorded = measured.unfiltered
-            warnings += speed_doubts(recorded.relative[:, :4], recorded.elapsed, cuts.cycles, repetitions)
+        recorded = measured.unfiltered
+        warnings += speed_doubts(recorded.relative[:, :4], recorded.elapsed, cuts.cycles, repetitions)
     warnings += angle_warnings(repetitions)
     curves = cycle_curves_of(cuts.cycles, screw.angle, elapsed)
     cycles = cuts.cycles.start_s

@@ -39,6 +39,22 @@ def test_what_the_filter_leaves_out_is_told() -> None:
     assert not told(quiet, "fast-motion-left-out")
 
 
+@pytest.mark.parametrize("resample_hz", [None, 120.0])
+@pytest.mark.parametrize(("stroke_s", "left_out"), [(0.12, True), (0.8, False)])
+def test_what_a_filter_that_was_given_leaves_out_is_told(
+    stroke_s: float, resample_hz: float | None, left_out: bool
+) -> None:
+    """Through 6 Hz, strokes of 0.12 s are up to 6 deg too low and a fifth too slow, those of 0.8 s as they are."""
+    frames = round(2.0 * stroke_s * 200.0)
+    trial: dict[str, Any] = {"rate_hz": 200.0, "frames": frames, "inversion": frames // 2, "repetitions": 4}
+    found = analyze(
+        simulate_trial(joint_type="hinge", top_deg=90.0, law="polynomial-345", marker_noise_mm=0.05, **trial).recording,
+        Settings(lowpass_hz=6.0, resample_hz=resample_hz),
+    )
+    assert bool(told(found, "fast-motion-left-out")) == left_out
+    assert bool(told(found, "speeds-off")) == left_out
+
+
 @pytest.mark.parametrize(
     "trial", [{}, {"marker_noise_mm": 0.5}, {"joint": "knee"}, {"repetitions": 3, "frames": 150, "inversion": 70}]
 )

@@ -50,6 +50,15 @@ def test_a_largest_angle_beside_lost_frames_is_known() -> None:
     assert not told(analysis, "angles-unknown")
 
 
+def test_a_largest_angle_among_frames_that_are_filled_in_is_unknown() -> None:
+    """Strokes of 0.12 s: what is put in for 0.08 s goes straight on over the top of 90 deg, at 66 deg."""
+    analysis = analyze(taken(harmonic(3, period_s=0.24), [(0.325, 0.395)]))
+    assert analysis.screw.filled.any()
+    top, span = np.degrees([analysis.repetitions.top_angle[1], analysis.repetitions.angle_range[1]])
+    assert np.isnan([top, span]).all()
+    assert "cycle 2:" in told(analysis, "angles-unknown")[0]
+
+
 GAPS = [(center, half) for center in (2.0, 3.0, 4.0, 6.0, 7.0, 0.0, 8.0) for half in (0.07, 0.15, 0.3, 0.5, 0.8, 1.0)]
 
 

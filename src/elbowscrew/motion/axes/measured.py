@@ -78,8 +78,8 @@ def measured_instantaneous_motion(
     """Take the twist of filtered poses: of those at hand if they are, else of poses filtered for this alone.
 
     Its sense is that of the dominant axis or, where theta has none, of the leading direction; `without_sense` takes
-    that away from what is told. Warnings say what a filter for this alone left out beside the noise, and why no frame
-    has an axis where none has.
+    that away from what is told. Warnings say what the filter left out beside the noise, and why no frame has an axis
+    where none has.
     """
     proximal, distal, smoothing = _as_recorded(measured)
     D, known = measured.displacement, measured.joint.measured
@@ -93,9 +93,11 @@ def measured_instantaneous_motion(
         known = np.isfinite(raw[:, 0])
         chosen = smoothing._replace(cutoff_hz=smoothing.cutoff_hz or twist_cutoff(measured, settings))
         D = _since_reference(*chosen.apply(proximal, distal), measured)
-        if smoothing.cutoff_hz is None:
-            warnings = _left_out(raw[known, :4], D[known, :4], chosen.cutoff_hz or np.inf)
+        warnings = _left_out(raw[known, :4], D[known, :4], chosen, settings)
         smoothing = chosen
+    elif smoothing.elapsed is measured.unfiltered.elapsed:
+        raw = measured.unfiltered.relative
+        warnings = _left_out(raw[known, :4], measured.joint.dual_quat_proximal_distal[known, :4], smoothing, settings)
     twist = twists(
         expressed(D, measured.joint, measured.express_in), known, smoothing.elapsed, smoothing.rate_hz, smoothing.margin
     )
@@ -112,20 +114,25 @@ def measured_instantaneous_motion(
     return motion, warnings + _without_axes(motion, settings.min_rate_rad_s, smoothing.rate_hz, other)
 
 
-def _left_out(raw: Float, filtered: Float, cutoff_hz: float) -> tuple[QualityWarning, ...]:
+def _left_out(raw: Float, filtered: Float, filter_: Smoothing, settings: Settings) -> tuple[QualityWarning, ...]:
     """Warn where the filter took more out of the rotations (N, 4) than their noise."""
     off = quaternion.multiply(quaternion.conjugate(filtered), raw)
     square = 4.0 * np.sum(off[:, 1:] ** 2, axis=1)  # a small rotation
     square = square[np.isfinite(square)]
-    if not square.size:
+    if not square.size or filter_.cutoff_hz is None:
         return ()
     rms, noise = float(np.sqrt(square.mean())), np.sqrt(3.0) * rotation_noise(raw)
     if rms <= max(_LEFT_OUT_NOISE * noise, _LEAST_LEFT_OUT):
         return ()
+    if settings.lowpass_hz is None:
+        which = "speeds and instantaneous axes", "which residual analysis finds"
+    else:
+        which = "theta, axes and speeds", "by --lowpass"
+    largest = float(np.sqrt(square.max()))
     message = (
-        f"speeds and instantaneous axes are of motion up to {cutoff_hz:.3g} Hz, which residual analysis finds; that "
-        f"leaves out {np.degrees(rms):.2g} deg RMS of rotation, where the noise is {np.degrees(noise):.2g} deg: what "
-        "is faster is not in them (--lowpass HZ sets the cut-off)"
+        f"{which[0]} are of motion up to {filter_.cutoff_hz:.3g} Hz, {which[1]}; that leaves out {np.degrees(rms):.2g} "
+        f"deg RMS of rotation, {np.degrees(largest):.2g} deg at worst, where the noise is {np.degrees(noise):.2g} deg: "
+        "what is faster is not in them (--lowpass HZ sets the cut-off)"
     )
     return (QualityWarning(code="fast-motion-left-out", message=message),)
 

@@ -161,6 +161,6 @@ def speed_doubts(quat: Float, elapsed: Float, cycles: Cycles, repetitions: Repet
         f"the highest speed of {strokes} is off by more than {100.0 * _TOLD_SHARE:.0f} %, by {100.0 * share:.0f} % at "
         f"worst: {np.degrees(told):.4g} deg/s by the filter, {np.degrees(found.speed):.4g} (sd "
         f"{np.degrees(found.sd):.2g}) by a local fit to the poses; a filter overshoots where a motion sets in or turns "
-        "at once, and smooths what is faster than its cut-off (--lowpass HZ sets it)"
+        "at once, smooths what is faster than its cut-off, and leaves the noise below it (--lowpass HZ sets it)"
     )
     return (QualityWarning(code="speeds-off", message=message, count=len(off)),)

@@ -53,7 +53,8 @@ def repetitions_of(
     speed = np.full((count, 2), np.nan)
     moving = np.flatnonzero(np.isfinite(angular_velocity))
     given = (int(moving[0]), int(moving[-1])) if moving.size else (0, 0)
-    gaps = gaps_of(screw.angle, time)
+    # A pose that is filled in goes straight on over a top.
+    gaps = gaps_of(np.where(screw.filled, np.nan, screw.angle), time)
     unseen = _mean_in_gaps(screw.angle, angular_velocity, time)
     for k, (first, turn, last) in enumerate(zip(start.tolist(), top.tolist(), end.tolist(), strict=True)):
         rows = slice(first, last + 1)
