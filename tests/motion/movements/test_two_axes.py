@@ -7,7 +7,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from elbowscrew import Analysis, Settings, analyze, simulate_trial
+from elbowscrew import Analysis, Recording, RigidBody, Settings, analyze, simulate_trial
+from elbowscrew.geometry import dual_quat_from_screw
+from elbowscrew.geometry.dual_quaternion import multiply
 from elbowscrew.simulate import SimulatedTrial
 
 
@@ -57,3 +59,33 @@ def test_the_largest_angle_is_that_of_the_cycle(joint_type: str) -> None:
     for k in range(found.number.size):
         inside = (frame >= found.start_frame[k]) & (frame <= found.end_frame[k])
         assert found.top_angle[k] == np.nanmax(analysis.screw.angle[inside])
+
+
+def test_two_axes_are_cut_where_theta_turns_though_angle_1_has_the_other_sense() -> None:
+    """Flexion goes from 45 down to 0 and then three times up to 93 deg, a little farther; theta, as far within 5 %, has
+    the sense of its first excursion.
+    """
+    time = np.arange(561) / 100.0
+    flexion = 46.5 + 46.5 * np.cos(np.pi * time / 0.8)
+    first = time < 0.8
+    flexion[first] = 22.5 + 22.5 * np.cos(np.pi * time[first] / 0.8)
+    pronation = 15.0 * np.sin(2.0 * np.pi * time / 2.3)
+    pose = multiply(
+        dual_quat_from_screw(np.radians(flexion), 0.0 * time, [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]),
+        dual_quat_from_screw(np.radians(pronation), 0.0 * time, [0.0, 1.0, 0.0], [0.01, 0.0, 0.0]),
+    )
+    pose = multiply(
+        pose,
+        dual_quat_from_screw(
+            np.random.default_rng(1).normal(0.0, 1e-3, time.size), 0.0, [0.0, 0.0, 1.0], [0.0, 0.0, 0.0]
+        ),
+    )
+    body = RigidBody(name="Forearm", dual_quat_lab_body=pose, loss=np.zeros(time.size, dtype=np.uint8))
+    found = analyze(Recording.from_bodies([body], rate_hz=100.0))
+    assert found.joint_type is not None
+    assert (found.joint_type.type, found.joint_type.status) == ("two_axes", "determined")
+    assert np.cov(found.joint_type.angle[:, 0], found.sense.twist)[0, 1] < 0.0
+    top = found.screw.angle[found.repetitions.inversion_frame - found.screw.frame[0]]
+    assert (top > 0.5).all()
+    for speed in (found.repetitions.outward_speed[1:], found.repetitions.back_speed[:-1]):
+        assert np.degrees(speed) == pytest.approx(np.pi * 46.5 / 0.8, rel=0.1)

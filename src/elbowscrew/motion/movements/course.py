@@ -14,7 +14,7 @@ from elbowscrew.model.joint_coordinates import JointCoordinates
 from elbowscrew.model.joint_type import JointType
 from elbowscrew.motion.joint.coordinates import joint_angles_of
 from elbowscrew.motion.screws.measurement import Measurement
-from elbowscrew.motion.screws.sense import sense_of
+from elbowscrew.motion.screws.sense import DOMINANT_RATIO, sense_of
 from elbowscrew.motion.screws.uncertainty import joint_covariance
 from elbowscrew.settings import Settings
 
@@ -54,7 +54,7 @@ def measured_course(measured: Measurement, settings: Settings, joint_type: Joint
         filtered = measured.smoothing.cutoff_hz is not None or len(relative) != measured.elapsed.size
         # Without a filter they are the very poses that the joint was put on.
         angle = _first_angle(measured, relative, reference, joint) if filtered else joint_type.angle[:, 0]
-        return np.where(known, angle, np.nan)
+        return np.where(known, _way_of_theta(measured, joint_type) * angle, np.nan)
     turned = quaternion.multiply(quaternion.conjugate(relative[reference, :4]), relative[:, :4])
     own = sense_of(turned, bodies.elapsed, reference, signed=settings.signed)
     # A filter, or a mean over the reference window, may make the other one of two like excursions the larger.
@@ -66,7 +66,15 @@ def course_of_frames(measured: Measurement, joint_type: JointType | None) -> Flo
     """Give the like rotation of the frames that are analyzed, theta in place of the twist, shape (N,), radians."""
     if joint_type is None or two_axes_of(joint_type) is None:
         return measured.course
-    return joint_type.angle[:, 0]
+    return _way_of_theta(measured, joint_type) * joint_type.angle[:, 0]
+
+
+def _way_of_theta(measured: Measurement, joint_type: JointType) -> float:
+    """Sign that makes angle 1 increase where theta does, if one axis dominates: each may be larger on another side."""
+    angle, twist = joint_type.angle[:, 0], measured.sense.twist
+    known = np.isfinite(angle) & np.isfinite(twist)
+    opposed = np.cov(angle[known], twist[known])[0, 1] < 0.0
+    return -1.0 if opposed and measured.sense.ratio <= DOMINANT_RATIO else 1.0
 
 
 def _first_angle(measured: Measurement, relative: Float, reference: int, joint: JointCoordinates) -> Float:

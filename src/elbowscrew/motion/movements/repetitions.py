@@ -256,7 +256,7 @@ def speed_warnings(repetitions: Repetitions, sense: Float) -> tuple[QualityWarni
         return ()
     message = (
         f"the highest speed of a stroke is left empty in {_cycles_called(numbers)}: it may lie where no speed is "
-        "known, about lost frames (instantaneous.csv)"
+        "known, about lost frames, or the joint turns the other way there (instantaneous.csv)"
     )
     return (QualityWarning(code="speeds-unknown", message=message, count=numbers.size),)
 
@@ -315,7 +315,7 @@ def _mean_in_gaps(angle: Float, speed: Float, time: Float) -> Float:
 
 
 def _highest(speed: Float, unseen: Float, least_rate: float) -> float:
-    """Highest of the speeds of a stroke; NaN where it may lie among those that are not known.
+    """Highest of the speeds of a stroke; NaN where it may lie among those that are not known, or is none its way.
 
     That is beside fast ones, and where the joint is fast in the mean of the frames without a speed (`unseen`). Speeds
     under `least_rate` are not known either, and those beside them little above it.
@@ -326,4 +326,5 @@ def _highest(speed: Float, unseen: Float, least_rate: float) -> float:
     highest = float(speed[known].max())
     beside = known & (np.append(~known[1:], False) | np.insert(~known[:-1], 0, False))
     fast = max(_FAST_SHARE * highest, _ABOVE_LEAST * least_rate)
-    return float("nan") if (speed[beside] >= fast).any() or (unseen >= fast).any() else highest
+    unknown = (speed[beside] >= fast).any() or (unseen >= fast).any() or highest <= 0.0
+    return float("nan") if unknown else highest
