@@ -265,16 +265,17 @@ def test_a_file_that_somebody_put_in_the_place_of_a_former_one_stays_and_so_does
     staged = partial_of(tmp_path, "a/b")
     staged.mkdir()
     (staged / "plan").write_text('{"a": "0", "b": "0"}')
-    for k in range(2):
-        (staged / f"{k}.former").write_text(f"former {k}")
+    (staged / "former").mkdir()
+    for name in "ab":
+        (staged / "former" / name).write_text(f"former {name}")
     (tmp_path / "a").write_text("of somebody")
     for _ in range(2):
         sweep(tmp_path)
     assert (tmp_path / "a").read_text() == "of somebody"
-    assert (tmp_path / "b").read_text() == "former 1"
-    assert (staged / "0.former").read_text() == "former 0"
+    assert (tmp_path / "b").read_text() == "former b"
+    assert (staged / "former" / "a").read_text() == "former a"
     write_files(tmp_path, {"a": b"x", "b": b"y"}, replaceable=("",))
-    assert (staged / "0.former").read_text() == "former 0"
+    assert (staged / "former" / "a").read_text() == "former a"
 
 
 def test_a_plan_that_is_none_and_a_name_that_leads_elsewhere_are_not_followed(tmp_path: Path) -> None:
@@ -283,9 +284,10 @@ def test_a_plan_that_is_none_and_a_name_that_leads_elsewhere_are_not_followed(tm
     inner = tmp_path / "out"
     for k, plan in enumerate(('{"../precious": "0"}', "[", "[1]", '{"a": 1}', "")):
         staged = inner / f".elbowscrew-{k:016x}.partial"
-        staged.mkdir(parents=True)
+        (staged / "former").mkdir(parents=True)
         (staged / "plan").write_text(plan)
-        (staged / "0.former").write_text("other")
+        for name in ("precious", "a"):
+            (staged / "former" / name).write_text("other")
     sweep(inner, held=True)
     assert precious.read_text() == "mine"
 

@@ -1,4 +1,4 @@
-"""Files of one folder that belong together: all of them are the former ones, or all the new ones.
+"""What belongs together in one folder: all of it is the former state, or all of it the new one.
 
 One file is put in its place in one step. Several are written into a temporary folder with a plan beside them; then the
 former ones step aside into it, and then the new ones take their places: so a new one never stands beside a former one,
@@ -7,17 +7,22 @@ and whoever finds the plan of a run that died puts the former ones back.
 
 from __future__ import annotations
 
+import errno
 import hashlib
 import json
 import os
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from pathlib import Path
+from typing import Final
 
 from elbowscrew.disk.placing import put
 from elbowscrew.disk.syncing import signals_held, sync, sync_tree
-from elbowscrew.disk.temporary import PLAN, held_folder
+from elbowscrew.disk.temporary import PLAN, held_folder, remove
 from elbowscrew.opening import create, open_bytes, sha256_of, write_new
+
+_NEW: Final = "new"
+_FORMER: Final = "former"
 
 
 def write_set(folder: Path, contents: Mapping[str, bytes | Iterable[str]], check: Callable[[Path], None]) -> None:
@@ -29,7 +34,7 @@ def write_set(folder: Path, contents: Mapping[str, bytes | Iterable[str]], check
     contents : mapping of str to bytes, or iterable of str
         By names; all of a file, or its lines without line ends.
     check : callable
-        Told each file that is there; raises if it may not be replaced.
+        Told each file that is or was there; raises if it may not be replaced.
 
     Raises
     ------
@@ -37,51 +42,105 @@ def write_set(folder: Path, contents: Mapping[str, bytes | Iterable[str]], check
         If the disk does not take them, or another run is writing them. What was there is as it was.
     """
     names = tuple(contents)
+
+    def check_all(former: Path) -> None:
+        for path in former.iterdir():
+            check(path)
+
     with held_folder(folder, "/".join(names)) as staged:
-        plan = {name: _write(_new(staged, k), contents[name]) for k, name in enumerate(names)}
+        new = new_in(staged)
+        for name in names:
+            _write(new / name, contents[name])
         if len(names) == 1:
-            sync(_new(staged, 0))
-            put(_new(staged, 0), folder / names[0], check)
-            return
-        with signals_held():
-            try:
-                write_new(staged / PLAN, json.dumps(plan).encode())
-                sync_tree(staged)
-                sync(folder)
-                _move(staged, folder, names, check)
-            except BaseException:
-                with suppress(OSError):  # the next run has the plan
-                    roll_back(staged)
-                raise
+            sync(new / names[0])
+            put(new / names[0], folder / names[0], check)
+        else:
+            move_in(staged, names, check_all)
+
+
+def new_of(staged: Path) -> Path:
+    """Where in a temporary folder that is which `move_in` moves out of it."""
+    return staged / _NEW
+
+
+def new_in(staged: Path) -> Path:
+    """Make `new_of` a temporary folder."""
+    new_of(staged).mkdir()
+    return new_of(staged)
+
+
+def move_in(staged: Path, names: Iterable[str], check: Callable[[Path], None]) -> None:
+    """Let files and folders step aside, and new ones take their places: all of them, or none.
+
+    Parameters
+    ----------
+    staged : Path
+        Temporary folder inside the one they are for; what is new is in `new_in`.
+    names : iterable of str
+        Of what is new, and of what else is to go.
+    check : callable
+        Told the folder of what has stepped aside, so that nobody can add to it; raises if it may not go.
+
+    Raises
+    ------
+    OSError
+        If the disk does not take it. What was there is as it was.
+    """
+    folder, new, former = staged.parent, new_of(staged), staged / _FORMER
+    names = tuple(names)
+    with signals_held():
+        try:
+            former.mkdir()
+            write_new(staged / PLAN, json.dumps({name: _digest(new / name) for name in names}).encode())
+            sync_tree(staged)
+            sync(folder)
+            for name in names:
+                if os.path.lexists(folder / name):
+                    (folder / name).rename(former / name)
+            check(former)
+            sync(former)
+            sync(folder)
+            for name in names:
+                if os.path.lexists(folder / name):
+                    raise FileExistsError(errno.EEXIST, f"somebody has just made {name}")
+                if os.path.lexists(new / name):
+                    (new / name).rename(folder / name)
+            sync(folder)
+            (staged / PLAN).unlink()  # from here on there is nothing to undo
+            sync(staged)
+        except BaseException:
+            with suppress(OSError):  # the next run has the plan
+                roll_back(staged)
+            raise
 
 
 def roll_back(staged: Path) -> bool:
-    """Put former files back as the plan in a temporary folder says; a folder without a plan has none.
+    """Put former files and folders back as the plan in a temporary folder says; one without a plan has none.
 
     Returns
     -------
     bool
-        Whether nothing but what is half made is left in the folder. False where a former file cannot go back, as
-        somebody has put another one in its place.
+        Whether nothing but what is half made is left in the folder. False where what was there cannot go back, as
+        somebody has put something else in its place.
 
     Raises
     ------
     OSError
         If the disk does not take it.
     """
-    plan = _plan_of(staged)
-    for k, (name, digest) in enumerate(plan.items()):
+    plan, new, former = _plan_of(staged), new_of(staged), staged / _FORMER
+    for name, digest in plan.items():
         target = staged.parent / name
-        moved = os.path.lexists(_former(staged, k)) or not os.path.lexists(_new(staged, k))
-        if moved and _digest(target) == digest:
-            target.unlink()
+        moved = os.path.lexists(former / name) or not os.path.lexists(new / name)
+        if moved and digest is not None and _digest(target) == digest:
+            remove(target)
     stranded = False
-    for k, name in enumerate(plan):
-        former, target = _former(staged, k), staged.parent / name
-        if os.path.lexists(former):
+    for name in plan:
+        target = staged.parent / name
+        if os.path.lexists(former / name):
             if not os.path.lexists(target):
-                former.rename(target)
-            elif _digest(target) != _digest(former):
+                (former / name).rename(target)
+            elif _digest(target) != _digest(former / name):
                 stranded = True
     if plan and not stranded:
         sync(staged.parent)
@@ -89,24 +148,7 @@ def roll_back(staged: Path) -> bool:
     return not stranded
 
 
-def _move(staged: Path, folder: Path, names: Sequence[str], check: Callable[[Path], None]) -> None:
-    for k, name in enumerate(names):
-        target = folder / name
-        if os.path.lexists(target):
-            check(target)
-            target.rename(_former(staged, k))
-    sync(staged)
-    sync(folder)
-    for k, name in enumerate(names):
-        if os.path.lexists(folder / name):  # somebody has just put something there
-            check(folder / name)
-        _new(staged, k).replace(folder / name)
-    sync(folder)
-    (staged / PLAN).unlink()  # from here on there is nothing to undo
-    sync(staged)
-
-
-def _plan_of(staged: Path) -> dict[str, str]:
+def _plan_of(staged: Path) -> dict[str, str | None]:
     try:
         with open_bytes(staged / PLAN) as stream:
             plan = json.load(stream)
@@ -117,25 +159,18 @@ def _plan_of(staged: Path) -> dict[str, str]:
 
 
 def _digest(path: Path) -> str | None:
-    """SHA-256 of a file; None if it is not there, or is no regular file."""
-    if path.is_symlink() or not path.is_file():
+    """SHA-256 of a file, or of all files in a folder and their names; None if it is not there, or is anything else."""
+    if path.is_symlink():
+        return None
+    if path.is_dir():
+        inner = sorted(path.iterdir())
+        return hashlib.sha256(repr([(one.name, _digest(one)) for one in inner]).encode("utf-8", "replace")).hexdigest()
+    if not path.is_file():
         return None
     return sha256_of(path)
 
 
-def _write(path: Path, content: bytes | Iterable[str]) -> str:
-    """Write a file and give its SHA-256."""
-    digest = hashlib.sha256()
+def _write(path: Path, content: bytes | Iterable[str]) -> None:
     with create(path) as stream:
         for part in (content,) if isinstance(content, bytes) else (f"{line}\n".encode() for line in content):
-            digest.update(part)
             stream.write(part)
-    return digest.hexdigest()
-
-
-def _new(staged: Path, number: int) -> Path:
-    return staged / f"{number}.new"
-
-
-def _former(staged: Path, number: int) -> Path:
-    return staged / f"{number}.former"

@@ -1,13 +1,19 @@
-"""A folder of files that appears whole, in the place of a former one, or not at all."""
+"""A folder of files that appears whole, in the place of a former one, or not at all.
+
+A folder that cannot change places, as where something is mounted, stays, and its content is replaced.
+"""
 
 from __future__ import annotations
 
+import errno
 import os
+import shutil
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
+from typing import Final
 
-from elbowscrew.disk.file_sets import roll_back
+from elbowscrew.disk.file_sets import move_in, new_in, new_of, roll_back
 from elbowscrew.disk.placing import put, recover
 from elbowscrew.disk.syncing import sync, sync_tree
 from elbowscrew.disk.temporary import (
@@ -19,6 +25,10 @@ from elbowscrew.disk.temporary import (
     remove,
     replaced_of,
 )
+
+_REFUSED: Final = (errno.EACCES, errno.EPERM, errno.EROFS)
+_STAYS: Final = (errno.EBUSY, errno.EXDEV)
+"""What the system says of a folder where something is mounted."""
 
 
 @contextmanager
@@ -42,16 +52,51 @@ def new_folder(destination: Path, check: Callable[[Path], None], finish: Callabl
     made = make_parents(destination)
     try:
         recover(destination)
-        with held_folder(destination.parent, destination.name) as staged:
+        with _room_for(destination) as (staged, inside):
             yield staged
             finish(staged)
             if os.path.lexists(destination):  # somebody may have put something there meanwhile
                 check(destination)
+            if inside:
+                _fill(destination, staged.parent, check)
+                return
             sync_tree(staged)
-            put(staged, destination, check)
+            try:
+                put(staged, destination, check)
+            except OSError as error:
+                if error.errno not in _STAYS:
+                    raise
+                with held_folder(destination, destination.name) as inner:
+                    shutil.copytree(staged, new_in(inner), dirs_exist_ok=True)
+                    _fill(destination, inner, check)
         made = []
     finally:
         remove_empty(made)
+
+
+@contextmanager
+def _room_for(destination: Path) -> Iterator[tuple[Path, bool]]:
+    """Give a temporary folder beside a destination, or inside it if it is there and the one above takes nothing."""
+    with ExitStack() as held:
+        try:
+            staged, inside = held.enter_context(held_folder(destination.parent, destination.name)), False
+        except OSError as error:
+            if error.errno not in _REFUSED or not destination.is_dir():
+                raise
+            staged, inside = new_in(held.enter_context(held_folder(destination, destination.name))), True
+        yield staged, inside
+
+
+def _fill(destination: Path, staged: Path, check: Callable[[Path], None]) -> None:
+    """Replace what is in a folder that cannot be replaced itself."""
+    new = {path.name for path in new_of(staged).iterdir()}
+    there = {path.name for path in destination.iterdir() if not is_temporary(path.name)}
+    move_in(staged, sorted(new | there), check)
+
+
+def straight(path: Path) -> Path:
+    """Give a path without ``..``: links are followed as the system does, and no folder is made to leave it again."""
+    return path.resolve() if ".." in path.parts else path
 
 
 def make_parents(destination: Path) -> list[Path]:

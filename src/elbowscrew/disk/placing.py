@@ -26,7 +26,7 @@ def put(staged: Path, destination: Path, check: Callable[[Path], None]) -> None:
     Parameters
     ----------
     staged, destination : Path
-        Two files, or two folders, in the same folder.
+        Two files, or two folders, on the same file system.
     check : callable
         Told the former state when it has left its place, so that nobody can add to it; raises if it may not go.
 

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from elbowscrew.disk.file_sets import write_set
-from elbowscrew.disk.folders import make_parents, new_folder, remove_empty, sweep
+from elbowscrew.disk.folders import make_parents, new_folder, remove_empty, straight, sweep
 from elbowscrew.disk.placing import recover
 from elbowscrew.errors import OutputError
 from elbowscrew.opening import open_bytes
@@ -70,14 +70,16 @@ def settle(folder: Path) -> None:
 def check_result_folder(target: Path, *, force: bool, kind: ResultKind = ANALYSIS) -> None:
     """Raise `OutputError` if the result may not be put there; what a killed run has left is undone first."""
     try:
+        if target.is_dir():
+            if target.resolve() == Path.cwd():
+                msg = f"{target}: is the current folder; give --output a folder of its own"
+                raise OutputError(msg)
+            _check_names(target, target, kind)  # before a folder of somebody else's is searched
         settle(target)
         if not os.path.lexists(target):
             return
         if not target.is_dir():
             msg = f"{target}: exists and is not a folder; give another --output"
-            raise OutputError(msg)
-        if target.resolve() == Path.cwd():
-            msg = f"{target}: is the current folder; give --output a folder of its own"
             raise OutputError(msg)
         _check_content(target, target, force, kind)
     except OSError as error:
@@ -86,13 +88,7 @@ def check_result_folder(target: Path, *, force: bool, kind: ResultKind = ANALYSI
 
 def _check_content(target: Path, folder: Path, force: bool, kind: ResultKind) -> None:
     """Raise `OutputError` if what is in the folder that is or was the target may not be replaced."""
-    known, empty = set(kind.files), True
-    for name in files_in(folder):
-        empty = False
-        if name not in known:
-            msg = f"{target}: the folder holds {name!r}, which is not ours; give another --output"
-            raise OutputError(msg)
-    if empty:
+    if not _check_names(target, folder, kind):
         return
     try:
         ours = is_or_was_summary(folder / kind.summary)
@@ -108,6 +104,17 @@ def _check_content(target: Path, folder: Path, force: bool, kind: ResultKind) ->
     if not force:
         msg = f"{target}: there is a result already; give --force to replace it, or another --output"
         raise OutputError(msg)
+
+
+def _check_names(target: Path, folder: Path, kind: ResultKind) -> int:
+    """Count what is in a result folder; raise `OutputError` if anything has another name."""
+    known, count = set(kind.files), 0
+    for name in files_in(folder):
+        count += 1
+        if name not in known:
+            msg = f"{target}: the folder holds {name!r}, which is not ours; give another --output"
+            raise OutputError(msg)
+    return count
 
 
 def write_files(
@@ -130,6 +137,7 @@ def write_files(
     OutputError
         If a file exists that may not be replaced, or the disk does not take them. What was there is as it was.
     """
+    folder = straight(folder)
     first = folder / next(iter(contents))
     made: list[Path] = []
     try:

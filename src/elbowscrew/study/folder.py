@@ -104,7 +104,8 @@ def _check_folder(folder: Path) -> None:
         raise OutputError(msg)
     if (folder / MARK).exists():
         return
-    stranger = next((name for name in sorted(path.name for path in folder.iterdir()) if not is_stray(name)), None)
+    with os.scandir(folder) as entries:  # it may have a million
+        stranger = next((one.name for one in entries if not is_stray(one.name)), None)
     if stranger is not None:
         msg = f"{folder}: the folder holds {stranger!r} and is no output of a batch; give another --output"
         raise OutputError(msg)

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from elbowscrew.configuring import settings_from
+from elbowscrew.disk.folders import straight
 from elbowscrew.errors import OutputError, ResultError, UsageError
 from elbowscrew.model import Landmarks
 from elbowscrew.model.summary_types import Summary
@@ -133,6 +134,7 @@ def run_study(
     OutputError
         If the output folder is held by another batch, or the disk does not take the results.
     """
+    folder = straight(folder)
     common = settings_from(config, options)
     check_exports(common.export)
     tasks = _tasks(trials, folder, config, dict(options or {}), landmarks)
