@@ -44,7 +44,7 @@ def in_blocks(
         A view of contiguous rows, shape (width, N).
     """
     arrays = [np.asarray(operand, dtype=np.float64) for operand in operands]
-    shape = np.broadcast_shapes(*(array.shape[:-1] for array in arrays))
+    shape = _common_shape({array.shape[:-1] for array in arrays})
     count = math.prod(shape)
     readers = [_reader(array, shape, count, contiguous=contiguous) for array in arrays]
     result = np.empty((width, count))
@@ -57,6 +57,12 @@ def in_blocks(
     if len(shape) == 1:
         return result.T
     return result.reshape(width, *shape).transpose(*range(1, len(shape) + 1), 0)
+
+
+def _common_shape(shapes: set[tuple[int, ...]]) -> tuple[int, ...]:
+    """`np.broadcast_shapes`, which takes as long as a short series, only where shapes differ."""
+    differing = shapes - {()}
+    return differing.pop() if len(differing) == 1 else np.broadcast_shapes(*differing)
 
 
 def _reader(array: Float, shape: tuple[int, ...], count: int, *, contiguous: bool) -> Callable[[slice], Float]:

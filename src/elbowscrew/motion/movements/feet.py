@@ -135,11 +135,11 @@ def unsmoothed(kappa: float, cutoff: float) -> tuple[float, float]:
     0.7
     """
     told = kappa * cutoff
-    k = int(np.clip(np.searchsorted(_TOLD, told), 1, _TOLD.size - 1))
     if told >= _TOLD[-1]:
         return kappa, 1.0
     if told <= _TOLD[0]:
         return kappa * float(_TRUE[0] / _TOLD[0]), float(_TRUE[0] / _TOLD[0])
+    k = min(int(_TOLD.searchsorted(told)), _TOLD.size - 1)
     gain = float((_TRUE[k] - _TRUE[k - 1]) / (_TOLD[k] - _TOLD[k - 1]))
     return (float(_TRUE[k - 1]) + gain * (told - float(_TOLD[k - 1]))) / cutoff, gain
 

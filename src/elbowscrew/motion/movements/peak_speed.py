@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -12,6 +13,7 @@ from elbowscrew.geometry._small_angle import length
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import QualityWarning, Repetitions
 from elbowscrew.motion.movements.boundaries import Cycles
+from elbowscrew.motion.movements.phases import nearest_rows
 
 # Widths of the fits, frames to either side: from five poses to most of a stroke.
 _LEAST_HALF: Final = 2
@@ -89,16 +91,23 @@ def _fits(rotation: Float, first: int, last: int, half: int) -> tuple[Float, Flo
     low, high = max(first - half, 0), min(last + half + 1, len(rotation))
     if high - low < 2 * half + 1:
         return None
-    offset = np.arange(-half, half + 1.0)
-    cubic = np.linalg.pinv((offset / half)[:, None] ** np.arange(4))[1] / half
+    straight, cubic, gain = _weights(half)
     centers = slice(low + half - first, high - half - first)
     speeds = np.full((2, last - first + 1), np.nan)
-    for row, weights in zip(speeds, (offset / (offset @ offset), cubic), strict=True):
+    for row, weights in zip(speeds, (straight, cubic), strict=True):
         derivative = [np.convolve(one, weights[::-1], mode="valid") for one in rotation[low:high].T]
         row[centers] = length(np.stack(derivative, axis=1))
     if not np.isfinite(speeds).any():
         return None
-    return speeds[0], speeds[1], float(length(cubic))
+    return speeds[0], speeds[1], gain
+
+
+@cache
+def _weights(half: int) -> tuple[Float, Float, float]:
+    """Weights of neighbors in the slope of a straight and of a cubic fit, and the noise of the latter for noise 1."""
+    offset = np.arange(-half, half + 1.0)
+    cubic = np.linalg.pinv((offset / half)[:, None] ** np.arange(4))[1] / half
+    return offset / (offset @ offset), cubic, float(length(cubic))
 
 
 def summed_rotation(quat: Float) -> Float:
@@ -132,9 +141,9 @@ def speed_doubts(quat: Float, elapsed: Float, cycles: Cycles, repetitions: Repet
     """
     time = elapsed - elapsed[0]
     off: list[tuple[float, float, PeakSpeed]] = []
-    for k in evenly_thinned(np.arange(cycles.start_s.size), _MOST_CYCLES).tolist():
-        times = (cycles.start_s[k], cycles.inversion_s[k], cycles.end_s[k])
-        start, top, end = (int(np.argmin(np.abs(time - one))) for one in times)
+    chosen = evenly_thinned(np.arange(cycles.start_s.size), _MOST_CYCLES)
+    times = np.stack([cycles.start_s, cycles.inversion_s, cycles.end_s], axis=1)[chosen]
+    for k, (start, top, end) in zip(chosen.tolist(), nearest_rows(elapsed, times).tolist(), strict=True):
         ways = (repetitions.outward_speed[k], repetitions.back_speed[k])
         before, after = ways if cycles.sense[k] > 0.0 else ways[::-1]  # speeds are empty where there is no sense
         for first, last, told in ((start, top, before), (top, end, after)):

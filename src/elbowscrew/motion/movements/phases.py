@@ -27,7 +27,7 @@ def movement_phases(onset_s: Float, offset_s: Float, elapsed: Float) -> Movement
 
 
 def nearest_rows(elapsed: Float, seconds: Float) -> NDArray[np.int64]:
-    """Rows (K,) nearest to times (K,) from the first frame on, the earlier of two."""
+    """Rows (K, ...) nearest to times (K, ...) from the first frame on, the earlier of two."""
     time = elapsed - elapsed[0]
     after = np.searchsorted(time, seconds).clip(0, time.size - 1)
     before = (after - 1).clip(0)
