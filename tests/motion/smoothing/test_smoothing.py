@@ -55,6 +55,15 @@ def test_frames_beside_a_gap_keep_their_noise() -> None:
         assert screw.angle_sd[beside] == pytest.approx(np.sqrt(2.0 / 1.08) * screw.angle_sd[away], rel=0.03)
 
 
+@pytest.mark.parametrize(
+    ("given", "severity"), [({}, "note"), ({"reference": 20}, "warning"), ({"keyframes": (10, 100, 200)}, "warning")]
+)
+def test_frames_that_are_given_beside_another_rate_are_told_to_be_of_that(given: dict[str, Any], severity: str) -> None:
+    found = {warning.code: warning for warning in analyzed(resample_hz=50, **given).warnings}
+    assert found["resampled"].severity == severity
+    assert all(f"--{name}" in found["resampled"].message for name in given)
+
+
 def test_a_resampled_trial_counts_its_frames_anew() -> None:
     full, half = analyzed(lowpass_hz=6.0), analyzed(lowpass_hz=6.0, resample_hz=50)
     assert half.screw.frame.tolist() == list(range(225))

@@ -148,7 +148,12 @@ def measure(recording: Recording, settings: Settings) -> Measurement:
     if wanted_hz is not None:
         recording, proximal, distal = _resampled(recording, proximal, distal, elapsed, broken_rows, wanted_hz)
         folding = smoothing.cutoff_hz is None or smoothing.cutoff_hz > 0.5 * wanted_hz
-        more = resampling_warnings(own_hz, wanted_hz)
+        frames = {
+            "--reference": settings.reference,
+            "--keyframes": settings.keyframes,
+            "--inversion": settings.inversion,
+        }
+        more = resampling_warnings(own_hz, wanted_hz, [name for name, given in frames.items() if given is not None])
         warnings += tuple(warning for warning in more if folding or warning.code != "aliasing")
         elapsed, broken_rows = elapsed_time(recording), none_broken
         smoothing = smoothing._replace(elapsed=elapsed, rate_hz=recording.rate_hz, broken_rows=broken_rows)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -195,10 +196,15 @@ def _optional_linear(values: Float | None, between: _Neighbors) -> Float | None:
     return None if values is None else _linear(values, between)
 
 
-def resampling_warnings(old_hz: float, new_hz: float) -> tuple[QualityWarning, ...]:
-    """Give the note of a change of rate, and the warning of what folds into a lower one."""
+def resampling_warnings(old_hz: float, new_hz: float, given: Sequence[str] = ()) -> tuple[QualityWarning, ...]:
+    """Give the note of a change of rate, and the warning of what folds into a lower one.
+
+    It is a warning where options (`given`) name frames: those may be meant as the file counts them.
+    """
     message = f"resampled from {old_hz:g} to {new_hz:g} frames per second: frame numbers count from 0 at the first time"
-    note = QualityWarning(code="resampled", message=message, severity="note")
+    if given:
+        message += f", also those of {' and '.join(given)}: they are not the file's"
+    note = QualityWarning(code="resampled", message=message, severity="warning" if given else "note")
     if new_hz >= old_hz:
         return (note,)
     message = (
