@@ -12,7 +12,7 @@ import pytest
 
 from elbowscrew.cli import main
 from elbowscrew.errors import OutputError
-from elbowscrew.opening import create, open_bytes, open_own, open_text, read_text
+from elbowscrew.opening import create, open_bytes, open_own, open_text, read_text, read_toml
 from elbowscrew.results.staging import write_files
 from elbowscrew.study.folder import MARK, at_work, batch_folder
 
@@ -150,3 +150,14 @@ def test_a_trial_of_a_batch_goes_into_no_other_folder(
     assert main(common) == 7
     assert "is a link" in (out / "failures.csv").read_text()
     assert {path.name: path.read_bytes() for path in other.iterdir()} == before
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [("a = " + "9" * 5000, "a whole number of thousands of digits"), ("a = " + "[" * 5000, "too many")],
+)
+def test_toml_that_nobody_means_is_told_in_words_for_its_author(tmp_path: Path, text: str, says: str) -> None:
+    (tmp_path / "a.toml").write_text(text)
+    with pytest.raises(ValueError, match=says) as told:
+        read_toml(tmp_path / "a.toml")
+    assert "sys." not in str(told.value)

@@ -94,6 +94,11 @@ def read_toml(path: Path) -> dict[str, Any]:
     except RecursionError as error:
         msg = "tables or lists inside each other, too many of them"
         raise ValueError(msg) from error
+    except tomllib.TOMLDecodeError:
+        raise
+    except ValueError as error:  # Python's own, which speaks to programmers
+        msg = "a whole number of thousands of digits"
+        raise ValueError(msg) from error
 
 
 def create(path: Path) -> io.BufferedWriter:
