@@ -33,8 +33,10 @@ if TYPE_CHECKING:
     from elbowscrew.simulate import SimulatedTrial
 
 
-def analyze_file(path: Path, settings: Settings, *, landmarks: Landmarks | None = None) -> Analysis:
-    """Read one recording with the markers that are asked for, and analyze it; every error names the file.
+def analyze_file(
+    path: Path, settings: Settings, *, distal_path: Path | None = None, landmarks: Landmarks | None = None
+) -> Analysis:
+    """Read one recording, of one file or of a file a body, with its markers, and analyze it; errors name the file.
 
     Raises
     ------
@@ -43,7 +45,12 @@ def analyze_file(path: Path, settings: Settings, *, landmarks: Landmarks | None 
     """
     markers = (*settings.markers, *(() if landmarks is None else landmarks.markers))
     recording = read_recording(
-        path, units=settings.units, rotation=settings.rotation, rate_hz=settings.rate_hz, markers=markers
+        path,
+        distal_path=distal_path,
+        units=settings.units,
+        rotation=settings.rotation,
+        rate_hz=settings.rate_hz,
+        markers=markers,
     )
     try:
         return analyze(recording, settings, landmarks=landmarks)

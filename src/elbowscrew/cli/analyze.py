@@ -14,8 +14,14 @@ from elbowscrew.cli.analysis_options import OUTPUT, settings_options
 @settings_options()
 def analyze(
     trial: Annotated[
-        Path, typer.Argument(metavar="TRIAL", help="An OptiTrack export, plain table, TRC or C3D.", show_default=False)
+        Path,
+        typer.Argument(
+            metavar="TRIAL",
+            help="A recording: Motive, plain table, TRC, C3D, Qualisys 6D or 4 x 4.",
+            show_default=False,
+        ),
     ],
+    distal_path: options.DistalFile = None,
     output: Annotated[
         Path | None,
         typer.Option(
@@ -60,7 +66,12 @@ def analyze(
     target = output if output is not None else Path(f"{trial.stem}_elbowscrew")
     check_result_folder(target, force=force)  # before the work, not after it
     check_exports(settings.export)
-    analysis = analyze_file(trial, settings, landmarks=None if landmarks is None else read_landmarks(landmarks))
+    analysis = analyze_file(
+        trial,
+        settings,
+        distal_path=distal_path,
+        landmarks=None if landmarks is None else read_landmarks(landmarks),
+    )
     summary = write_result(analysis, target, force=force, report=page)
     render.warnings(summary["warnings"])
     if json_output:

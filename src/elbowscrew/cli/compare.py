@@ -15,8 +15,8 @@ _MODELS = "Model"
 
 
 @settings_options(
-    "joint", "proximal", "distal", "proximal-markers", "distal-markers", "units", "rotation", "lowpass", "inversion",
-    "phases", "tolerance", "radius", "figure-format",
+    "joint", "proximal", "distal", "proximal-markers", "distal-markers", "units", "rotation", "rate", "lowpass",
+    "inversion", "phases", "tolerance", "radius", "figure-format",
     defaults={"lowpass": "by residual analysis, 6 at most", "tolerance": "2mm"},
 )  # fmt: skip
 def compare(

@@ -14,8 +14,14 @@ from elbowscrew.cli.analysis_options import settings_options
 @settings_options("units", "rotation", "rate", "frozen", "max-turn", "max-speed")
 def info(
     trial: Annotated[
-        Path, typer.Argument(metavar="TRIAL", help="An OptiTrack export, plain table, TRC or C3D.", show_default=False)
+        Path,
+        typer.Argument(
+            metavar="TRIAL",
+            help="A recording: Motive, plain table, TRC, C3D, Qualisys 6D or 4 x 4.",
+            show_default=False,
+        ),
     ],
+    distal_path: options.DistalFile = None,
     markers: Annotated[
         list[str] | None, typer.Option(metavar="NAMES", help="Markers to describe: names or patterns, with commas.")
     ] = None,
@@ -35,7 +41,12 @@ def info(
 
     settings = settings_from(None, given)
     wanted = options.parts("markers", markers) or ()
-    stated: dict[str, Any] = {"units": settings.units, "rotation": settings.rotation, "rate_hz": settings.rate_hz}
+    stated: dict[str, Any] = {
+        "distal_path": distal_path,
+        "units": settings.units,
+        "rotation": settings.rotation,
+        "rate_hz": settings.rate_hz,
+    }
     try:
         recording = read_recording(trial, **stated, markers=wanted)
     except NoBodiesError:

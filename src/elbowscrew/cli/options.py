@@ -19,6 +19,16 @@ LandmarksFile = Annotated[
 ]
 
 
+DistalFile = Annotated[
+    Path | None,
+    typer.Argument(
+        metavar="[DISTAL]",
+        help="The distal body's file, where TRIAL holds the proximal body alone.",
+        show_default=False,
+    ),
+]
+
+
 def parts(option: str, given: Sequence[str] | None, *, once: bool = True) -> tuple[str, ...] | None:
     """Split a list at its commas; an option may be given more than once, and all it is given counts.
 

@@ -249,6 +249,8 @@ class Source:
     length_unit: str = ""
     rotation_type: str = ""
     metadata: Mapping[str, str] = field(default_factory=dict)
+    distal: Source | None = None
+    """The distal body's file, where it has one of its own."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -271,6 +273,8 @@ class Recording(ArrayRecord):
         The file it was read from.
     warnings : tuple of QualityWarning
         What was doubtful in the file.
+    ordered : bool
+        Whether the first body is said to be the proximal one and the second the distal one.
     """
 
     bodies: tuple[RigidBody, ...]
@@ -280,6 +284,7 @@ class Recording(ArrayRecord):
     markers: tuple[Marker, ...] = ()
     source: Source | None = None
     warnings: tuple[QualityWarning, ...] = ()
+    ordered: bool = False
 
     @classmethod
     def from_bodies(cls, bodies: Sequence[RigidBody], *, rate_hz: float) -> Recording:

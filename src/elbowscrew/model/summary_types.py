@@ -16,6 +16,13 @@ from elbowscrew.model.anatomy import LandmarkFrame, Side
 from elbowscrew.model.joint_summary_types import FitName, JointTypeSummary, LineSummary, NumbersOfType, Vector
 
 
+class DistalFileSummary(TypedDict):
+    """The distal body's file."""
+
+    name: str
+    sha256: str
+
+
 class SourceSummary(TypedDict):
     """Where the recording came from; all None where it is not from a file."""
 
@@ -27,6 +34,8 @@ class SourceSummary(TypedDict):
     length_unit: str | None
     rotation: str | None
     """Quaternion, or the order of the Euler angles; empty where the file has no rotations."""
+    distal_file: DistalFileSummary | None
+    """None where both bodies stand in one file."""
 
 
 class WarningSummary(TypedDict):

@@ -44,6 +44,7 @@ class _Shape:
     exact: bool
     group: int
     nan_word: bool
+    blank_rows: bool
 
     def allows(self, count: int) -> bool:
         """Whether a line may have so many cells."""
@@ -61,6 +62,7 @@ def read_blocks(
     exact: bool = False,
     group: int = 0,
     nan_word: bool = False,
+    blank_rows: bool = False,
 ) -> Iterator[NDArray[np.float64]]:
     """Read some columns of the lines from `first_line` on, many lines at a time.
 
@@ -79,11 +81,14 @@ def read_blocks(
         If not 0, any line may have more, in groups of so many cells.
     nan_word : bool
         Whether the word "nan" is a blank cell.
+    blank_rows : bool
+        Whether lines without any content count as rows of blanks, as they must where rows are the clock; empty lines at
+        the end do not.
 
     Yields
     ------
     ndarray, shape (rows, len(columns))
-        Lines without any content are left out.
+        Lines without any content are left out, unless they count.
 
     Raises
     ------
@@ -91,8 +96,13 @@ def read_blocks(
         For a cell that is neither blank nor a number, or a line that has been cut; with line and column.
     """
     number = first_line + 1
-    shape = _Shape(width=width, exact=exact, group=group, nan_word=nan_word)
-    for block in source.blocks(first_line):
+    shape = _Shape(width=width, exact=exact, group=group, nan_word=nan_word, blank_rows=blank_rows)
+    held: list[str] = []
+    for lines in source.blocks(first_line):
+        block = held + lines
+        held = []
+        while blank_rows and block and not block[-1].strip():
+            held.append(block.pop())
         shape, values = _parse_block(source, block, number, columns, shape)
         yield values
         number += len(block)
@@ -130,6 +140,8 @@ def _parse_block(
             msg = f"{location}: not a line of a CSV file: {error}; export the take again"
             raise RecordingError(msg) from error
         if not any(cell.strip() for cell in cells):
+            if shape.blank_rows:
+                rows.append([float("nan")] * len(columns))
             continue
         while len(cells) > shape.width and (shape.exact or shape.group) and not cells[-1].strip():
             cells.pop()

@@ -39,12 +39,15 @@ class ReadOptions:
         Frames a second of a file that has no times.
     markers : tuple of str
         Names or patterns of the markers wanted; the others are not read.
+    alone : bool
+        Whether the file is all of the recording; else the other body of the joint stands in another.
     """
 
     units: str | None = None
     rotation: str | None = None
     rate_hz: float | None = None
     markers: tuple[str, ...] = ()
+    alone: bool = True
 
     def wants(self, marker: str) -> bool:
         """Whether a marker is among those wanted."""

@@ -12,9 +12,10 @@ from typing import Final, Generic, TypeVar
 from elbowscrew.errors import RecordingError, SettingError, UsageError
 from elbowscrew.model import Recording
 from elbowscrew.quantities import METERS
-from elbowscrew.reading import c3d, motive_columns, plain_table, qualisys, row_tagged, trc
+from elbowscrew.reading import c3d, matrices, motive_columns, plain_table, qualisys, row_tagged, trc
 from elbowscrew.reading.cells import parse_number
 from elbowscrew.reading.clock import is_rate
+from elbowscrew.reading.joining import joined
 from elbowscrew.reading.options import ReadOptions
 from elbowscrew.reading.source import TextSource, first_bytes, open_source
 
@@ -82,6 +83,10 @@ FORMATS: Final[tuple[Format[list[str], TextSource], ...]] = (
         read=row_tagged.read,
         accepts=frozenset(),
     ),
+    # No endings: in a folder, two of its files may be one trial.
+    Format(
+        name="4 x 4 matrices", endings=(), recognizes=matrices.recognizes, read=matrices.read, accepts=_UNITS | _RATE
+    ),
 )
 """A new text format is one module with `recognizes` and `read` and one entry here; the first that fits reads it."""
 
@@ -98,6 +103,7 @@ ENDINGS: Final = tuple(dict.fromkeys(chain.from_iterable(_ENDINGS)))
 def read_recording(
     path: str | os.PathLike[str],
     *,
+    distal_path: str | os.PathLike[str] | None = None,
     units: str | None = None,
     rotation: str | None = None,
     rate_hz: float | None = None,
@@ -109,13 +115,15 @@ def read_recording(
     ----------
     path : path-like
         An OptiTrack export (Motive's column layout 1.1 to 1.25, the row-tagged layout 1.0 and 1.1), a plain table, a
-        TRC file, a 6D export of Qualisys, or a C3D file (with the extra ``[c3d]``).
+        TRC file, a 6D export of Qualisys, a table of 4 x 4 matrices, or a C3D file (with the extra ``[c3d]``).
+    distal_path : path-like, optional
+        The file of the distal body, where each body has a file of its own: `path` is that of the proximal one.
     units : {"m", "cm", "mm"}, optional
         Unit of length, for a file that states none. A file's own statement is not overruled.
     rotation : str, optional
         "quaternion" or an Euler order such as "XYZ", for a file that states none.
     rate_hz : float, optional
-        Frames a second, for a plain table that has no times.
+        Frames a second, for a plain table that has no times, and for matrices.
     markers : str or sequence of str, optional
         Names of markers to read, or patterns such as "Arm*"; none by default.
 
@@ -127,7 +135,7 @@ def read_recording(
     Raises
     ------
     RecordingError
-        If the file cannot be read safely; the message says where and why.
+        If a file cannot be read safely, or two do not fit together; the message says where and why.
     SettingError
         If the file lacks a statement that `units`, `rotation` or `rate_hz` must supply, or they contradict it, or its
         format knows no such thing.
@@ -149,8 +157,12 @@ def read_recording(
         msg = f"rate_hz: expected a frame rate in hertz, found {rate_hz!r}"
         raise UsageError(msg)
     patterns = (markers,) if isinstance(markers, str) else tuple(markers)
-    options = ReadOptions(units=units, rotation=rotation, rate_hz=rate_hz, markers=patterns)
-    file = Path(path)
+    options = ReadOptions(units=units, rotation=rotation, rate_hz=rate_hz, markers=patterns, alone=distal_path is None)
+    proximal = _read(Path(path), options)
+    return proximal if distal_path is None else joined(proximal, _read(Path(distal_path), options))
+
+
+def _read(file: Path, options: ReadOptions) -> Recording:
     head = first_bytes(file, _HEAD_BYTES)
     for binary in BINARY_FORMATS:
         if binary.recognizes(head):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import re
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -17,6 +18,8 @@ _HEAD_BYTES: Final = 65536
 _MAX_LINE: Final = 1 << 24
 _BLOCK_CHARACTERS: Final = 1 << 20
 _LIMIT_LOCK: Final = threading.RLock()
+# Only a line of numbers may have its cells separated by blanks.
+_NUMBERS: Final = re.compile(rb"(?:[-+.\deE]+|nan)(?: (?:[-+.\deE]+|nan))+", re.IGNORECASE)
 
 # Signatures of files that are taken for a CSV export by mistake.
 _NOT_TEXT: Final = {
@@ -39,7 +42,7 @@ class TextSource:
     ends_with_newline : bool
         False hints that the file may have been cut.
     delimiter : str
-        Comma, semicolon or tab.
+        Comma, semicolon or tab; a blank between numbers.
     """
 
     path: Path
@@ -198,4 +201,5 @@ def _delimiter_of(head: bytes) -> str:
         counts = {mark: line.count(mark.encode()) for mark in ("\t", ",", ";")}
         if any(counts.values()):
             return max(counts, key=lambda mark: counts[mark])
-    return ","
+    first = next((line.strip() for line in lines if line.strip()), b"")
+    return " " if _NUMBERS.fullmatch(first) else ","

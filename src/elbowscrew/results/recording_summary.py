@@ -45,14 +45,25 @@ def source_summary(recording: Recording) -> SourceSummary:
     """Where the recording came from."""
     source = recording.source
     if source is None:
-        return {"name": None, "sha256": None, "layout": None, "take": None, "length_unit": None, "rotation": None}
+        return {
+            "name": None,
+            "sha256": None,
+            "layout": None,
+            "take": None,
+            "length_unit": None,
+            "rotation": None,
+            "distal_file": None,
+        }
     return {
-        "name": _printable(source.path.replace("\\", "/").rsplit("/", 1)[-1]),
+        "name": _file_name(source.path),
         "sha256": source.sha256,
         "layout": source.layout,
         "take": source.take_name,
         "length_unit": source.length_unit,
         "rotation": source.rotation_type,
+        "distal_file": None
+        if source.distal is None
+        else {"name": _file_name(source.distal.path), "sha256": source.distal.sha256},
     }
 
 
@@ -140,6 +151,6 @@ def warnings_summary(warnings: Iterable[QualityWarning]) -> list[WarningSummary]
     ]
 
 
-def _printable(text: str) -> str:
+def _file_name(path: str) -> str:
     """File names may hold bytes that are no text; JSON may not."""
-    return text.encode("utf-8", "replace").decode("utf-8")
+    return path.replace("\\", "/").rsplit("/", 1)[-1].encode("utf-8", "replace").decode("utf-8")

@@ -22,7 +22,7 @@ from elbowscrew.study_columns import STUDY_COLUMNS, study_header
 _HEAD_BYTES: Final = 65536
 _MOST_FAULTS: Final = 5
 _SETTINGS: Final = frozenset(option_name(name) for name in Settings.model_fields)
-_OURS: Final = frozenset({"path", "name", "landmarks"})
+_OURS: Final = frozenset({"path", "path-distal", "name", "landmarks"})
 _BLANKS: Final = re.compile(r"[\s_]+")
 
 
@@ -64,7 +64,7 @@ def read_manifest(path: Path) -> list[Trial]:
             faults.append(f"{path}:{line}: expected {len(header)} cells as in the header, found {len(cells)}")
             continue
         values = dict(zip(keys, cells, strict=True))
-        given = values["path"].replace("\\", "/") if os.name == "nt" else values["path"]
+        given, distal = _slashes(values["path"]), _slashes(values.get("path-distal", ""))
         if not given:
             faults.append(f"{path}:{line}: column 'path': the cell is empty; expected the path of a recording")
             continue
@@ -91,7 +91,8 @@ def read_manifest(path: Path) -> list[Trial]:
         marks = values.get("landmarks", "")
         found.append(
             Trial(
-                path=Path(os.path.abspath(path.parent / given)),  # noqa: PTH100 - keeps links
+                path=_absolute(path, given),
+                distal_path=_absolute(path, distal) if distal else None,
                 label=Path(given).as_posix(),
                 columns={
                     column: text
@@ -112,6 +113,14 @@ def read_manifest(path: Path) -> list[Trial]:
         msg = f"{path}: the manifest has no rows; expected one row a trial"
         raise UsageError(msg)
     return found
+
+
+def _slashes(text: str) -> str:
+    return text.replace("\\", "/") if os.name == "nt" else text
+
+
+def _absolute(manifest: Path, given: str) -> Path:
+    return Path(os.path.abspath(manifest.parent / given))  # noqa: PTH100 - keeps links
 
 
 def _read(path: Path) -> tuple[list[str], list[tuple[int, list[str]]], str]:

@@ -49,9 +49,15 @@ def _is_of(task: TrialTask, summary: Summary) -> bool:
             and summary["settings"] == _settings(task, summary)
             and summary["landmarks"] == landmarks_summary(task.landmarks)
             and summary["source"]["sha256"] == sha256_of(task.path)
+            and _distal_digest(summary) == (None if task.distal_path is None else sha256_of(task.distal_path))
         )
     except OSError:
         return False
+
+
+def _distal_digest(summary: Summary) -> str | None:
+    file = summary["source"]["distal_file"]
+    return None if file is None else file["sha256"]
 
 
 def _settings(task: TrialTask, summary: Summary) -> dict[str, Any]:

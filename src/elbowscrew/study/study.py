@@ -232,6 +232,7 @@ def _tasks(
         tasks.append(
             TrialTask(
                 path=trial.path,
+                distal_path=trial.distal_path,
                 label=trial.label,
                 folder=out / name,
                 settings=settings,

@@ -29,8 +29,8 @@ class TrialTask:
 
     Attributes
     ----------
-    path : Path
-        Absolute.
+    path, distal_path : Path
+        Absolute; the latter where each body has a file of its own.
     label : str
         What the trial is called in messages.
     folder : Path
@@ -43,6 +43,7 @@ class TrialTask:
 
     path: Path
     label: str
+    distal_path: Path | None = None
     folder: Path
     settings: Settings
     landmarks: Landmarks | None
@@ -76,7 +77,9 @@ def analyze_trial(task: TrialTask) -> Failure | None:
             if task.folder.is_symlink():
                 msg = f"{task.folder}: is a link; a batch writes into its own folder alone: remove it"
                 raise OutputError(msg)
-            save_analysis(analyze_file(task.path, task.settings, landmarks=task.landmarks), task.folder, force=True)
+            analysis = analyze_file(task.path, task.settings, distal_path=task.distal_path, landmarks=task.landmarks)
+            save_analysis(analysis, task.folder, force=True)
+            del analysis
             collect_garbage()
     except ElbowscrewError as error:
         # What the disk does not take of one trial it will not take of the next; a folder of the user's is one trial's.

@@ -22,6 +22,8 @@ class Trial:
         What a manifest says of it, for ``summary.csv``.
     settings : mapping
         What a manifest sets for it.
+    distal_path : Path, optional
+        The distal body's file, where it has one of its own; absolute.
     landmarks : Path, optional
         The manifest's.
     name : str
@@ -36,6 +38,7 @@ class Trial:
     label: str
     columns: Mapping[str, str] = field(default_factory=dict)
     settings: Mapping[str, Any] = field(default_factory=dict)
+    distal_path: Path | None = None
     landmarks: Path | None = None
     name: str = ""
     by_file: bool = False

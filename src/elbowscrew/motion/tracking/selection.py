@@ -35,7 +35,8 @@ def choose_bodies(
     ----------
     recording : Recording
     proximal, distal : str or None
-        Name or id; None to go by the names in the file, and "none" for a proximal body that stands still.
+        Name or id; None to go by the order of two files, or by the names in one, and "none" for a proximal
+        body that stands still.
     joint : str or None
         Name of the joint; None to go by the names of the bodies.
 
@@ -52,15 +53,21 @@ def choose_bodies(
     if still or (proximal is None and len(bodies) == 1):
         second = second or _alone(bodies, joint)
         return ChosenBodies(None, second, _joint_above(second, joint))
-    if first is None or second is None:
+    if recording.ordered and proximal is None and distal is None:
+        first, second = bodies
+    elif first is None or second is None:
         first, second = _speaking_pair(bodies, first, second, joint)
     if first is second:
         msg = f"body {first.name!r} is named both as proximal and as distal; the file has {_listed(bodies)}"
         raise SettingError(msg)
     warnings = []
+    if recording.ordered and joint_between(second.name, first.name) is not GENERIC:
+        named = f"{first.name!r} is given as the proximal body and {second.name!r} as the distal one"
+        message = f"{named}: their names speak of the reverse"
+        warnings.append(QualityWarning(code="order-differs", message=message))
     if _sides_differ(first, second):
         sides = f"{first.name!r} is {side_of(first.name)} and {second.name!r} is {side_of(second.name)}"
-        if proximal is None or distal is None:
+        if not recording.ordered and (proximal is None or distal is None):
             msg = f"the bodies are of different sides: {sides}; give both --proximal and --distal if that is meant"
             raise SettingError(msg)
         warnings.append(QualityWarning(code="sides-differ", message=f"the bodies are of different sides: {sides}"))
