@@ -21,7 +21,7 @@ from elbowscrew.view.figure_names import FIGURE_ENTRIES
 
 ANY = re.compile(
     r"(?i)\b(upper arm|forearm|arm|elbow|humer\w*|flexion|extension|pronation|thigh|shank|knee|hand"
-    r"|(?:proximal |distal )?phalanx|finger"
+    r"|(?:proximal |distal )?phalanx|finger|pelvis|hip|ankle|wrist|scapula|shoulder|trunk"
     r"|proximal segment|distal segment)\b"
 )
 CASES: dict[str, tuple[dict[str, Any], dict[str, str], set[str]]] = {

@@ -17,6 +17,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from sealed import resealed
 
+from elbowscrew import analyze, save_analysis, simulate_trial
 from elbowscrew.cli import main
 from elbowscrew.errors import OutputError, ResultError
 from elbowscrew.report import remake_pages, results_in, write_study_page
@@ -255,3 +256,26 @@ def test_the_columns_of_a_batchs_manifest_are_those_between_path_and_frames(resu
     assert links(page) == ["%3Done/report.html", "two/report.html"]
     assert "1 further result in this folder (left over)" in page
     assert "<i>a" not in page
+
+
+def test_numbers_of_two_joints_have_no_common_median(tmp_path: Path) -> None:
+    tops = {"elbow": (100.0, 110.0, 120.0), "knee": (50.0, 60.0, 70.0)}
+    for joint, angles in tops.items():
+        for k, top in enumerate(angles):
+            trial = simulate_trial(frames=80, inversion=40, top_deg=top, seed=k, joint=joint)
+            save_analysis(analyze(trial.recording), tmp_path / f"{joint}{k}", figure_formats=(), report=False)
+    write_study_page(tmp_path)
+    page = text_of(tmp_path)
+    assert "Distributions by joint" in page
+    (table,) = re.findall(r'<table class="groups">.*?</table>', page, re.DOTALL)
+    medians = dict(re.findall(r'<th scope="row">(\w+)</th><td class="n">3</td><td class="n">([\d.]+)', table))
+    assert set(medians) == set(tops)
+    for joint, angles in tops.items():
+        assert float(medians[joint]) == pytest.approx(angles[1], abs=0.5)
+    assert "Distributions by joint" not in text_of_one_joint(tmp_path / "elbow0", tmp_path / "one")
+
+
+def text_of_one_joint(result: Path, folder: Path) -> str:
+    shutil.copytree(result, folder / result.name)
+    write_study_page(folder)
+    return text_of(folder)

@@ -24,6 +24,7 @@ _THUMB: Final = (132.0, 34.0)
 _THUMB_BUCKETS: Final = 40
 _MOST_STRIPS: Final = 24
 _ALL: Final = "all trials"
+_JOINT: Final = "joint"
 
 
 class Measure(NamedTuple):
@@ -133,17 +134,17 @@ def study_page(study: Study) -> StudyPage:
             trials.append(trial)
         except UNSHOWABLE as error:
             unread.append(Failure(path=trial.folder, kind="ResultError", message=str(unshowable(Path(), error))))
-    groups = _groups(study, trials)
+    groups = _groups(trials, _group_factor(study))
     _mark_outliers(rows, groups)
     content = {
         "name": study.name,
         "rows": rows,
         "factors": [Factor(name=name, levels=_levels(trials, name)) for name in study.factors],
-        "group_name": _group_factor(study),
+        "group_name": _group_name(study, trials),
         "groups": _table_of_groups(rows, groups),
         "measures": MEASURES,
         "columns": COLUMNS,
-        "charts": _charts(rows, groups),
+        "charts": _charts(rows, groups if len(groups) <= _MOST_STRIPS else _groups(trials, None)),
         "failures": [*study.failures, *unread],
         "others": study.others,
         "outliers": sum(bool(row["outlier"]) for row in rows),
@@ -195,18 +196,34 @@ def _row(trial: StudyTrial, scale: tuple[float, float]) -> TrialRow:
     }
 
 
+def _group_name(study: Study, trials: Sequence[StudyTrial]) -> str | None:
+    """Name what groups the distributions: the joint where there are several, and the manifest's factor."""
+    return " and ".join(name for name in (_JOINT * _several_joints(trials), _group_factor(study)) if name) or None
+
+
 def _group_factor(study: Study) -> str | None:
     """Name the factor that groups the distributions: the condition, else the manifest's first column."""
     named = [name for name in study.factors if name.strip().casefold() == CONDITION]
     return next(iter([*named, *study.factors]), None)
 
 
-def _groups(study: Study, trials: Sequence[StudyTrial]) -> dict[str, list[int]]:
-    factor = _group_factor(study)
+def _groups(trials: Sequence[StudyTrial], factor: str | None) -> dict[str, list[int]]:
+    """Trials by joint and factor: numbers of two joints have no common median."""
+    several = _several_joints(trials)
     groups: dict[str, list[int]] = {}
     for k, trial in enumerate(trials):
-        groups.setdefault(_ALL if factor is None else trial.factors.get(factor, "") or "–", []).append(k)
+        words = [_joint_of(trial)] if several else []
+        words += [] if factor is None else [trial.factors.get(factor, "") or "–"]
+        groups.setdefault(", ".join(words) or _ALL, []).append(k)
     return dict(sorted(groups.items()))
+
+
+def _joint_of(trial: StudyTrial) -> str:
+    return trial.summary["trial"]["joint"]["name"]
+
+
+def _several_joints(trials: Sequence[StudyTrial]) -> bool:
+    return len({_joint_of(trial) for trial in trials}) > 1
 
 
 def _mark_outliers(rows: list[TrialRow], groups: Mapping[str, list[int]]) -> None:
@@ -233,7 +250,6 @@ def _table_of_groups(rows: list[TrialRow], groups: Mapping[str, list[int]]) -> l
 
 
 def _charts(rows: list[TrialRow], groups: Mapping[str, list[int]]) -> list[tuple[str, Markup]]:
-    shown = groups if len(groups) <= _MOST_STRIPS else {_ALL: list(range(len(rows)))}
     charts = []
     for measure in MEASURES:
         strips = {
@@ -241,7 +257,7 @@ def _charts(rows: list[TrialRow], groups: Mapping[str, list[int]]) -> list[tuple
                 np.array([rows[k]["values"][measure.key] for k in members], dtype=np.float64),
                 [rows[k]["folder"] for k in members],
             )
-            for name, members in shown.items()
+            for name, members in groups.items()
         }
         if any(np.isfinite(values).any() for values, _ in strips.values()):
             charts.append((measure.title, strip_chart(measure.key, measure.title, measure.unit, strips)))
