@@ -417,7 +417,7 @@ def test_thousands_separators_are_not_taken_for_decimal_marks(tmp_path: Path, de
     lines[20] = delimiter.join(cells)
     path = tmp_path / "resaved.csv"
     path.write_text("\n".join(lines) + "\n")
-    with pytest.raises(RecordingError, match=r"resaved\.csv:21: commas and points in numbers"):
+    with pytest.raises(RecordingError, match=r"resaved\.csv:21: numbers have both commas and points"):
         read_recording(path)
 
 
