@@ -280,7 +280,9 @@ def main() -> None:
     parser.add_argument("--tests", nargs="+", required=True, help="folders or modules of tests")
     parser.add_argument("--count", type=int, default=50, help="faults in each room")
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--again", type=Path, help="what an earlier run printed: of its faults only those not seen")
     chosen = parser.parse_args()
+    again = chosen.again and chosen.again.read_text(encoding="utf-8").splitlines()
     os.chdir(ROOT)
     os.environ["OPENBLAS_NUM_THREADS"] = "1"  # threads do not live through a fork
     sys.path[:] = [path for path in sys.path if not (Path(path) / PACKAGE).is_dir()]
@@ -299,28 +301,31 @@ def main() -> None:
             kept.mkdir()
             runs.append(Run(tests, sources, kept))
         for room in chosen.rooms:
-            _score(room, runs, sources, chosen.count, chosen.seed)
+            _score(room, runs, sources, chosen.count, chosen.seed, again)
 
 
-def _score(room: str, runs: list[Run], sources: Path, count: int, seed: int) -> None:
+def _score(room: str, runs: list[Run], sources: Path, count: int, seed: int, again: list[str] | None) -> None:
     place = sources / PACKAGE / room
     files = sorted(place.rglob("*.py")) if place.is_dir() else [place.with_suffix(".py")]
     possible = [fault for file in files for fault in faults_of(file)]
     faults = random.Random(seed).sample(possible, min(count, len(possible)))  # noqa: S311
-    killed, start = 0, time.perf_counter()
+    tried, killed, start = 0, 0, time.perf_counter()
     for fault in faults:
         kept = fault.file.read_text(encoding="utf-8")
         before, after, source = fault.made(kept)
+        not_seen = f"not seen: {fault.file.relative_to(sources / PACKAGE)}:{fault.lines.start}: {before}  ->  {after}"
+        if again is not None and not_seen not in again:
+            continue
+        tried += 1
         fault.file.write_text(source, encoding="utf-8")
         if seen(runs, fault, sources):
             killed += 1
             print(".", end="", flush=True)
         else:
-            line = f"{fault.file.relative_to(sources / PACKAGE)}:{fault.lines.start}"
-            print(f"\nnot seen: {line}: {before}  ->  {after}", flush=True)
+            print(f"\n{not_seen}", flush=True)
         fault.file.write_text(kept, encoding="utf-8")
     print(
-        f"\n{room}: {killed} of {len(faults)} faults seen ({100.0 * killed / len(faults):.0f} %), of {len(possible)} "
+        f"\n{room}: {killed} of {tried} faults seen ({100.0 * killed / max(tried, 1):.0f} %), of {len(possible)} "
         f"possible, seed {seed}, {time.perf_counter() - start:.0f} s"
     )
 

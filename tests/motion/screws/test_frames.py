@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from elbowscrew.errors import SettingError
-from elbowscrew.joints import GENERIC, joints_of
+from elbowscrew.joints import GENERIC, JOINTS, Joint, joints_of
 from elbowscrew.motion.screws.frames import frame_called
 
 KNEE = joints_of("knee")[0]
@@ -22,8 +22,18 @@ def test_a_segment_of_another_joint_is_refused_with_this_ones() -> None:
         frame_called("forearm", KNEE)
     text = str(caught.value)
     assert text.startswith("--express-in forearm: the joint is the knee, between thigh and shank; ")
-    assert all(f" {word}," in text for word in ("distal", "proximal", "lab"))
-    assert text.endswith(f"{KNEE.proximal.short}, {KNEE.distal.short}")
+    assert text.endswith("; expected one of distal, proximal, lab, thigh, shank")
+
+
+@pytest.mark.parametrize("joint", JOINTS, ids=lambda joint: f"{joint.name}-{joint.proximal.short}")
+def test_a_joints_own_words_are_its_ends_whatever_they_are_in_others(joint: Joint) -> None:
+    assert frame_called(joint.proximal.short, joint) == ("proximal", ())
+    assert frame_called(joint.distal.short, joint) == ("distal", ())
+
+
+@pytest.mark.parametrize(("word", "end"), [("pelvis", "proximal"), ("foot", "distal"), ("hand", "distal")])
+def test_a_word_that_is_one_end_in_every_joint_needs_no_joint(word: str, end: str) -> None:
+    assert frame_called(word, GENERIC) == (end, ())
 
 
 def test_a_word_of_several_joints_needs_the_joint() -> None:

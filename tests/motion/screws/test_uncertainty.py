@@ -7,6 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 from coverage_of_screws import coverage
+from scipy.signal import butter, sosfreqz
+from scipy.spatial.transform import Rotation
 from trials import ARM, FOREARM, SIGMA
 
 from elbowscrew import Analysis, RigidBody, Settings, analyze, simulate_trial
@@ -16,6 +18,7 @@ from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry import pose_from_points
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.motion.screws.pose_noise import covariance_from_markers, pose_noise
+from elbowscrew.motion.screws.uncertainty import errors_from_covariance
 from elbowscrew.simulate import SimulatedTrial
 
 
@@ -104,6 +107,41 @@ def test_errors_do_not_depend_on_the_frame_but_for_the_points_place(express_in: 
         assert getattr(other, name) == pytest.approx(getattr(one, name), rel=1e-9, nan_ok=True)
 
 
+def line_matrix(pose: Float) -> Float:
+    """How a pose turns a twist (rotation, then displacement of the origin), by its rotation matrix."""
+    quat, place = dq.pose_from_dual_quat(pose)
+    turn = Rotation.from_quat(quat, scalar_first=True).as_matrix()
+    x, y, z = place
+    lever = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    return np.block([[turn, np.zeros((3, 3))], [lever @ turn, turn]])
+
+
+@pytest.mark.parametrize("shift", [(0.0, 0.0, 0.0), (0.0, 0.0, 0.3), (0.1, -0.2, 0.3)])
+@pytest.mark.parametrize("turn_deg", [(0.0, 0.0, 0.0), (0.0, 0.0, 90.0), (180.0, 0.0, 0.0), (40.0, -70.0, 25.0)])
+def test_errors_in_another_frame_are_those_of_what_is_written_there(
+    shift: tuple[float, float, float], turn_deg: tuple[float, float, float]
+) -> None:
+    """Also where that frame is only shifted along one of the axes, or turned about one."""
+    rng = np.random.default_rng(8)
+    quat = Rotation.from_rotvec(turn_deg, degrees=True).as_quat(scalar_first=True)
+    change = dq.dual_quat_from_pose(quat, np.array(shift))
+    moved = dq.dual_quat_from_pose(
+        Rotation.from_rotvec(rng.normal(size=(5, 3))).as_quat(scalar_first=True), rng.normal(scale=0.2, size=(5, 3))
+    )
+    roots = rng.normal(scale=1e-3, size=(2, 6, 6))
+    frame, reference = roots @ np.swapaxes(roots, 1, 2)
+    there = line_matrix(change)
+    found = errors_from_covariance(moved, frame, reference, change)
+    wanted = errors_from_covariance(
+        dq.multiply(dq.multiply(change, moved), dq.conjugate(change)),
+        there @ frame @ there.T,
+        there @ reference @ there.T,
+        dq.dual_quat_from_pose(np.array([1.0, 0, 0, 0]), np.zeros(3)),
+    )
+    for name in found._fields:
+        assert getattr(found, name) == pytest.approx(getattr(wanted, name), rel=1e-9), name
+
+
 def test_errors_stand_where_their_quantities_do() -> None:
     screw = analyzed().screw
     assert (np.isfinite(screw.axis_sd) == screw.axis_known).all()
@@ -119,6 +157,17 @@ def test_a_filled_frame_has_no_error_of_its_own() -> None:
     screw = analyze(recording, Settings(marker_noise_mm=0.2)).screw
     assert screw.filled.any()
     assert np.isnan(screw.angle_sd[screw.filled]).all()
+
+
+def test_the_sense_reckons_with_the_noise_that_a_filter_leaves_in_most_frames() -> None:
+    """White noise of both passes of a Butterworth filter: the mean of the squared gain over all frequencies."""
+    rate_hz, cutoff_hz = 100.0, 6.0
+    recording = simulate_trial(proximal="moving", rate_hz=rate_hz, seed=2).recording
+    plain = analyze(recording, Settings(marker_noise_mm=0.2)).sense.sigma
+    filtered = analyze(recording, Settings(marker_noise_mm=0.2, lowpass_hz=cutoff_hz)).sense.sigma
+    sections = butter(2, cutoff_hz / (np.sqrt(2.0) - 1.0) ** 0.25, fs=rate_hz, output="sos")
+    one_pass = np.abs(sosfreqz(sections, worN=20_000)[1]) ** 2
+    assert filtered / plain == pytest.approx(np.sqrt(np.mean(one_pass**2)), rel=5e-3)
 
 
 def test_the_least_angle_can_be_a_precision() -> None:

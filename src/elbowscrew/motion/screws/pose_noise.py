@@ -79,7 +79,7 @@ class JointNoise(NamedTuple):
     proximal: PoseNoise | None
     distal: PoseNoise | None
     proximal_share: float
-    distal_share: float = 1.0
+    distal_share: float
 
     @classmethod
     def of(cls, proximal: RigidBody | None, distal: RigidBody, rate_hz: float, settings: Settings) -> JointNoise:
