@@ -144,8 +144,9 @@ class MeanAxis(ArrayRecord):
 
     @property
     def spread95(self) -> tuple[float, float]:
-        """Deviation (rad) and distance (m) that 95 % of the frames' axes keep within."""
-        return float(np.nanpercentile(self.deviation, 95.0)), float(np.nanpercentile(self.distance, 95.0))
+        """Deviation (rad) and distance (m) that 95 % of the frames' axes keep within; NaN where none has a distance."""
+        distance = np.nanpercentile(self.distance, 95.0) if np.isfinite(self.distance).any() else np.nan
+        return float(np.nanpercentile(self.deviation, 95.0)), float(distance)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)

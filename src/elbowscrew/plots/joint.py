@@ -68,7 +68,7 @@ def plot_axis_from_the_side(ax: Axes, analysis: Analysis | TrialView, side: int)
         ax.fill_between(along, -reach, reach, **look)
     ax.plot([-bundle.half, bundle.half], [0.0, 0.0], color="black", linewidth=1.3, zorder=4, label=bundle.name)
     ax.set_xlim(-bundle.half, bundle.half)
-    reach_of_view = 1.25 * _widest(bundle)
+    reach_of_view = 1.25 * bundle.reach_across(np.inf)
     ax.set_ylim(-reach_of_view, reach_of_view)
     ax.set_xlabel(f"Along the {bundle.name} ({unit})")
     ax.set_ylabel(f"Across, toward {names[side]} ({unit})")
@@ -86,7 +86,7 @@ def plot_axis_end_on(ax: Axes, analysis: Analysis | TrialView) -> Axes:
     for region, look in _regions(bundle):
         ax.add_patch(Circle((0.0, 0.0), region.radius, **look))
     ax.plot(0.0, 0.0, "+", color="black", markersize=8, markeredgewidth=1.2, zorder=4)
-    reach = 1.25 * _widest(bundle)
+    reach = 1.25 * bundle.reach_across(np.inf)
     ax.set_xlim(-reach, reach)
     ax.set_ylim(-reach, reach)
     ax.set_box_aspect(1.0)
@@ -99,10 +99,6 @@ def _add_segments(ax: Axes, view: TrialView, bundle: Bundle, segments: Float) ->
     angle = angle_in(view.angle[bundle.rows], view.settings.angle_unit)
     colors = color_scale(view).to_rgba(angle)
     ax.add_collection(LineCollection(list(segments), colors=colors, linewidths=0.7, zorder=2))
-
-
-def _widest(bundle: Bundle) -> float:
-    return max(float(region.reach(np.array([bundle.half]))[0]) for region, _ in _regions(bundle)) or 1.0
 
 
 def confidence_text(view: TrialView) -> str:
@@ -124,10 +120,8 @@ def _bundle(view: TrialView) -> Bundle:
 
 
 def _regions(bundle: Bundle) -> list[tuple[Region, dict[str, Any]]]:
-    regions: list[tuple[Region, dict[str, Any]]] = [(bundle.spread, SPREAD)]
-    if bundle.confidence is not None:
-        regions.append((bundle.confidence, CONFIDENCE))
-    return regions
+    looks: dict[str, dict[str, Any]] = {"spread": SPREAD, "confidence": CONFIDENCE}
+    return [(region, looks[name]) for name, region in bundle.regions.items()]
 
 
 def _ends(bundle: Bundle) -> Float:

@@ -10,7 +10,6 @@ from markupsafe import Markup
 from numpy.typing import NDArray
 
 from elbowscrew.choices import METHOD_LABELS
-from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.sensitivity import NORMAL_95
 from elbowscrew.motion.movements.phases import runs_of
 from elbowscrew.report.charts import (
@@ -25,7 +24,7 @@ from elbowscrew.report.charts import (
     ticks_between,
 )
 from elbowscrew.report.scene import WIDEST
-from elbowscrew.view.scene import Bundle, directions_across, joint_bundle
+from elbowscrew.view.scene import directions_across, joint_bundle
 from elbowscrew.view.trial_view import TrialView
 
 _ASPECT: Final = (0.5 * WIDTH - 78.0) / (0.42 * WIDTH - 56.0)  # of the inner part of a panel of the axes
@@ -110,7 +109,7 @@ def axis_chart(trial: TrialView) -> Markup:
     bundle = joint_bundle(trial).scaled(1000.0)
     across, names = directions_across(bundle.direction)
     offset = bundle.segments - bundle.center
-    widest = _reach(bundle, offset - (offset @ bundle.direction)[..., None] * bundle.direction)
+    widest = 1.25 * bundle.reach_across(WIDEST)
     angle = np.degrees(trial.angle[bundle.rows])
     colors = [color_of(float(share)) for share in (angle - angle.min()) / (float(np.ptp(angle)) or 1.0)]
     size = (0.5 * WIDTH, 0.42 * WIDTH)
@@ -125,12 +124,12 @@ def axis_chart(trial: TrialView) -> Markup:
         size=size,
     )
     turn = np.linspace(0.0, 2.0 * np.pi, 73)
-    for look, region in _regions(bundle):
+    for name, region in bundle.regions.items():
         end_on.band(
             region.radius * np.cos(turn[:37]),
             -region.radius * np.sin(turn[:37]),
             region.radius * np.sin(turn[:37]),
-            look,
+            f"band-{name}",
         )
     for piece, color in zip(np.stack([offset @ direction for direction in across], axis=2), colors, strict=True):
         end_on.segment(piece[:, 0].tolist(), piece[:, 1].tolist(), "thread", color)
@@ -146,8 +145,8 @@ def axis_chart(trial: TrialView) -> Markup:
         size=size,
     )
     along = np.linspace(-bundle.half, bundle.half, 41)
-    for look, region in _regions(bundle):
-        side.band(along, -region.reach(along), region.reach(along), look)
+    for name, region in bundle.regions.items():
+        side.band(along, -region.reach(along), region.reach(along), f"band-{name}")
     for piece, color in zip(np.stack([offset @ bundle.direction, offset @ across[1]], axis=2), colors, strict=True):
         side.segment(piece[:, 0].tolist(), piece[:, 1].tolist(), "thread", color)
     side.segment((-bundle.half, bundle.half), (0.0, 0.0), "joint")
@@ -155,9 +154,8 @@ def axis_chart(trial: TrialView) -> Markup:
         f"The {bundle.name} and the axes of {bundle.rows.size} frames about it, seen along it and from the side; "
         "what lies across it is enlarged."
     )
-    keys = [("band-spread", "95 % of the frames’ axes"), ("joint", bundle.name)]
-    if len(_regions(bundle)) > 1:
-        keys.insert(1, ("band-confidence", "95 % confidence of the joint axis"))
+    words = {"spread": "95 % of the frames’ axes", "confidence": "95 % confidence of the joint axis"}
+    keys = [*((f"band-{name}", words[name]) for name in bundle.regions), ("joint", bundle.name)]
     panels = [
         end_on.panel(),
         side.panel(0.5 * WIDTH),
@@ -230,21 +228,6 @@ def _mark_tracking(chart: Chart, trial: TrialView) -> None:
     ):
         spans = [(trial.time_s[a] - half, trial.time_s[b] + half) for a, b in zip(*runs_of(mask), strict=True)]
         chart.spans(spans, look, label)
-
-
-def _regions(bundle: Bundle) -> list[tuple[str, Any]]:
-    regions = [("band-spread", bundle.spread)]
-    if bundle.confidence is not None and np.isfinite(bundle.confidence.angle):
-        regions.append(("band-confidence", bundle.confidence))
-    return regions
-
-
-def _reach(bundle: Bundle, across: Float) -> float:
-    """How far across the axis the view goes: as far as the regions, or, if one is too wide, most of the axes."""
-    reaches = [float(region.reach(np.array([bundle.half]))[0]) for _, region in _regions(bundle)]
-    if any(region.angle > WIDEST for _, region in _regions(bundle)):
-        reaches = [float(np.percentile(np.linalg.norm(across, axis=2), 95.0))]
-    return 1.25 * max(reaches) or 1.0
 
 
 def _color_bar(low: float, high: float, top: float) -> list[str]:

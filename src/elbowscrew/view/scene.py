@@ -63,6 +63,28 @@ class Bundle(NamedTuple):
     spread: Region
     confidence: Region | None
 
+    @property
+    def regions(self) -> dict[str, Region]:
+        """What holds 95 % of the frames' axes (``spread``) and of the joint's axis (``confidence``), if known."""
+        named = {"spread": self.spread, "confidence": self.confidence}
+        return {
+            name: region
+            for name, region in named.items()
+            if region is not None and np.isfinite([region.angle, region.radius]).all()
+        }
+
+    def reach_across(self, widest: float) -> float:
+        """How far across the axis a view of it goes: as far as the regions, or as most of the axes that are drawn.
+
+        The latter where no region is known or one has a half-angle beyond `widest` (rad).
+        """
+        regions = self.regions.values()
+        if regions and all(region.angle <= widest for region in regions):
+            return max(float(region.reach(np.array([self.half]))[0]) for region in regions) or 1.0
+        offset = self.segments - self.center
+        across = offset - (offset @ self.direction)[..., None] * self.direction
+        return float(np.percentile(np.linalg.norm(across, axis=2), 95.0)) or 1.0
+
     def scaled(self, scale: float) -> Bundle:
         """Give the same bundle in another unit of length."""
         spread, known = self.spread, self.confidence
