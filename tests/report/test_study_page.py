@@ -233,6 +233,7 @@ def test_the_rule_is_the_one_of_the_handbook() -> None:
 
 def test_too_few_or_all_alike_have_no_outliers() -> None:
     assert np.isnan(modified_z(np.array([1.0, 2.0, 3.0, 1e9]))).all()
+    assert modified_z(np.array([1.0, 2.0, 3.0, 4.0, 1e9]))[-1] > LIMIT  # of five values one can be told
     assert (modified_z(np.full(9, 7.0)) == 0.0).all()
     mostly = modified_z(np.array([5.0] * 9 + [6.0]))
     assert mostly[-1] > LIMIT
