@@ -212,6 +212,9 @@ def test_a_thumbnail_takes_a_few_hundred_bytes_however_long_the_trial() -> None:
     heights = [float(y) for y in re.findall(r"[ML][\d.]+ ([\d.]+)", drawn)]
     assert min(heights) == pytest.approx(2.0, abs=0.1)  # the highest angle is at the top
     assert max(heights) == pytest.approx(32.0, abs=0.1)
+    along = [float(x) for x in re.findall(r"[ML]([\d.]+) ", drawn)]
+    assert (along[0], along[-1]) == (1.0, 131.0)  # from edge to edge, whatever the clock begins at
+    assert thumbnail(time_s + 250.0, theta, (0.0, 120.0)) == drawn
 
 
 @given(st.lists(st.floats(-50, 50), min_size=LEAST, max_size=40), st.floats(0.1, 10), st.floats(-100, 100))

@@ -109,6 +109,18 @@ def test_whatever_file_of_numbers_was_edited_is_named(result: Path, tmp_path: Pa
             view_of_result(folder)
 
 
+def test_all_files_of_numbers_that_were_edited_are_named_together(copy: Path) -> None:
+    names = ("screw.csv", "interpolation.csv", "keyframes.csv")
+    for name in names:
+        (copy / name).write_text("0")
+    with pytest.raises(ResultError) as caught:
+        proof_of(copy).check_numbers()
+    text = str(caught.value)
+    assert [text.count(name) for name in names] == [1, 1, 1]
+    assert text.startswith(str(copy))
+    assert text.endswith("not as it was written: edited, cut or missing, as SHA256SUMS tells; analyze the trial again")
+
+
 def test_doubled_angles_and_a_summary_of_999_are_never_passed_on(copy: Path, tmp_path: Path) -> None:
     for name in ("tables", "summary"):
         shutil.copytree(copy, tmp_path / "study" / name)

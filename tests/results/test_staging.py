@@ -191,8 +191,9 @@ def test_files_are_replaced_on_request_only_and_only_ours(tmp_path: Path) -> Non
     with pytest.raises(OutputError, match="not written by elbowscrew"):
         write_files(tmp_path, {two.name: ["new"], one.name: ["new"]}, replaceable=("synthetic",))
     assert (one.read_text(), two.read_text()) == ("a recording", "synthetic 2\n")
-    with pytest.raises(OutputError, match="not a file"):
+    with pytest.raises(OutputError) as caught:
         write_files(tmp_path.parent, {tmp_path.name: ["x"]}, replaceable=("synthetic",))
+    assert str(caught.value) == f"{tmp_path}: exists already and is not a file; give another name"
     assert sorted(path.name for path in tmp_path.iterdir()) == ["one.csv", "two.json"]
 
 

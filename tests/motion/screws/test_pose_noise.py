@@ -239,3 +239,13 @@ def test_the_joints_noise_is_known_if_that_of_each_moving_body_is() -> None:
     assert one[0] is None
     for proximal, distal in ((silent, noisy), (noisy, silent), (None, silent)):
         assert JointNoise.of(proximal, distal, RATE_HZ, settings).known is None
+
+
+def test_what_is_assumed_of_an_unknown_noise_is_none_of_a_body_that_is_not_there() -> None:
+    moving, settings = body(poses(200, (TURN_SD, PLACE_SD))), Settings(noise="none")
+    first, second = JointNoise.of(None, moving, RATE_HZ, settings).assumed
+    assert first is None
+    assert (second.source, second.marker_noise) == ("assumed", None)
+    first, second = JointNoise.of(moving, moving, RATE_HZ, settings).assumed
+    assert first is not None
+    assert np.array_equal(first.covariance, second.covariance)  # the two bodies are alike
