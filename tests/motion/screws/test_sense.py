@@ -147,6 +147,15 @@ def test_short_gaps_of_a_crank_hide_no_turns() -> None:
     assert not [doubt for doubt in sense_warnings(sense, np.arange(400), "auto") if doubt.code == "turns-over-gap"]
 
 
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_fast_cranks_are_counted_either_way_though_no_frame_lies_between_their_places(way: float) -> None:
+    """24 deg a frame: the same 15 places in every turn, each gap between them wide enough for a cut."""
+    x = 24.0 * np.arange(61)
+    sense = sense_of(hinge(way * x), np.arange(61) / 100.0, 0)
+    assert sense.counted
+    assert np.degrees(sense.angle) == pytest.approx(x, abs=1e-6)
+
+
 def test_crank_with_every_second_frame_lost_is_counted() -> None:
     x = np.linspace(0.0, 1500.0, 400)
     quat = hinge(x)
