@@ -150,7 +150,7 @@ def test_short_gaps_of_a_crank_hide_no_turns() -> None:
 @pytest.mark.parametrize("way", [1.0, -1.0])
 def test_fast_cranks_are_counted_either_way_though_no_frame_lies_between_their_places(way: float) -> None:
     """24 deg a frame: the same 15 places in every turn, each gap between them wide enough for a cut."""
-    x = 24.0 * np.arange(61)
+    x = np.linspace(0.0, 1440.0, 61)
     sense = sense_of(hinge(way * x), np.arange(61) / 100.0, 0)
     assert sense.counted
     assert np.degrees(sense.angle) == pytest.approx(x, abs=1e-6)
@@ -227,6 +227,13 @@ def test_equal_excursions_take_the_first_for_positive() -> None:
     larger = sense_of(hinge(np.where(x > 0.0, 0.5 * x, x)), np.arange(600) / 100.0, 0)
     assert not larger.tied
     assert np.degrees(larger.angle.max()) == pytest.approx(60.0, abs=0.01)
+
+
+def test_of_equal_excursions_a_small_one_before_them_is_not_the_first() -> None:
+    x = np.interp(np.arange(500.0), [0, 50, 100, 200, 350, 499], [0.0, -40, 0, 150, -150, 0])
+    sense = sense_of(hinge(x), np.arange(500) / 100.0, 0)
+    assert sense.tied
+    assert np.degrees(sense.angle) == pytest.approx(x, abs=1e-9)
 
 
 def test_noise_that_the_third_differences_show() -> None:
