@@ -8,6 +8,7 @@
     │   ├── NoBodiesError   it has no rigid bodies, but maybe markers
     │   └── ResultError     a folder that should hold a finished result does not, or a damaged one
     ├── SettingError     4  a setting does not fit this recording
+    │   └── MissingStatementError   the file lacks a statement that an option must supply
     ├── AnalysisError    5  the recording can be read but not analyzed
     └── OutputError      6  the output cannot be written, or exists
 
@@ -73,6 +74,25 @@ class SettingError(ElbowscrewError):
     """A setting that does not fit this recording: a body or a frame that is not in it."""
 
     exit_code = 4
+
+
+class MissingStatementError(SettingError):
+    """The file lacks a statement that an option must supply.
+
+    Attributes
+    ----------
+    lacks, give : str
+        What the file does not state, and the option that does, so that several can be asked for at once.
+    """
+
+    def __init__(self, message: str, *, lacks: str = "", give: str = "") -> None:
+        super().__init__(message)
+        self.lacks, self.give = lacks, give
+
+    @classmethod
+    def of(cls, path: object, lacks: str, give: str) -> MissingStatementError:
+        """Say what a file lacks and what gives it."""
+        return cls(f"{path}: the file {lacks}; give {give}", lacks=lacks, give=give)
 
 
 class AnalysisError(ElbowscrewError):

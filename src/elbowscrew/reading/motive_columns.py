@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from elbowscrew.errors import RecordingError, SettingError
+from elbowscrew.errors import MissingStatementError, RecordingError, SettingError
 from elbowscrew.geometry import quaternion
 from elbowscrew.model import QualityWarning, Recording, Source
 from elbowscrew.quantities import METERS
@@ -32,8 +32,7 @@ def read(source: TextSource, options: ReadOptions) -> Recording:
     header = parse_header(source)
     wanted = marker_columns(header, options)
     bodies = body_columns(source, header, needed=not wanted)
-    unit = stated_unit(source.path, header.pairs.get("Length Units", ""), options)
-    order = _rotation_type(source, header, bodies, options.rotation) if bodies else ""
+    unit, order = _stated(source, header, bodies, options)
     samples = sample_bodies(source, header, bodies, METERS[unit], order)
     builders = [MotiveBody(body, METERS[unit], order, sample) for body, sample in zip(bodies, samples, strict=True)]
     columns = sorted({0, 1}.union(*(builder.columns for builder in builders), *wanted.values()))
@@ -80,8 +79,27 @@ def read(source: TextSource, options: ReadOptions) -> Recording:
     )
 
 
+def _stated(
+    source: TextSource, header: Header, bodies: tuple[BodyColumns, ...], options: ReadOptions
+) -> tuple[str, str]:
+    """Give the unit of length and the rotation type; where both are missing, ask for both at once."""
+    text = header.pairs.get("Length Units", "")
+    try:
+        unit = stated_unit(source.path, text, options)
+    except MissingStatementError as no_unit:
+        try:
+            _rotation_type(source, header, bodies, options.rotation)
+        except MissingStatementError as no_order:
+            lacks = f"{no_unit.lacks} and {no_order.lacks}"
+            raise MissingStatementError.of(source.path, lacks, f"{no_unit.give}, and {no_order.give}") from no_order
+        raise
+    return unit, _rotation_type(source, header, bodies, options.rotation)
+
+
 def _rotation_type(source: TextSource, header: Header, bodies: tuple[BodyColumns, ...], rotation: str | None) -> str:
-    """Return "quaternion" or an Euler order; the labels have the last word on which of the two it is."""
+    """Return "quaternion" or an Euler order, empty without bodies; the labels tell which of the two it is."""
+    if not bodies:
+        return ""
     if all("W" in body.rotation for body in bodies):
         if rotation not in (None, "quaternion"):
             msg = f"--rotation {rotation}: the file has quaternions (its columns are labeled X, Y, Z, W)"
@@ -98,11 +116,8 @@ def _rotation_type(source: TextSource, header: Header, bodies: tuple[BodyColumns
         )
         raise RecordingError(msg) if stated else SettingError(msg)
     if not order:
-        msg = (
-            f"{source.path}:1: the file does not state the order of its Euler angles; give --rotation "
-            f"{', '.join(quaternion.EULER_ORDERS)}"
-        )
-        raise SettingError(msg)
+        give = f"--rotation {', '.join(quaternion.EULER_ORDERS)}"
+        raise MissingStatementError.of(source.path, "does not state the order of its Euler angles", give)
     if given and given != order:
         msg = f"rotation: the file states {stated} itself, which {rotation!r} contradicts; leave --rotation out"
         raise SettingError(msg)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from elbowscrew.errors import ElbowscrewError, NoBodiesError, SettingError
+from elbowscrew.errors import ElbowscrewError, MissingStatementError, NoBodiesError, SettingError
 from elbowscrew.model import marker_matches
 from elbowscrew.quantities import METERS
 
@@ -74,8 +74,7 @@ def stated_unit(path: Path, stated: str, options: ReadOptions) -> str:
             if stated.strip()
             else ("does not state its unit of length")
         )
-        msg = f"{path}: the file {what}; give --units m, cm or mm"
-        raise SettingError(msg)
+        raise MissingStatementError.of(path, what, "--units m, cm or mm")
     return unit or str(options.units)
 
 

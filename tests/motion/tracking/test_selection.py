@@ -209,3 +209,10 @@ def test_a_joint_is_advised_where_it_decides(given: tuple[str, None]) -> None:
 def test_a_joint_that_the_names_contradict_is_warned_of() -> None:
     chosen = choose_bodies(recording("Upper Arm", "Forearm"), "#1", "#2", "knee")
     assert [one.code for one in chosen.warnings] == ["joint-differs"]
+
+
+def test_a_name_that_is_nearly_a_bodys_is_asked_back() -> None:
+    bodies = [RigidBody.from_quaternions(name, [[1.0, 0, 0, 0]], np.zeros((1, 3))) for name in ("Upper Arm", "Forearm")]
+    recording = Recording.from_bodies(bodies, rate_hz=100.0)
+    with pytest.raises(SettingError, match="no such body; did you mean 'Forearm'\\?"):
+        choose_bodies(recording, None, "forarm")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 from typing import Final, NamedTuple
 
 from elbowscrew.choices import JOINT_NAMES
@@ -183,7 +184,10 @@ def _find(bodies: tuple[RigidBody, ...], wanted: str, role: str) -> RigidBody:
         ids = " or ".join(repr(body.identifier) for body in found)
         msg = f"--{role} {wanted!r}: {len(found)} bodies have that name; give the id instead: {ids}"
         raise SettingError(msg)
-    msg = f"--{role} {wanted!r}: no such body; the file has {_listed(bodies)}"
+    names = {body.name.casefold(): body.name for body in bodies}
+    near = [repr(names[one]) for one in difflib.get_close_matches(wanted.strip().casefold(), names)]
+    mean = f"; did you mean {' or '.join(near)}?" if near else ""
+    msg = f"--{role} {wanted!r}: no such body{mean}; the file has {_listed(bodies)}"
     raise SettingError(msg)
 
 
