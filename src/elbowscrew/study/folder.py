@@ -55,10 +55,10 @@ def _hold(folder: Path, mark: IO[bytes]) -> None:
     if not _lock(mark):
         msg = f"{folder}: another batch is running there{_who(mark)}; wait for it, or give another --output"
         raise OutputError(msg)
-    mark.seek(0)
-    mark.truncate()
-    mark.write(f"process {os.getpid()}\n".encode())
-    mark.flush()
+    # Not by the stream: what a full disk does not take would be written again when it closes.
+    os.lseek(mark.fileno(), 0, os.SEEK_SET)
+    os.ftruncate(mark.fileno(), 0)
+    os.write(mark.fileno(), f"process {os.getpid()}\n".encode())
 
 
 @contextmanager
