@@ -108,6 +108,7 @@ def machine() -> dict[str, Any]:
         "cores": os.cpu_count(),
         "system": platform.system(),
         "python": platform.python_version(),
+        "elbowscrew": version("elbowscrew"),
         "libraries": {name: version(name) for name in LIBRARIES},
     }
 
@@ -125,6 +126,7 @@ def page(results: dict[str, Any]) -> str:
     wanted = [row for row in rows if row.met is not None]
     parts = [
         INTRODUCTION.format(
+            elbowscrew=about["elbowscrew"],
             cores=about["cores"],
             system=about["system"],
             python=about["python"],
@@ -149,7 +151,8 @@ INTRODUCTION = """# Performance
 Made by `python benchmarks/performance.py --docs docs/performance.md`; do not edit. Everything is measured beside what a
 user would take instead.
 
-{cores} cores, {system}, Python {python}, {libraries}. Tasks take turns with their yardsticks; a ratio is that of the
+elbowscrew {elbowscrew}, {cores} cores, {system}, Python {python}, {libraries}.
+Tasks take turns with their yardsticks; a ratio is that of the
 medians, its range that of the rounds. Read the ratios: the times are those of one machine.
 
 Of {wanted} numbers that were wanted {reached} are reached. Missed:

@@ -1,7 +1,7 @@
 """Tables of 4 x 4 matrices without a header, as biplane X-ray gives them: a row a frame, 16 numbers a body.
 
 Each matrix is body to laboratory, row by row (the last four numbers are 0, 0, 0, 1) or column by column (every fourth
-is), as Autoscoper and XMALab write them. There is no clock and no unit. Blanks, "nan" and zeros are lost frames.
+is). There is no clock and no unit. Blanks, "nan" and zeros are lost frames.
 """
 
 from __future__ import annotations
