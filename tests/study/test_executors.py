@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import shutil
 import subprocess
 import sys
@@ -98,6 +99,17 @@ def test_tls_works_with_the_certificates_of_dasks_configuration(certificates: An
         assert there.scheduler_address.startswith("tls://")
         with open_executor(there.scheduler_address, 1)() as executor:
             assert executor.submit(max, 1, 2).result() == 2
+
+
+def test_a_client_that_came_to_nothing_is_gone_with_its_error() -> None:
+    """Collected later, in the middle of another call of Dask, it would wait for that call's lock for ever."""
+    gc.disable()
+    try:
+        with pytest.raises(UsageError), open_executor("tls://127.0.0.1:1", 1)():
+            pass
+        assert not [one for one in gc.get_objects() if isinstance(one, distributed.Client) and one.status != "closed"]
+    finally:
+        gc.enable()
 
 
 OTHER = """

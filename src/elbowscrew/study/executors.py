@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import logging
 import multiprocessing
 import os
@@ -121,14 +122,18 @@ def _cluster(scheduler: str, workers: int, wait_s: float) -> Iterator[Executor]:
                 cluster = None
             client = distributed.Client(cluster or scheduler, timeout=_LONGEST_WAIT)
         except (OSError, ValueError, TimeoutError) as error:
-            msg = f"--scheduler {scheduler}: no Dask scheduler answers there ({error}); give tcp://host:port"
-            raise UsageError(msg) from error
+            refused = f"no Dask scheduler answers there ({error}); give tcp://host:port"
         except TypeError as error:
-            msg = (
-                f"--scheduler {scheduler}: its certificates are missing ({error}); name them in Dask's configuration, "
+            refused = (
+                f"its certificates are missing ({error}); name them in Dask's configuration, "
                 "distributed.comm.tls.ca-file and .client.key and .cert"
             )
-            raise UsageError(msg) from error
+        else:
+            refused = ""
+        if refused:
+            gc.collect()  # the half-made client: collected inside a later call of Dask, it waits for a lock held there
+            msg = f"--scheduler {scheduler}: {refused}"
+            raise UsageError(msg)
         try:
             client.wait_for_workers(1, timeout=wait_s)
         except TimeoutError as error:
