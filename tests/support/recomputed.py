@@ -193,6 +193,7 @@ def _source(told: Told) -> dict[str, Any]:
         "layout": f"Motive columns {header['Format Version']}",
         "take": header["Take Name"],
         "length_unit": {"Meters": "m", "Centimeters": "cm", "Millimeters": "mm"}[header["Length Units"]],
+        "distal_file": None,
         "rotation": header["Rotation Type"].lower(),
     }
 

@@ -42,7 +42,11 @@ WAYS: dict[str, tuple[Callable[[str], bytes], str, int]] = {
     "cut line": (lambda text: text[: len(text) // 2].rsplit(",", 1)[0].encode(), "RecordingError", 3),
     "utf-16": (lambda text: text.encode("utf-16"), "RecordingError", 3),
     "zip": (lambda text: b"PK\x03\x04" + text.encode(), "RecordingError", 3),
-    "unit": (lambda text: text.replace("Length Units,Meters", "Length Units,Furlongs").encode(), "SettingError", 4),
+    "unit": (
+        lambda text: text.replace("Length Units,Meters", "Length Units,Furlongs").encode(),
+        "MissingStatementError",
+        4,
+    ),
     "word for a number": (lambda text: text.replace("\n5,0.05", "\n5,five").encode(), "RecordingError", 3),
     "names": (
         lambda text: text.replace("Upper Arm", "Body A").replace("Forearm", "Body B").encode(),

@@ -20,6 +20,8 @@ from enum import Enum
 from pathlib import Path
 from typing import Final
 
+from elbowscrew.disk.syncing import signals_held
+
 PREFIX: Final = ".elbowscrew-"
 PARTIAL, REPLACED = ".partial", ".replaced"
 PLAN: Final = "plan"
@@ -74,14 +76,17 @@ def held_folder(folder: Path, key: str) -> Iterator[Path]:
         If the disk does not take it.
     """
     staged = partial_of(folder, key)
-    handle = _made_and_held(staged)
-    if handle is None:
-        staged = folder / f"{PREFIX}{secrets.token_hex(8)}{PARTIAL}"
-        handle = _made_and_held(staged)
+    handle, known = None, False
     try:
+        with signals_held():  # none falls between making a folder and knowing that it is ours to remove
+            handle = _made_and_held(staged)
+            if handle is None:
+                staged = folder / f"{PREFIX}{secrets.token_hex(8)}{PARTIAL}"
+                handle = _made_and_held(staged)
+            known = True
         yield staged
     finally:
-        if not os.path.lexists(staged / PLAN):
+        if known and not os.path.lexists(staged / PLAN):
             remove(staged)
         if handle is not None and handle >= 0:
             os.close(handle)

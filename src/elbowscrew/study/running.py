@@ -74,8 +74,11 @@ def run_tasks(
                 index = queue.popleft()
                 try:
                     flying[executor.current().submit(work, tasks[index])] = index
-                except BrokenExecutor:
-                    # A worker died since the last look; this task has not been in anybody's hands.
+                except (BrokenExecutor, OSError) as error:
+                    # A worker died since the last look; this task has not been in anybody's hands. A pool that is
+                    # just coming down may have closed its pipe already.
+                    if isinstance(error, OSError) and "handle is closed" not in str(error):
+                        raise
                     queue.appendleft(index)
                     if flying:
                         return
