@@ -19,7 +19,7 @@ from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import TrackingLoss
 from elbowscrew.motion.smoothing.gaps import fill_gaps
 from elbowscrew.motion.tracking.clock import elapsed_time
-from elbowscrew.motion.tracking.leaps import check_tracking
+from elbowscrew.motion.tracking.lost_poses import check_tracking
 from elbowscrew.motion.tracking.quality import check_bodies, clock_quality, clock_warnings
 
 

@@ -1,26 +1,19 @@
-"""Which poses of a body are measurements: sentinels, frozen poses and leaps are not."""
+"""Where a body goes farther from one pose to the next than a body can."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from typing import Final, Literal
+from typing import Final
 
 import numpy as np
 
-from elbowscrew.geometry import quaternion, sclerp
+from elbowscrew.geometry import quaternion
 from elbowscrew.geometry._small_angle import length
 from elbowscrew.geometry.arrays import Bool, Float, Index
-from elbowscrew.geometry.dual_quaternion import align_signs, pose_from_dual_quat
 from elbowscrew.model import QualityWarning, Recording, RigidBody, TrackingLoss
 from elbowscrew.motion.difference import angle_between, origin_distance
-from elbowscrew.motion.tracking.resolution import coarse_step
+from elbowscrew.motion.tracking.losses import as_lost, frames_of, frames_warning, poses_at
 from elbowscrew.settings import Settings
-
-# An exact identity this far from where its neighbors put the body is what is written for a body that is not solved.
-_SENTINEL_TURN: Final = np.radians(2.0)
-_SENTINEL_DISTANCE_M: Final = 0.02
-_LONGEST_LEAD: Final = 2.0
 
 # What a body may do between two poses: its speed limits, with a floor for noise and a cap that a flip or a swap breaks
 # however long the time between them is, up to where it may be anywhere. Over a gap it may turn as far as it would at
@@ -39,156 +32,16 @@ _SPIKE_TURN: Final = np.radians(15.0)
 _SPIKE_DISTANCE_M: Final = 0.06
 _SPIKE_SHARE: Final = 0.25
 
-_LONGEST_EXCURSION_S: Final = 1.0
+LONGEST_EXCURSION_S: Final = 1.0
+"""What leaves a motion for longer is a motion of its own."""
 
 # So many steps beyond the limits, each like the one before it to this share, are a fast body and no flips.
 _STEADY_STEPS: Final = 3
 _STEADY_SHARE: Final = 0.25
 _ROOM_ABOVE: Final = 1.2
 
-# Two bodies are swapped if each comes to lie where the other was, much nearer than to where it was itself.
-_CROSSED_SHARE: Final = 0.25
-_LEAST_SWAP_M: Final = 0.05
 
-# Positions that were never measured: constant to the arithmetic's last digits while the body turns.
-_CONSTANT_M: Final = 1e-12
-_TURNED: Final = np.radians(1.0)
-
-_FRAMES_TOLD: Final = 10
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CheckedBody:
-    """A body without the poses that are no measurements.
-
-    Attributes
-    ----------
-    body : RigidBody
-    warnings : tuple of QualityWarning
-    leap_rows : ndarray of int, shape (L,)
-        Rows at which the body arrives by a leap.
-    broken_rows : ndarray of int, shape (B,)
-        Those of them behind which the motion goes on elsewhere: no gap may be filled up to there.
-    """
-
-    body: RigidBody
-    warnings: tuple[QualityWarning, ...]
-    leap_rows: Index
-    broken_rows: Index
-
-
-def check_tracking(body: RigidBody, recording: Recording, elapsed: Float, settings: Settings) -> CheckedBody:
-    """Mark the frames in which the body's pose is not a measurement, and say why.
-
-    Parameters
-    ----------
-    body : RigidBody
-    recording : Recording
-        Gives the frame numbers.
-    elapsed : ndarray, shape (N,)
-        Seconds.
-    settings : Settings
-        What is done with frozen poses, and the limits of a step.
-    """
-    warnings: list[QualityWarning] = []
-    body = _without_sentinels(body, recording, elapsed, warnings)
-    if settings.frozen == "lost":
-        body = _without_frozen(body, recording, warnings)
-    body, leap_rows, broken_rows = _without_leaps(body, recording, elapsed, settings, warnings)
-    return CheckedBody(body=body, warnings=tuple(warnings), leap_rows=leap_rows, broken_rows=broken_rows)
-
-
-def _without_sentinels(
-    body: RigidBody, recording: Recording, elapsed: Float, warnings: list[QualityWarning]
-) -> RigidBody:
-    """Take out single frames of no rotation at all that do not fit the frames around them."""
-    pose = body.dual_quat_lab_body
-    known = np.flatnonzero(body.tracked)
-    identity = known[(pose[known, 1:4] == 0.0).all(axis=1)]
-    others = np.setdiff1d(known, identity, assume_unique=True)
-    if not identity.size or others.size < 2:
-        return body
-    # A run of such frames belongs to the motion if its ends lie where the two frames before, and after, lead.
-    breaks = np.flatnonzero(np.searchsorted(others, identity[1:]) != np.searchsorted(others, identity[:-1]))
-    firsts, lasts = identity[np.r_[0, breaks + 1]], identity[np.r_[breaks, identity.size - 1]]
-    after = np.searchsorted(others, firsts)
-    off = np.zeros(firsts.size, dtype=np.bool_)
-    for ends, one, two, there in (
-        (firsts, after - 1, after - 2, after >= 2),
-        (lasts, after, after + 1, after <= others.size - 2),
-    ):
-        near, far, row = others[one[there]], others[two[there]], ends[there]
-        fraction = (elapsed[row] - elapsed[near]) / (elapsed[far] - elapsed[near])
-        lead = np.clip(fraction, -_LONGEST_LEAD, 0.0)
-        expected = sclerp(pose[near], pose[far], lead)
-        # A body that speeds up may be as far from there as it is led to go.
-        off[there] |= (
-            angle_between(pose[row], expected)
-            > np.maximum(_SENTINEL_TURN, -lead * angle_between(pose[near], pose[far]))
-        ) | (
-            origin_distance(pose[row], expected)
-            > np.maximum(_SENTINEL_DISTANCE_M, -lead * origin_distance(pose[near], pose[far]))
-        )
-    rows = identity[off[np.searchsorted(lasts, identity)]]
-    if not rows.size:
-        return body
-    message = (
-        f"body {body.name!r} has no rotation at all, out of its motion, in {_frames(rows, recording)}: taken as lost"
-    )
-    warnings.append(frames_warning("identity-pose", message, rows, recording))
-    return _lost(body, rows, TrackingLoss.ZERO)
-
-
-def _without_frozen(body: RigidBody, recording: Recording, warnings: list[QualityWarning]) -> RigidBody:
-    """Take out poses that repeat the one before.
-
-    A tracked body does not repeat a pose to the last digit, not even at rest: a pose that repeats the one before (up
-    to the sign of its quaternion) is lost tracking, and the first of such a run is its last measurement. A body with
-    one and the same pose in every frame is a fixed reference and kept, unless that pose is no rotation at the very
-    origin, which is what is written for a body that was never solved.
-    """
-    pose = body.dual_quat_lab_body
-    known = np.flatnonzero(body.tracked)
-    if known.size < 2:
-        return body
-    if (align_signs(pose[known], pose[known[0]]) == pose[known[0]]).all():
-        if (pose[known[0], 1:] == 0.0).all():
-            message = (
-                f"body {body.name!r} stands exactly at the origin without rotation in every frame, like a body that "
-                "was never solved: taken as not tracked (--frozen keep takes it as it is)"
-            )
-            warnings.append(QualityWarning(code="never-solved", message=message))
-            return _lost(body, known, TrackingLoss.ZERO)
-        message = f"body {body.name!r} has the same pose in every frame: taken as a fixed reference"
-        warnings.append(QualityWarning(code="fixed-body", message=message))
-        return body
-    repeats = (align_signs(pose[known[1:]], pose[known[:-1]]) == pose[known[:-1]]).all(axis=1) & (np.diff(known) == 1)
-    rows = known[1:][repeats]
-    if not rows.size:
-        return body
-    step_m = body.coarse_step or _coarse_step_of_pose(body)
-    if step_m is not None:
-        message = (
-            f"body {body.name!r} repeats its pose in {_frames(rows, recording)}, and its positions come in steps of "
-            f"{1000.0 * step_m:.3g} mm: taken as stillness; lost tracking would not be seen"
-        )
-        warnings.append(frames_warning("coarse-numbers", message, rows, recording))
-        return body
-    message = (
-        f"body {body.name!r} repeats its pose to the last digit in {_frames(rows, recording)}: taken as lost tracking "
-        "(--frozen keep turns this off)"
-    )
-    warnings.append(frames_warning("frozen", message, rows, recording))
-    return _lost(body, rows, TrackingLoss.FROZEN)
-
-
-def _coarse_step_of_pose(body: RigidBody) -> float | None:
-    rotation, position = pose_from_dual_quat(body.dual_quat_lab_body)
-    turned = (rotation[1:] != rotation[:-1]).any(axis=1) & (rotation[1:] != -rotation[:-1]).any(axis=1)
-    return coarse_step(position, turned)
-
-
-def _without_leaps(
+def without_leaps(
     body: RigidBody, recording: Recording, elapsed: Float, settings: Settings, warnings: list[QualityWarning]
 ) -> tuple[RigidBody, Index, Index]:
     """Take out spikes and short excursions; tell of leaps behind which the motion goes on elsewhere.
@@ -216,19 +69,19 @@ def _without_leaps(
         beyond = np.sort(np.concatenate([arrivals, spikes]))  # where an excursion begins or ends
         before = known[np.searchsorted(known, beyond) - 1]
         message = (
-            f"body {body.name!r} leaps out of its motion{steps.told(before, beyond)}: {_frames(lost, recording)} "
+            f"body {body.name!r} leaps out of its motion{steps.told(before, beyond)}: {frames_of(lost, recording)} "
             f"taken as lost ({limits}){_if_it_is_real(fast)}"
         )
         warnings.append(frames_warning("leap", message, lost, recording))
     if unresolved.size:
         before = known[np.searchsorted(known, unresolved) - 1]
         message = (
-            f"body {body.name!r} leaps{steps.told(before, unresolved)} at {_frames(unresolved, recording)} and goes on "
-            f"there: flipped, swapped or another body from there on, or up to there; look at the recording ({limits})"
-            f"{_if_it_is_real(fast)}"
+            f"body {body.name!r} leaps{steps.told(before, unresolved)} at {frames_of(unresolved, recording)} and goes "
+            f"on there: flipped, swapped or another body from there on, or up to there; look at the recording "
+            f"({limits}){_if_it_is_real(fast)}"
         )
         warnings.append(frames_warning("leap-unresolved", message, unresolved, recording))
-    return _lost(body, lost, TrackingLoss.LEAP), np.union1d(arrivals, spikes), unresolved
+    return as_lost(body, lost, TrackingLoss.LEAP), np.union1d(arrivals, spikes), unresolved
 
 
 class _Steps:
@@ -280,7 +133,7 @@ class _Steps:
     def spikes(self, known: Index) -> Index:
         """Rows of single poses far out of two neighbors that are near each other."""
         before, here, after = known[:-2], known[1:-1], known[2:]
-        soon = self._elapsed[after] - self._elapsed[before] <= _LONGEST_EXCURSION_S
+        soon = self._elapsed[after] - self._elapsed[before] <= LONGEST_EXCURSION_S
         out, back, across = self._between(before, here), self._between(here, after), self._between(before, after)
         spike = np.zeros(here.size, dtype=np.bool_)
         for there, here_back, past, least in zip(out, back, across, (_SPIKE_TURN, _SPIKE_DISTANCE_M), strict=True):
@@ -322,7 +175,7 @@ class _Steps:
         return f" by up to {np.degrees(turn.max(initial=0.0)):.0f} deg and {1000 * distance.max(initial=0.0):.0f} mm"
 
     def _between(self, start: Index, end: Index) -> tuple[Float, Float]:
-        before, after = _taken(self._pose, start), _taken(self._pose, end)
+        before, after = poses_at(self._pose, start), poses_at(self._pose, end)
         return angle_between(before, after), origin_distance(before, after)
 
 
@@ -335,13 +188,6 @@ def _if_it_is_real(turn_deg_s: float | None) -> str:
         f"; it turns evenly there, at up to {turn_deg_s:.0f} deg/s, as a fast body does and a flip does not: if that "
         f"is real, --max-turn {enough:.0f} keeps it"
     )
-
-
-def _taken(pose: Float, rows: Index) -> Float:
-    """Poses of increasing rows; a view where none is left out, as in most recordings."""
-    if rows.size and rows[-1] - rows[0] == rows.size - 1:
-        return pose[rows[0] : rows[-1] + 1]
-    return pose[rows]
 
 
 def _excursions(segments: Sequence[Index], steps: _Steps, elapsed: Float) -> tuple[Index, Index]:
@@ -359,91 +205,10 @@ def _excursions(segments: Sequence[Index], steps: _Steps, elapsed: Float) -> tup
             segment = segments[k]
             if steps.possible(np.array([good]), segment[[near]])[0]:
                 good = segment[far]
-            elif abs(elapsed[segment[-1]] - elapsed[segment[0]]) <= _LONGEST_EXCURSION_S:
+            elif abs(elapsed[segment[-1]] - elapsed[segment[0]]) <= LONGEST_EXCURSION_S:
                 outside.append(segment)
             else:
                 unresolved.append(int(segment[0] if near == 0 else segments[k + 1][0]))
                 good = segment[far]
     rows = np.sort(np.concatenate(outside)) if outside else segments[0][:0]
     return rows, np.array(sorted(unresolved), dtype=np.intp)
-
-
-def check_swaps(one: RigidBody, other: RigidBody, recording: Recording, elapsed: Float) -> tuple[QualityWarning, ...]:
-    """Tell of frames at which two bodies, as they are in the file, take each other's place, be it behind a short gap.
-
-    Parameters
-    ----------
-    one, other : RigidBody
-        Unchecked.
-    recording : Recording
-        Gives the frame numbers.
-    elapsed : ndarray, shape (N,)
-        Seconds.
-    """
-    rows = np.flatnonzero(one.tracked & other.tracked)
-    before, after = rows[:-1], rows[1:]
-    starts, ends = ([_taken(body.dual_quat_lab_body, at) for body in (one, other)] for at in (before, after))
-    moved = origin_distance(ends[0], starts[0]), origin_distance(ends[1], starts[1])
-    crossed = origin_distance(ends[0], starts[1]) + origin_distance(ends[1], starts[0])
-    swapped = after[
-        (crossed < _CROSSED_SHARE * (moved[0] + moved[1]))
-        & (np.minimum(*moved) > _LEAST_SWAP_M)
-        & (elapsed[after] - elapsed[before] <= _LONGEST_EXCURSION_S)
-    ]
-    if not swapped.size:
-        return ()
-    message = (
-        f"bodies {one.name!r} and {other.name!r} swap places at {_frames(swapped, recording)}: their poses "
-        "are swapped from there on, or up to there; relabel them in Motive"
-    )
-    return (frames_warning("swapped-bodies", message, swapped, recording),)
-
-
-def check_same_pose(one: RigidBody, other: RigidBody) -> tuple[QualityWarning, ...]:
-    """Tell of two bodies, unchecked, that have one and the same changing pose wherever both have one."""
-    rows = np.flatnonzero(one.tracked & other.tracked)
-    first, second = one.dual_quat_lab_body[rows], other.dual_quat_lab_body[rows]
-    if rows.size < 2 or not (align_signs(second, first) == first).all():
-        return ()
-    message = (
-        f"bodies {one.name!r} and {other.name!r} have one and the same pose in every frame, as one body under two "
-        "names has: nothing moves between them"
-    )
-    return (QualityWarning(code="same-pose", message=message, count=int(rows.size)),)
-
-
-def check_constant_positions(one: RigidBody, other: RigidBody) -> tuple[QualityWarning, ...]:
-    """Tell of two bodies, unchecked, that both turn while the positions of both are exactly constant."""
-    for body in (one, other):
-        rotation, position = pose_from_dual_quat(body.dual_quat_lab_body[body.tracked])
-        if len(position) < 2 or (np.ptp(position, axis=0) > _CONSTANT_M).any():
-            return ()
-        if (np.abs(rotation @ rotation[0]) > np.cos(_TURNED / 2.0)).all():
-            return ()
-    message = (
-        f"bodies {one.name!r} and {other.name!r} turn while their positions stay exactly as they are: these are no "
-        "measured positions, and nothing says where the joint is"
-    )
-    return (QualityWarning(code="constant-positions", message=message),)
-
-
-def _lost(body: RigidBody, rows: Index, reason: TrackingLoss) -> RigidBody:
-    if not rows.size and body.tracked.all():
-        return body  # as most are, and no copy is needed
-    loss = body.loss.copy()
-    loss[rows] = reason
-    lost = (loss != TrackingLoss.NONE)[:, None]
-    return replace(body, loss=loss, dual_quat_lab_body=np.where(lost, np.nan, body.dual_quat_lab_body))
-
-
-def frames_warning(
-    code: str, message: str, rows: Index, recording: Recording, severity: Literal["warning", "note"] = "warning"
-) -> QualityWarning:
-    """Build a warning about some rows of a recording."""
-    told = tuple(recording.frame[rows[:_FRAMES_TOLD]].tolist())
-    return QualityWarning(code=code, message=message, severity=severity, frames=told, count=int(rows.size))
-
-
-def _frames(rows: Index, recording: Recording) -> str:
-    first = recording.frame[rows[0]]
-    return f"frame {first}" if rows.size == 1 else f"{rows.size} of {recording.frame.size} frames (first {first})"

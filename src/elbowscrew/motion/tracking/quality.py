@@ -11,15 +11,10 @@ from numpy.typing import NDArray
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import BodyQuality, ClockQuality, QualityWarning, Recording, RigidBody, Spread
 from elbowscrew.motion.difference import angle_between, origin_distance
+from elbowscrew.motion.tracking.body_pairs import check_constant_positions, check_same_pose, check_swaps
 from elbowscrew.motion.tracking.clock import allowed_offset, elapsed_time
-from elbowscrew.motion.tracking.leaps import (
-    CheckedBody,
-    check_constant_positions,
-    check_same_pose,
-    check_swaps,
-    check_tracking,
-    frames_warning,
-)
+from elbowscrew.motion.tracking.losses import frames_warning
+from elbowscrew.motion.tracking.lost_poses import CheckedBody, check_tracking
 from elbowscrew.settings import Settings
 
 _LARGE_RESIDUAL_M: Final = 0.005

@@ -1,0 +1,81 @@
+"""What two bodies of a recording do together that no two bodies can: swap places, be one, or stand where they turn."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from elbowscrew.geometry.arrays import Float
+from elbowscrew.geometry.dual_quaternion import align_signs, pose_from_dual_quat
+from elbowscrew.model import QualityWarning, Recording, RigidBody
+from elbowscrew.motion.difference import origin_distance
+from elbowscrew.motion.tracking.leaps import LONGEST_EXCURSION_S
+from elbowscrew.motion.tracking.losses import frames_of, frames_warning, poses_at
+
+# Two bodies are swapped if each comes to lie where the other was, much nearer than to where it was itself.
+_CROSSED_SHARE: Final = 0.25
+_LEAST_SWAP_M: Final = 0.05
+
+# Positions that were never measured: constant to the arithmetic's last digits while the body turns.
+_CONSTANT_M: Final = 1e-12
+_TURNED: Final = np.radians(1.0)
+
+
+def check_swaps(one: RigidBody, other: RigidBody, recording: Recording, elapsed: Float) -> tuple[QualityWarning, ...]:
+    """Tell of frames at which two bodies, as they are in the file, take each other's place, be it behind a short gap.
+
+    Parameters
+    ----------
+    one, other : RigidBody
+        Unchecked.
+    recording : Recording
+        Gives the frame numbers.
+    elapsed : ndarray, shape (N,)
+        Seconds.
+    """
+    rows = np.flatnonzero(one.tracked & other.tracked)
+    before, after = rows[:-1], rows[1:]
+    starts, ends = ([poses_at(body.dual_quat_lab_body, at) for body in (one, other)] for at in (before, after))
+    moved = origin_distance(ends[0], starts[0]), origin_distance(ends[1], starts[1])
+    crossed = origin_distance(ends[0], starts[1]) + origin_distance(ends[1], starts[0])
+    swapped = after[
+        (crossed < _CROSSED_SHARE * (moved[0] + moved[1]))
+        & (np.minimum(*moved) > _LEAST_SWAP_M)
+        & (elapsed[after] - elapsed[before] <= LONGEST_EXCURSION_S)
+    ]
+    if not swapped.size:
+        return ()
+    message = (
+        f"bodies {one.name!r} and {other.name!r} swap places at {frames_of(swapped, recording)}: their poses "
+        "are swapped from there on, or up to there; relabel them in Motive"
+    )
+    return (frames_warning("swapped-bodies", message, swapped, recording),)
+
+
+def check_same_pose(one: RigidBody, other: RigidBody) -> tuple[QualityWarning, ...]:
+    """Tell of two bodies, unchecked, that have one and the same changing pose wherever both have one."""
+    rows = np.flatnonzero(one.tracked & other.tracked)
+    first, second = one.dual_quat_lab_body[rows], other.dual_quat_lab_body[rows]
+    if rows.size < 2 or not (align_signs(second, first) == first).all():
+        return ()
+    message = (
+        f"bodies {one.name!r} and {other.name!r} have one and the same pose in every frame, as one body under two "
+        "names has: nothing moves between them"
+    )
+    return (QualityWarning(code="same-pose", message=message, count=int(rows.size)),)
+
+
+def check_constant_positions(one: RigidBody, other: RigidBody) -> tuple[QualityWarning, ...]:
+    """Tell of two bodies, unchecked, that both turn while the positions of both are exactly constant."""
+    for body in (one, other):
+        rotation, position = pose_from_dual_quat(body.dual_quat_lab_body[body.tracked])
+        if len(position) < 2 or (np.ptp(position, axis=0) > _CONSTANT_M).any():
+            return ()
+        if (np.abs(rotation @ rotation[0]) > np.cos(_TURNED / 2.0)).all():
+            return ()
+    message = (
+        f"bodies {one.name!r} and {other.name!r} turn while their positions stay exactly as they are: these are no "
+        "measured positions, and nothing says where the joint is"
+    )
+    return (QualityWarning(code="constant-positions", message=message),)
