@@ -107,6 +107,8 @@ def test_what_programs_make_of_the_format_says_the_same(
     assert np.concatenate([marker.position for marker in recording.markers], axis=1) == pytest.approx(PLACES, abs=1e-12)
     assert recording.frame.tolist() == [1, 2, 3, 4, 5, 6]
     assert recording.rate_hz == pytest.approx(50.0)
+    taken_in_order = "markers-in-order" in {warning.code for warning in recording.warnings}
+    assert taken_in_order == (change in (doubled_tabs_over_the_axes, names_in_a_row))
 
 
 @pytest.mark.parametrize(

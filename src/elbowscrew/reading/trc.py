@@ -27,11 +27,15 @@ _NAMES_TOLD: Final = 5
 
 
 class _Header(NamedTuple):
-    """What is stated, the first column of each marker by its name, names without columns, cells and lines."""
+    """What is stated, the first column of each marker by its name, names without columns, cells and lines.
+
+    `in_order` says that the names do not stand over their columns and were taken one after the other.
+    """
 
     stated: dict[str, str]
     columns: dict[str, int]
     nowhere: list[str]
+    in_order: bool
     width: int
     lines: int
 
@@ -69,6 +73,9 @@ def read(source: TextSource, options: ReadOptions) -> Recording:
         told = ", ".join(header.nowhere[:_NAMES_TOLD])
         message = f"{len(header.nowhere)} markers are named in the header and have no columns ({told}): left out"
         warnings.append(QualityWarning(code="markers-without-columns", message=message, severity="note"))
+    if header.in_order:
+        message = "the markers' names do not stand over their columns: taken in order, as there are as many"
+        warnings.append(QualityWarning(code="markers-in-order", message=message, severity="note"))
     return Recording(
         bodies=(),
         frame=frame,
@@ -99,9 +106,9 @@ def _header(source: TextSource) -> _Header:
     keys = next((k for k, row in enumerate(rows[: at - 1]) if " ".join(row).casefold().startswith("datarate")), None)
     stated = {} if keys is None else _pairs(rows[keys], rows[keys + 1])
     names, axes = rows[at], rows[at + 1]
-    columns, nowhere, width = _marker_columns(source, at + 1, names, axes)
+    columns, nowhere, in_order, width = _marker_columns(source, at + 1, names, axes)
     blank = next((k for k, row in enumerate(rows[at + 2 :]) if any(row)), 0)
-    return _Header(stated, columns, nowhere, width, at + 2 + blank)
+    return _Header(stated, columns, nowhere, in_order, width, at + 2 + blank)
 
 
 def _pairs(keys: list[str], values: list[str]) -> dict[str, str]:
@@ -117,8 +124,8 @@ def _pairs(keys: list[str], values: list[str]) -> dict[str, str]:
 
 def _marker_columns(
     source: TextSource, line: int, names: list[str], axes: list[str]
-) -> tuple[dict[str, int], list[str], int]:
-    """First column of each marker, the names that have none, and the cells of a line.
+) -> tuple[dict[str, int], list[str], bool, int]:
+    """First column of each marker, the names that have none, whether they are taken in order, and the cells of a line.
 
     A name stands over its X; where one does not, all are taken in order if there are as many as columns for them. Of
     markers of one name each has its number behind it.
@@ -129,7 +136,8 @@ def _marker_columns(
         axes = ["", "", *labels]
     begins = [k for k in range(2, len(axes), 3) if any(axes[k : k + 3])]
     whole = [cell[0].upper() for cell in labels] == [*"XYZ"] * len(begins)
-    if not all(k % 3 == 2 for _, k in found) and len(found) == len(begins):
+    in_order = not all(k % 3 == 2 for _, k in found) and len(found) == len(begins)
+    if in_order:
         found = [(name, k) for (name, _), k in zip(found, begins, strict=True)]
     wrong = next((one for one in found if one[1] % 3 != 2), None)
     if not whole or wrong is not None:
@@ -146,4 +154,4 @@ def _marker_columns(
     for name, k in there:
         seen[name] += 1
         columns[name if twice[name] == 1 else f"{name} ({seen[name]})"] = k
-    return columns, [name for name, k in found if k not in begins], max((k + 3 for k in begins), default=2)
+    return columns, [name for name, k in found if k not in begins], in_order, max((k + 3 for k in begins), default=2)
