@@ -13,14 +13,7 @@ from elbowscrew.cli.analysis_options import OUTPUT, settings_options
 
 @settings_options()
 def analyze(
-    trial: Annotated[
-        Path,
-        typer.Argument(
-            metavar="TRIAL",
-            help="A recording: Motive, plain table, TRC, C3D, Qualisys 6D or 4 x 4.",
-            show_default=False,
-        ),
-    ],
+    trial: options.TrialFile,
     distal_path: options.DistalFile = None,
     output: Annotated[
         Path | None,

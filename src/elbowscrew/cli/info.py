@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Annotated, Any
 
 import typer
@@ -13,14 +12,7 @@ from elbowscrew.cli.analysis_options import settings_options
 
 @settings_options("units", "rotation", "rate", "frozen", "max-turn", "max-speed")
 def info(
-    trial: Annotated[
-        Path,
-        typer.Argument(
-            metavar="TRIAL",
-            help="A recording: Motive, plain table, TRC, C3D, Qualisys 6D or 4 x 4.",
-            show_default=False,
-        ),
-    ],
+    trial: options.TrialFile,
     distal_path: options.DistalFile = None,
     markers: Annotated[
         list[str] | None, typer.Option(metavar="NAMES", help="Markers to describe: names or patterns, with commas.")

@@ -19,6 +19,15 @@ LandmarksFile = Annotated[
 ]
 
 
+TrialFile = Annotated[
+    Path,
+    typer.Argument(
+        metavar="TRIAL",
+        help="A recording: Motive, plain table, TRC, C3D, Qualisys 6D or 4 x 4.",
+        show_default=False,
+    ),
+]
+
 DistalFile = Annotated[
     Path | None,
     typer.Argument(

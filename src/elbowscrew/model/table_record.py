@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,15 +17,15 @@ if TYPE_CHECKING:
     import pandas as pd
 
 
-class TableRecord(ArrayRecord):
+class TableRecord(ArrayRecord, ABC):
     """A result that is written as a table; `table` has its columns."""
 
     __slots__ = ()
 
     @property
+    @abstractmethod
     def table(self) -> tuple[Column, ...]:
         """Columns of this result, in order."""
-        raise NotImplementedError
 
     def columns(
         self, angle_unit: AngleUnit = "deg", length_unit: LengthUnit = "mm", rows: slice = slice(None)

@@ -8,6 +8,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowscrew.opening import open_bytes
 from elbowscrew.reading.c3d_parameters import BIG_ENDIAN, Parameter, Statements
 
 _INTEL: Final = 84
@@ -28,7 +29,8 @@ def mended(path: Path, stated: Statements) -> bytes | None:
     offsets = [one for one, _ in entries if one is not None and _is_float_offset(one)]
     if stated.processor != BIG_ENDIAN and not offsets:
         return None
-    data = np.frombuffer(path.read_bytes(), dtype=np.uint8).copy()
+    with open_bytes(path) as stream:
+        data = np.frombuffer(stream.read(), dtype=np.uint8).copy()
     if stated.processor == BIG_ENDIAN:
         at = stated.parameters_at
         for place in (*_HEADER_WORDS, *(at + link_at for _, link_at in entries)):
