@@ -159,6 +159,17 @@ def test_who_reads_changes_neither_work_nor_exit_code(tmp_path: Path, take: byte
     assert names >= {"good", "summary.csv", "failures.csv", "index.html"}
 
 
+def test_closed_streams_lead_to_nowhere_in_what_is_started_too() -> None:
+    program = (
+        "import os, sys; sys.argv[1:] = ['info', 'none.csv']; from elbowscrew.cli import command; code = command(); "
+        "nowhere = os.stat(os.devnull); "
+        "print(code, [os.path.samestat(os.fstat(k), nowhere) and os.get_inheritable(k) for k in (0, 2)])"
+    )
+    script = f'{sys.executable} -c "{program}" <&- 2>&-'
+    done = subprocess.run(["bash", "-c", script], capture_output=True, text=True, check=True)
+    assert done.stdout == "3 [True, True]\n"
+
+
 def test_a_usage_error_costs_no_tables(tmp_path: Path, take: bytes) -> None:
     (tmp_path / "take.csv").write_bytes(take)
     out = tmp_path / "out"

@@ -24,6 +24,7 @@ def command() -> int:
     """Run the command line as a process of its own; see `main`."""
     if sys.argv[1:] == ["--version"] and _version_told():
         return 0
+    _fill_closed_streams()
     from elbowscrew._search_path import leave_out_current_folder
 
     leave_out_current_folder()  # before anything else is imported
@@ -36,6 +37,20 @@ def command() -> int:
     code = main()
     gc.freeze()  # all of it ends with the process: a last search for garbage takes a tenth of a second
     return code
+
+
+def _fill_closed_streams() -> None:
+    """Let the first three descriptors lead to nowhere where they are closed, here and in processes that are started.
+
+    Else the next files or pipes to be opened get their numbers, and a worker is given others in their place.
+    """
+    import os
+
+    for number in range(3):
+        try:
+            os.fstat(number)
+        except OSError:
+            os.set_inheritable(os.open(os.devnull, os.O_RDWR), True)  # it gets the lowest number that is free
 
 
 def _version_told() -> bool:
