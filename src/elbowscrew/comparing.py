@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any, Final
 
@@ -22,7 +22,11 @@ _VALUES: Final = ("rms_displacement", "max_displacement", "rms_angle_error", "ma
 
 
 def compare_trials(
-    paths: Iterable[str | os.PathLike[str]], settings: Settings | None = None, plan: ComparisonPlan | None = None
+    paths: Iterable[str | os.PathLike[str]],
+    settings: Settings | None = None,
+    plan: ComparisonPlan | None = None,
+    *,
+    report: Callable[[int, int], None] = lambda _done, _total: None,
 ) -> TrialsComparison:
     """Compare models over several recordings.
 
@@ -32,6 +36,8 @@ def compare_trials(
         Recordings, each compared by itself as `elbowscrew.compare` does.
     settings : Settings, optional
     plan : ComparisonPlan, optional
+    report : callable
+        Told after each recording how many are done, and of how many.
 
     Returns
     -------
@@ -59,7 +65,8 @@ def compare_trials(
     wanted = settings or Settings()
     found: list[Comparison] = []
     failures: list[tuple[str, ElbowscrewError]] = []
-    for path in paths:
+    given = list(paths)
+    for number, path in enumerate(given, start=1):
         try:
             recording = read_recording(
                 path, units=wanted.units, rotation=wanted.rotation, rate_hz=wanted.rate_hz, markers=wanted.markers
@@ -67,6 +74,7 @@ def compare_trials(
             found.append(compare(recording, wanted, plan))
         except ElbowscrewError as error:
             failures.append((str(path), error))
+        report(number, len(given))
     if not found:
         why = f"; the first, {Path(failures[0][0]).name}: {failures[0][1]}" if failures else ": there is none"
         msg = f"none of the {len(failures)} recordings can be compared{why}"

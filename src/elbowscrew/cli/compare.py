@@ -101,7 +101,9 @@ def compare(
     json_output: Annotated[
         bool, typer.Option("--json", help="Print compare.json instead of the table.", rich_help_panel=OUTPUT)
     ] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print no table.", rich_help_panel=OUTPUT)] = False,
+    quiet: Annotated[
+        bool, typer.Option("--quiet", "-q", help="Print neither table nor progress.", rich_help_panel=OUTPUT)
+    ] = False,
 ) -> None:
     """Compare models of one motion, or of a folder of recordings.
 
@@ -109,6 +111,7 @@ def compare(
     that keep it under a tolerance.
     """
     from elbowscrew.cli import render
+    from elbowscrew.cli.progress import shown_steps
     from elbowscrew.configuring import settings_from
     from elbowscrew.errors import ElbowscrewError
     from elbowscrew.reading.registry import read_recording, recordings_in
@@ -127,7 +130,8 @@ def compare(
     if trial.is_dir():
         from elbowscrew.comparing import compare_trials
 
-        over_trials = compare_trials(recordings_in(trial), settings, plan)
+        with shown_steps("Trials", quiet=quiet) as report:
+            over_trials = compare_trials(recordings_in(trial), settings, plan, report=report)
         summary = write_comparison(over_trials, target, force=force)
         for path, error in over_trials.failures:
             render.note(f"{path}: {error}" if path not in str(error) else str(error))
@@ -135,18 +139,19 @@ def compare(
     else:
         from elbowscrew.motion.interpolation.comparison import compare as compare_recording
 
-        recording = read_recording(
-            trial,
-            units=settings.units,
-            rotation=settings.rotation,
-            rate_hz=settings.rate_hz,
-            markers=settings.markers,
-        )
-        try:
-            comparison = compare_recording(recording, settings, plan)
-        except ElbowscrewError as error:
-            msg = f"{trial}: {error}"
-            raise type(error)(msg) from error
+        with shown_steps("Steps", quiet=quiet) as report:
+            recording = read_recording(
+                trial,
+                units=settings.units,
+                rotation=settings.rotation,
+                rate_hz=settings.rate_hz,
+                markers=settings.markers,
+            )
+            try:
+                comparison = compare_recording(recording, settings, plan, report=report)
+            except ElbowscrewError as error:
+                msg = f"{trial}: {error}"
+                raise type(error)(msg) from error
         summary = write_comparison(comparison, target, force=force)
         render.warnings(warnings_summary(comparison.warnings))
         failed = False

@@ -1,7 +1,8 @@
-"""The progress of a batch on standard error: a bar on a terminal, a line now and then elsewhere."""
+"""Progress on standard error: of a batch a bar on a terminal, a line now and then elsewhere; else a bar if it lasts."""
 
 from __future__ import annotations
 
+import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -15,6 +16,7 @@ from elbowscrew.cli.text import one_line, tell
 from elbowscrew.study.study import Progress
 
 _SECONDS_BETWEEN_LINES = 10.0
+_SECONDS_WITHOUT_BAR = 2.0
 
 
 @contextmanager
@@ -27,14 +29,7 @@ def shown_progress(*, quiet: bool, verbose: bool) -> Iterator[Callable[[Progress
     if not console.is_terminal:
         yield _Lines(verbose)
         return
-    columns = (
-        TextColumn("{task.description}"),
-        BarColumn(),
-        MofNCompleteColumn(),
-        TextColumn("{task.fields[told]}"),
-        TimeRemainingColumn(),
-    )
-    with Bar(*columns, console=console, transient=True) as bar:
+    with _bar(console) as bar:
         task = bar.add_task("Trials", total=None, told="")
         rate = _Rate()
 
@@ -46,6 +41,39 @@ def shown_progress(*, quiet: bool, verbose: bool) -> Iterator[Callable[[Progress
                 bar.console.print(Text(one_line(f"failed: {progress.latest.failure.message}")))
 
         yield show
+
+
+@contextmanager
+def shown_steps(what: str, *, quiet: bool) -> Iterator[Callable[[int, int], None]]:
+    """Give a function that shows how many steps are done and of how many, on a terminal and once they take a while."""
+    console = Console(stderr=True)
+    if quiet or not console.is_terminal:
+        yield lambda _done, _total: None
+        return
+    bar = _bar(console)
+    task = bar.add_task(what, total=None, told="")
+    # By a clock of its own, so that a first step that never seems to end is shown too.
+    begin = threading.Timer(_SECONDS_WITHOUT_BAR, bar.start)
+    begin.daemon = True
+    begin.start()
+    try:
+        yield lambda done, total: bar.update(task, completed=done, total=total)
+    finally:
+        begin.cancel()
+        begin.join()
+        if bar.live.is_started:
+            bar.stop()
+
+
+def _bar(console: Console) -> Bar:
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TextColumn("{task.fields[told]}"),
+        TimeRemainingColumn(),
+    )
+    return Bar(*columns, console=console, transient=True)
 
 
 class _Lines:

@@ -60,6 +60,18 @@ def test_two_keyframes_a_phase_are_the_model_of_analyze(method: Any, law: Any) -
     assert found.models.max_displacement_frame[row].tolist() == [modeled.frame[worst]]
 
 
+def test_each_step_is_reported_and_the_last_is_the_fewest_keyframes(tmp_path: Path) -> None:
+    told: list[tuple[int, int]] = []
+    models = compare(TRIAL, plan=SMALL, report=lambda *step: told.append(step)).models
+    steps = models.rank.size + 1
+    assert told == [(done, steps) for done in range(1, steps + 1)]
+    told.clear()
+    save_simulation(simulate_trial(frames=60, inversion=30), tmp_path / "take.csv")
+    paths = [tmp_path / "missing.csv", tmp_path / "take.csv"]
+    found = compare_trials(iter(paths), plan=SMALL, report=lambda *step: told.append(step))
+    assert (len(found.trials), len(found.failures), told) == (1, 1, [(1, 2), (2, 2)])
+
+
 def test_models_are_ranked_and_every_model_is_there_once() -> None:
     models = compare(TRIAL, plan=SMALL).models
     assert (np.diff(models.rms_displacement[models.note == ""]) >= 0.0).all()

@@ -44,7 +44,13 @@ _LONG_ENOUGH_S: Final = 0.003
 _DEFAULT_TOLERANCE: Final = 2e-3
 
 
-def compare(recording: Recording, settings: Settings | None = None, plan: ComparisonPlan | None = None) -> Comparison:
+def compare(
+    recording: Recording,
+    settings: Settings | None = None,
+    plan: ComparisonPlan | None = None,
+    *,
+    report: Callable[[int, int], None] = lambda _done, _total: None,
+) -> Comparison:
     """Compare models of one motion.
 
     Each model's keyframes stand evenly in time in each phase of the motion. The difference is that from the measured
@@ -60,6 +66,8 @@ def compare(recording: Recording, settings: Settings | None = None, plan: Compar
         2 mm by default, and its low-pass that of the filtered keyframes, found by residual analysis by default.
     plan : ComparisonPlan, optional
         Which models.
+    report : callable
+        Told after each step how many are done, and of how many: a step a model, and the fewest keyframes as the last.
 
     Returns
     -------
@@ -88,7 +96,9 @@ def compare(recording: Recording, settings: Settings | None = None, plan: Compar
     joint = _joint(measured, joint_type) if "joint" in plan.methods else None
     rows: list[dict[str, Any]] = []
     laws: dict[str, tuple[PhaseLaw, ...]] = {}
-    for source in keyframe_sources_of(measured, phases, plan, wanted):
+    sources, models = list(keyframe_sources_of(measured, phases, plan, wanted)), list(models_of(plan))
+    steps = len(sources) * len(models) + 1
+    for source in sources:
         fitted: dict[str, tuple[FittedLaw, ...] | str] = {
             name: _laws_of(name, source, measured, points) for name in plan.laws
         }
@@ -97,13 +107,13 @@ def compare(recording: Recording, settings: Settings | None = None, plan: Compar
                 name: () if isinstance(found, str) else tuple(one.law for one in found)
                 for name, found in fitted.items()
             }
-        ways = {method: _way(method, source, joint) for method in {model.method for model in models_of(plan)}}
-        rows += [
-            _row(model, source, fitted[model.law], ways[model.method], measured, points, raw)
-            for model in models_of(plan)
-        ]
+        ways = {method: _way(method, source, joint) for method in {model.method for model in models}}
+        for model in models:
+            rows.append(_row(model, source, fitted[model.law], ways[model.method], measured, points, raw))
+            report(len(rows), steps)
     tolerance = _DEFAULT_TOLERANCE if wanted.tolerance_mm is None else 1e-3 * wanted.tolerance_mm
     selections, doubts = _selections(measured, phases, points, tolerance, plan.methods, joint)
+    report(steps, steps)
     return Comparison(
         recording=measured.recording,
         settings=wanted.model_copy(update={"express_in": measured.express_in}),

@@ -1,0 +1,85 @@
+"""The bar that ``compare`` shows: on a terminal, once it takes a while, and nowhere else."""
+
+from __future__ import annotations
+
+import io
+import time
+from pathlib import Path
+
+import pytest
+from rich.console import Console
+
+from elbowscrew import save_simulation, simulate_trial
+from elbowscrew.cli import main, progress
+
+
+@pytest.fixture
+def terminal(monkeypatch: pytest.MonkeyPatch) -> io.StringIO:
+    """A terminal in place of standard error, and no time until the bar stands there."""
+    screen = io.StringIO()
+    monkeypatch.setattr(progress, "Console", lambda stderr: Console(file=screen, force_terminal=stderr, width=80))
+    monkeypatch.setattr(progress, "_SECONDS_WITHOUT_BAR", 0.0)
+    return screen
+
+
+def awaited(screen: io.StringIO, text: str) -> bool:
+    """Whether a text appears on a screen that a thread of its own draws."""
+    end = time.monotonic() + 60.0
+    while text not in screen.getvalue() and time.monotonic() < end:
+        time.sleep(0.01)
+    return text in screen.getvalue()
+
+
+def test_steps_are_counted_before_and_while_the_bar_stands(terminal: io.StringIO) -> None:
+    with progress.shown_steps("Steps", quiet=False) as report:
+        assert awaited(terminal, "Steps")
+        report(3, 7)
+        assert awaited(terminal, "3/7")
+    gone = terminal.getvalue()
+    assert gone.endswith("\x1b[2K")  # the line is empty again
+    time.sleep(0.2)
+    assert terminal.getvalue() == gone
+
+
+@pytest.mark.parametrize("case", ["quiet", "no terminal", "soon done"])
+def test_there_is_no_bar(case: str, terminal: io.StringIO, monkeypatch: pytest.MonkeyPatch) -> None:
+    if case == "soon done":
+        monkeypatch.setattr(progress, "_SECONDS_WITHOUT_BAR", 3600.0)
+    if case == "no terminal":
+        monkeypatch.setattr(progress, "Console", lambda stderr: Console(file=terminal, force_terminal=not stderr))
+    with progress.shown_steps("Steps", quiet=case == "quiet") as report:
+        for done in range(5):
+            report(done, 5)
+        time.sleep(0.2)
+    assert terminal.getvalue() == ""
+
+
+@pytest.mark.parametrize(("trial", "steps"), [("take.csv", "16/16"), (".", "1/1")])
+def test_compare_shows_its_steps_and_quiet_shows_nothing(
+    trial: str,
+    steps: str,
+    terminal: io.StringIO,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    save_simulation(simulate_trial(frames=60, inversion=30), Path("take.csv"))
+    given = [
+        "compare",
+        trial,
+        "--laws",
+        "linear",
+        "--counts",
+        "2,3",
+        "--data",
+        "raw",
+        "--figure-format",
+        "none",
+        "--json",
+    ]
+    assert main([*given, "-o", "quiet", "--quiet"]) == 0
+    assert terminal.getvalue() == ""
+    assert main([*given, "-o", "shown"]) == 0
+    assert steps in terminal.getvalue()
+    assert capsys.readouterr().err == ""
