@@ -17,8 +17,8 @@ from elbowscrew.model import BodyQuality, JointMotion, QualityWarning, Recording
 from elbowscrew.motion.screws.frames import frame_called
 from elbowscrew.motion.screws.helical import HelicalSeries, helical_series
 from elbowscrew.motion.screws.pose_noise import JointNoise
-from elbowscrew.motion.screws.relative import displacement, expressed, frame_change, joint_from_bodies
-from elbowscrew.motion.screws.sense import sense_of
+from elbowscrew.motion.screws.relative import displacement, expressed, fill_doubts, frame_change, joint_from_bodies
+from elbowscrew.motion.screws.sense import rotation_noise, sense_of
 from elbowscrew.motion.screws.sense_doubts import sense_warnings
 from elbowscrew.motion.screws.uncertainty import (
     ScrewErrors,
@@ -60,6 +60,14 @@ class Unfiltered(NamedTuple):
         """Pose of the distal body in the proximal one, shape (M, 8); NaN where either has none."""
         distal = self.distal.dual_quat_lab_body
         return distal if self.proximal is None else multiply(conjugate(self.proximal.dual_quat_lab_body), distal)
+
+    def fill_doubts(self, max_gap_s: float, frame: NDArray[np.int64]) -> tuple[QualityWarning, ...]:
+        """Say where gaps that are filled may be far off; see `relative.fill_doubts`."""
+        series = self.relative
+        if np.isfinite(series[:, 0]).all():
+            return ()
+        noise = rotation_noise(series[:, :4])
+        return fill_doubts(series, self.elapsed, self.rate_hz, max_gap_s, self.broken_rows, frame, noise)
 
 
 class Measurement(NamedTuple):
@@ -137,6 +145,7 @@ def measure(recording: Recording, settings: Settings) -> Measurement:
     elapsed = tracked.elapsed
     noise = JointNoise.of(proximal, distal, recording.rate_hz, settings)
     unfiltered = Unfiltered(proximal, distal, elapsed, recording.rate_hz, broken_rows)
+    warnings += unfiltered.fill_doubts(settings.max_gap_s, recording.frame)
     own_hz, wanted_hz, none_broken = recording.rate_hz, settings.resample_hz, np.empty(0, dtype=np.intp)
     if wanted_hz is not None and settings.lowpass_hz is not None and other_rate(elapsed, own_hz) is not None:
         # A filter needs an even clock: here as fast as the recording ever is, so that nothing folds before the filter.

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -9,8 +11,12 @@ from elbowscrew.choices import ExpressIn
 from elbowscrew.errors import AnalysisError, SettingError
 from elbowscrew.geometry import dlb
 from elbowscrew.geometry.dual_quaternion import conjugate, continuous_signs, multiply
-from elbowscrew.model import JointMotion, RigidBody
-from elbowscrew.motion.smoothing.gaps import fill_gaps
+from elbowscrew.model import JointMotion, QualityWarning, RigidBody
+from elbowscrew.motion.smoothing.gaps import fill_gaps, filled_gaps
+
+# What is filled in is told to be doubtful from so many radians on, and so many times what the noise explains.
+_DOUBTFUL: Final = float(np.radians(1.0))
+_OVER_NOISE: Final = 2.0
 
 IDENTITY = np.array([1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])
 
@@ -90,6 +96,54 @@ def joint_from_bodies(
         lowpass_hz=lowpass_hz,
         dual_quat_lab_proximal=IDENTITY if proximal is None else _mean_pose(proximal_pose[window]),
     )
+
+
+def fill_doubts(
+    series: NDArray[np.float64],
+    elapsed: NDArray[np.float64],
+    rate_hz: float,
+    max_gap_s: float,
+    broken_rows: NDArray[np.intp],
+    frame: NDArray[np.int64],
+    noise: float,
+) -> tuple[QualityWarning, ...]:
+    """Say where what is filled in may be far off, by the motion at the two ends of the gap.
+
+    Parameters
+    ----------
+    series : ndarray, shape (N, 8)
+        Relative motion as it was recorded; NaN where there is no pose.
+    elapsed : ndarray, shape (N,)
+        Seconds.
+    rate_hz, max_gap_s, broken_rows
+        As in `fill_gaps`.
+    frame : ndarray of int64, shape (N,)
+        For messages.
+    noise : float
+        Standard deviation of a component of the rotation, radians.
+    """
+    filled = fill_gaps(continuous_signs(series), elapsed, rate_hz, max_gap_s, broken_rows)[1]
+    gaps = filled_gaps(series, filled, elapsed, rate_hz)
+    unknown = np.isnan(gaps.off)
+    off, off_sd = np.nan_to_num(gaps.off), noise * np.nan_to_num(gaps.noise)
+    doubtful = off > np.maximum(_DOUBTFUL, _OVER_NOISE * off_sd)
+    off += off_sd
+    parts = []
+    if doubtful.any():
+        worst = int(np.argmax(np.where(doubtful, off, 0.0)))
+        lost = frame[[gaps.before[worst] + 1, gaps.after[worst] - 1]].tolist()
+        where = f"frame {lost[0]}" if lost[0] == lost[1] else f"frames {lost[0]} to {lost[1]}"
+        parts.append(
+            f"by the speeds at its ends the joint may be up to {np.degrees(off[worst]):.2g} deg off the poses that are "
+            f"put in for {where}, and by over {np.degrees(_DOUBTFUL):g} deg in {doubtful.sum()} of {off.size} filled "
+            "gaps"
+        )
+    if unknown.any():
+        parts.append(f"no speed is known at the ends of {unknown.sum()} of {off.size} filled gaps")
+    if not parts:
+        return ()
+    message = f"what is filled in may be wrong: {'; '.join(parts)} (--max-gap sets the longest gap that is filled)"
+    return (QualityWarning(code="fill-doubtful", message=message, count=int((doubtful | unknown).sum())),)
 
 
 def displacement(joint: JointMotion) -> NDArray[np.float64]:
