@@ -120,7 +120,7 @@ def test_links_out_of_the_folder_are_followed_on_request_only(study: Path, tmp_p
     [
         ("nowhere", "no such file or folder"),
         ("study/*.trc", "no file fits this pattern"),
-        ("empty", "no trial found: expected files that end in .csv, .trc, .tsv, .c3d"),
+        ("empty", "no trial found: expected files that end in .csv, .trc, .tsv, .sto, .c3d"),
         ("parent", "--recursive looks into the folders below, such as 'study'"),
     ],
 )
@@ -129,3 +129,12 @@ def test_a_path_that_leads_to_nothing_is_an_error(study: Path, tmp_path: Path, p
     (tmp_path / "parent" / "study").mkdir(parents=True)
     with pytest.raises(UsageError, match=re.escape(says)):
         find_trials([path])
+
+
+def test_a_storage_of_opensim_without_orientations_is_passed_over(tmp_path: Path) -> None:
+    header, table = "nRows=1\nnColumns=2\nendheader\n", "time\thumerus\n0.0\t1,0,0,0\n"
+    (tmp_path / "angles.sto").write_text(f"Coordinates\n{header}time\tflexion\n0.0\t1.0\n")
+    (tmp_path / "sensors.sto").write_text(f"DataType=Quaternion\n{header}{table}")
+    found = find_trials([str(tmp_path)])
+    assert [trial.label for trial in found.trials] == ["sensors.sto"]
+    assert [one.reason for one in found.skipped] == ["a storage of OpenSim, but not of orientations"]

@@ -121,7 +121,7 @@ def info_table(summary: FileSummary) -> None:
     if rotation.isupper():
         rotation = f"Euler {rotation} (deg)"
     rows = [
-        ("Layout", f"{source['layout']}, {rotation}, {source['length_unit']}"),
+        ("Layout", ", ".join(filter(None, (source["layout"], rotation, source["length_unit"] or "no positions")))),
         ("Take", source["take"] or "–"),
         (
             "Frames",
@@ -203,11 +203,15 @@ def _bodies_table(bodies: Iterable[QualitySummary]) -> None:
             Text(printable(body["name"])),
             f"{100.0 * body['tracked_share']:.1f} %",
             ", ".join(f"{count} {reason}" for reason, count in body["lost_frames"].items()) or "–",
-            f"{body['fastest_turn_deg_s']:.0f} deg/s, {body['fastest_speed_m_s']:.1f} m/s",
+            f"{body['fastest_turn_deg_s']:.0f} deg/s, " + _speed(body["fastest_speed_m_s"]),
             _spread(body["marker_residual_mm"]),
             _spread(body["reported_error_mm"]),
         )
     _print(table)
+
+
+def _speed(speed_m_s: float | None) -> str:
+    return "no positions" if speed_m_s is None else f"{speed_m_s:.1f} m/s"
 
 
 def _spread(spread: SpreadSummary | None) -> str:

@@ -29,7 +29,7 @@ class BodyQuality:
     sign_flips, leaps : int
         Changes of the quaternion's sign; steps beyond the limits.
     fastest_turn, fastest_speed : float
-        Between successive measured poses: rad/s and m/s.
+        Between successive measured poses: rad/s and m/s, the latter None of a body without positions.
     marker_residual, reported_error : Spread or None
         RMS distance of the markers seen from the body's own; the error column of the file.
     pivot_offset : float or None
@@ -46,7 +46,7 @@ class BodyQuality:
     sign_flips: int
     leaps: int
     fastest_turn: float
-    fastest_speed: float
+    fastest_speed: float | None
     marker_residual: Spread | None
     reported_error: Spread | None
     pivot_offset: float | None

@@ -127,6 +127,8 @@ class RigidBody(ArrayRecord):
         Pose of the body in the laboratory frame, meters; NaN where there is none.
     loss : ndarray of uint8, shape (N,)
         `TrackingLoss` of each frame.
+    located : bool
+        Whether positions were measured; else the poses are rotations alone, and their dual parts 0.
     marker_offsets : ndarray, shape (M, 3), optional
         The markers in the body's frame, meters.
     reported_error : ndarray, shape (N,), optional
@@ -145,6 +147,7 @@ class RigidBody(ArrayRecord):
     identifier: str = ""
     dual_quat_lab_body: Float
     loss: NDArray[np.uint8]
+    located: bool = True
     marker_offsets: Float | None = None
     reported_error: Float | None = None
     marker_residual: Float | None = None
@@ -157,7 +160,7 @@ class RigidBody(ArrayRecord):
         cls,
         name: str,
         quat: ArrayLike,
-        position: ArrayLike,
+        position: ArrayLike | None,
         *,
         identifier: str = "",
         loss: NDArray[np.uint8] | None = None,
@@ -166,11 +169,12 @@ class RigidBody(ArrayRecord):
     ) -> RigidBody:
         """Build a body from Euler parameters (N, 4), scalar first and of any length but 0, and positions (N, 3) in m.
 
+        Positions of None are not measured: what is found of such a body are directions and angles alone.
         Frames with NaN, or with a quaternion of zeros, have no pose; with `only_plausible`, as for a file, nor have
         those with a quaternion that is not of unit length within 0.5 %, or farther away than 10 km.
         """
         q = np.asarray(quat, dtype=np.float64)
-        d = np.asarray(position, dtype=np.float64)
+        d = np.asarray(np.zeros((len(q), 3)) if position is None else position, dtype=np.float64)
         if q.ndim != 2 or q.shape[1] != 4 or d.shape != (q.shape[0], 3):
             msg = f"body {name!r}: expected quaternions (N, 4) and positions (N, 3), found {q.shape} and {d.shape}"
             raise ValueError(msg)
@@ -188,11 +192,20 @@ class RigidBody(ArrayRecord):
             quaternion.normalize(np.where(lost, np.nan, q)), np.where(lost, np.nan, d)
         )
         offsets = None if marker_offsets is None else np.asarray(marker_offsets, dtype=np.float64)
-        return cls(name=name, identifier=identifier, dual_quat_lab_body=pose, loss=reason, marker_offsets=offsets)
+        return cls(
+            name=name,
+            identifier=identifier,
+            dual_quat_lab_body=pose,
+            loss=reason,
+            located=position is not None,
+            marker_offsets=offsets,
+        )
 
     @classmethod
-    def from_matrices(cls, name: str, rotation: ArrayLike, position: ArrayLike, *, identifier: str = "") -> RigidBody:
-        """Build a body from rotation matrices (N, 3, 3), body to laboratory, and positions (N, 3) in meters."""
+    def from_matrices(
+        cls, name: str, rotation: ArrayLike, position: ArrayLike | None, *, identifier: str = ""
+    ) -> RigidBody:
+        """Build a body from rotation matrices (N, 3, 3), body to laboratory, and positions (N, 3) in m, or None."""
         R = np.asarray(rotation, dtype=np.float64)
         whole = R[np.isfinite(R).all(axis=(-1, -2))]
         if (
@@ -205,6 +218,18 @@ class RigidBody(ArrayRecord):
         known = np.isfinite(R).all(axis=(-1, -2))
         quat[known] = quaternion.quat_from_rotation_matrix(R[known])
         return cls.from_quaternions(name, quat, position, identifier=identifier)
+
+    def without_positions(self) -> RigidBody:
+        """Give the same body with its orientations alone, and nothing that tells where it, or a marker of it, is."""
+        rotation = self.dual_quat_lab_body.copy()
+        rotation[np.isfinite(rotation[:, 0]), 4:] = 0.0
+        return RigidBody(
+            name=self.name,
+            identifier=self.identifier,
+            dual_quat_lab_body=rotation,
+            loss=self.loss,
+            located=False,
+        )
 
     @property
     def tracked(self) -> Bool:

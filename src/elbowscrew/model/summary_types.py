@@ -89,7 +89,8 @@ class QualitySummary(BodySummary):
     """How often the quaternion, as it is in the file, changes its sign."""
     leaps: int
     fastest_turn_deg_s: float
-    fastest_speed_m_s: float
+    fastest_speed_m_s: float | None
+    """None of a body without positions."""
     marker_residual_mm: SpreadSummary | None
     """RMS distance of the markers seen from the body's own."""
     reported_error_mm: SpreadSummary | None

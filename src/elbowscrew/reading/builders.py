@@ -85,15 +85,18 @@ class ThinnedBuilder:
 
 
 class BodyBuilder:
-    """The poses of one body of a file, of which only plausible ones count."""
+    """The poses of one body of a file, of which only plausible ones count; `located` if it has positions."""
 
-    def __init__(self, name: str) -> None:
-        self._name = name
+    def __init__(self, name: str, *, located: bool = True) -> None:
+        self._name, self._located = name, located
         self._pose, self._loss = ArrayBuilder((8,)), ArrayBuilder(dtype=np.uint8)
         self._invalid = 0
 
-    def append(self, quat: Float, position: Float, loss: NDArray[np.uint8] | None = None) -> Float:
-        """Add frames: Euler parameters (n, 4), positions (n, 3) in meters, and why a pose is lost; give the poses."""
+    def append(self, quat: Float, position: Float | None, loss: NDArray[np.uint8] | None = None) -> Float:
+        """Add frames: Euler parameters (n, 4), positions (n, 3) in meters, and why a pose is lost; give the poses.
+
+        Positions are None, all of them, of a body that has none.
+        """
         block = RigidBody.from_quaternions(self._name, quat, position, loss=loss, only_plausible=True)
         self._pose.append(block.dual_quat_lab_body)
         self._loss.append(block.loss)
@@ -124,6 +127,7 @@ class BodyBuilder:
             identifier=identifier,
             dual_quat_lab_body=self._pose.finish(),
             loss=self._loss.finish(),
+            located=self._located,
             marker_offsets=marker_offsets,
         )
 

@@ -105,3 +105,9 @@ def cut_warnings(source: TextSource, stated: str, rows: int) -> list[QualityWarn
         message = "the last line has no line end: the file, and with it the last number, may have been cut"
         found.append(QualityWarning(code="no-final-newline", message=message))
     return found
+
+
+def numbered(what: str) -> tuple[QualityWarning]:
+    """Say that a file, called so, has times alone."""
+    message = f"{what} has no frame numbers: its rows are numbered from 0"
+    return (QualityWarning(code="frames-numbered", message=message, severity="note"),)

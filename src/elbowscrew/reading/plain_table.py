@@ -1,8 +1,8 @@
 """A plain table for recordings of other systems: named columns with units in their names.
 
-``frame, time_s`` or one of them, then for a body ``<name>_e0 .. <name>_e3, <name>_x_m, <name>_y_m, <name>_z_m`` and
-for a marker ``<name>_x_m, <name>_y_m, <name>_z_m``; ``_mm`` or ``_cm`` in place of ``_m`` if so. Blank cells are lost
-frames.
+``frame, time_s`` or one of them, then for a body ``<name>_e0 .. <name>_e3, <name>_x_m, <name>_y_m, <name>_z_m``, for
+one without positions ``<name>_e0 .. <name>_e3`` alone, and for a marker ``<name>_x_m, <name>_y_m, <name>_z_m``; ``_mm``
+or ``_cm`` in place of ``_m`` if so. Blank cells are lost frames.
 """
 
 from __future__ import annotations
@@ -15,17 +15,18 @@ import numpy as np
 
 from elbowscrew.errors import RecordingError, SettingError
 from elbowscrew.geometry.arrays import Float
-from elbowscrew.model import QualityWarning, Recording, Source
+from elbowscrew.model import Recording, Source
 from elbowscrew.quantities import METERS
 from elbowscrew.reading.builders import ArrayBuilder, BodyBuilder, MarkerBuilder
 from elbowscrew.reading.cells import read_blocks
-from elbowscrew.reading.clock import check_frames, counted_rate, cut_warnings
+from elbowscrew.reading.clock import check_frames, counted_rate, cut_warnings, numbered
 from elbowscrew.reading.options import ReadOptions, nothing_wanted
 from elbowscrew.reading.source import TextSource
 
 _COLUMN: Final = re.compile(r"(?P<name>.+)_(?:(?P<euler>e[0-3])|(?P<axis>[xyz])_(?P<unit>m|cm|mm))")
 _CLOCK: Final = ["frame", "time_s"]
-_POSE: Final = ("e0", "e1", "e2", "e3", "x", "y", "z")
+_ORIENTATION: Final = ("e0", "e1", "e2", "e3")
+_POSE: Final = (*_ORIENTATION, *"xyz")
 
 
 def recognizes(cells: list[str]) -> bool:
@@ -39,14 +40,14 @@ def read(source: TextSource, options: ReadOptions) -> Recording:
     clock = names[:2] if names[:2] == _CLOCK else names[:1]
     _check_rate(source, clock, options)
     columns, scales = _columns_by_body(source, names, line, len(clock))
-    bodies = {name: parts for name, parts in columns.items() if set(parts) == set(_POSE)}
+    bodies = {name: parts for name, parts in columns.items() if set(_ORIENTATION) <= set(parts)}
     markers = {name: parts for name, parts in columns.items() if set(parts) == set("xyz") and options.wants(name)}
     if not bodies and not markers:
         raise nothing_wanted(source.path, "no rigid bodies in the table", list(columns), options)
     wanted = sorted(set(range(len(clock))).union(*(parts.values() for parts in (*bodies.values(), *markers.values()))))
     index = {column: k + len(_CLOCK) - len(clock) for k, column in enumerate(wanted)}
     frames, times = ArrayBuilder(dtype=np.int64), ArrayBuilder()
-    body_builders = {name: BodyBuilder(name) for name in bodies}
+    body_builders = {name: BodyBuilder(name, located=name in scales) for name in bodies}
     marker_builders = {name: MarkerBuilder(name) for name in markers}
     number = line
     rows = 0
@@ -57,8 +58,10 @@ def read(source: TextSource, options: ReadOptions) -> Recording:
         frames.append(block[:, 0].astype(np.int64))
         times.append(block[:, 1])
         for name, parts in bodies.items():
-            cells = block[:, [index[parts[part]] for part in _POSE]]
-            body_builders[name].append(cells[:, :4], scales[name] * cells[:, 4:])
+            quat = block[:, [index[parts[part]] for part in _ORIENTATION]]
+            scale = scales.get(name)
+            position = None if scale is None else scale * block[:, [index[parts[axis]] for axis in "xyz"]]
+            body_builders[name].append(quat, position)
         for name, parts in markers.items():
             marker_builders[name].append(scales[name] * block[:, [index[parts[axis]] for axis in "xyz"]])
         number += len(block)
@@ -83,7 +86,7 @@ def read(source: TextSource, options: ReadOptions) -> Recording:
             *(warning for body in body_builders.values() for warning in body.warnings()),
             *(warning for marker in marker_builders.values() for warning in marker.warnings()),
             *cut_warnings(source, "", frame.size),
-            *(_numbered() if clock == _CLOCK[1:] else ()),
+            *(numbered("the table") if clock == _CLOCK[1:] else ()),
         ),
     )
 
@@ -102,11 +105,6 @@ def _with_clock(block: Float, clock: list[str], rate_hz: float | None, rows: int
     if clock == _CLOCK[1:]:
         return np.insert(block, 0, np.arange(rows, rows + len(block)), axis=1)
     return block if rate_hz is None else np.insert(block, 1, block[:, 0] / rate_hz, axis=1)
-
-
-def _numbered() -> tuple[QualityWarning]:
-    message = "the table has no frame numbers: its rows are numbered from 0"
-    return (QualityWarning(code="frames-numbered", message=message, severity="note"),)
 
 
 def _header(source: TextSource) -> tuple[list[str], int]:
@@ -144,8 +142,8 @@ def _columns_by_body(
             if scales.setdefault(name, scale) != scale:
                 faults.append(f"{name!r} has positions in two units")
     for name, parts in columns.items():
-        if set(parts) not in (set(_POSE), set("xyz")):
-            faults.append(f"{name!r} has only {', '.join(sorted(parts))}: expected e0..e3, x, y, z, or x, y, z alone")
+        if set(parts) not in (set(_POSE), set(_ORIENTATION), set("xyz")):
+            faults.append(f"{name!r} has only {', '.join(sorted(parts))}: expected e0..e3, x, y, z, or either alone")
     if faults:
         msg = f"{source.path}:{line}: {'; '.join(faults[:5])}; see docs/plain-table.md"
         raise RecordingError(msg)

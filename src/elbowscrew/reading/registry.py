@@ -12,7 +12,7 @@ from typing import Final, Generic, TypeVar
 from elbowscrew.errors import RecordingError, SettingError, UsageError
 from elbowscrew.model import Recording
 from elbowscrew.quantities import METERS
-from elbowscrew.reading import c3d, matrices, motive_columns, plain_table, qualisys, row_tagged, trc
+from elbowscrew.reading import c3d, matrices, motive_columns, plain_table, qualisys, row_tagged, storage, trc
 from elbowscrew.reading.cells import parse_number
 from elbowscrew.reading.clock import is_rate
 from elbowscrew.reading.joining import joined
@@ -83,6 +83,13 @@ FORMATS: Final[tuple[Format[list[str], TextSource], ...]] = (
         read=row_tagged.read,
         accepts=frozenset(),
     ),
+    Format(
+        name="OpenSim storage",
+        endings=(".sto",),
+        recognizes=storage.recognizes,
+        read=storage.read,
+        accepts=frozenset(),
+    ),
     # No endings: in a folder, two of its files may be one trial.
     Format(
         name="4 x 4 matrices", endings=(), recognizes=matrices.recognizes, read=matrices.read, accepts=_UNITS | _RATE
@@ -115,7 +122,8 @@ def read_recording(
     ----------
     path : path-like
         An OptiTrack export (Motive's column layout 1.1 to 1.25, the row-tagged layout 1.0 and 1.1), a plain table, a
-        TRC file, a 6D export of Qualisys, a table of 4 x 4 matrices, or a C3D file (with the extra ``[c3d]``).
+        TRC file, a 6D export of Qualisys, orientations in OpenSim's storage, a table of 4 x 4 matrices, or a C3D file
+        (with the extra ``[c3d]``).
     distal_path : path-like, optional
         The file of the distal body, where each body has a file of its own: `path` is that of the proximal one.
     units : {"m", "cm", "mm"}, optional

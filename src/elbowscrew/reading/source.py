@@ -21,6 +21,9 @@ _LIMIT_LOCK: Final = threading.RLock()
 # Only a line of numbers may have its cells separated by blanks.
 _NUMBERS: Final = re.compile(rb"(?:[-+.\deE]+|nan)(?: (?:[-+.\deE]+|nan))+", re.IGNORECASE)
 
+END_OF_STORAGE_HEADER: Final = "endheader"
+"""The line behind which OpenSim's storages have their table."""
+
 # Signatures of files that are taken for a CSV export by mistake.
 _NOT_TEXT: Final = {
     b"PK\x03\x04": "a zip archive or a spreadsheet workbook; save it as CSV",
@@ -192,9 +195,13 @@ def open_source(path: Path) -> TextSource:
 def _delimiter_of(head: bytes) -> str:
     """Tell the delimiter by the first line with any content that more than one cell shows.
 
-    A TRC file begins with a path, which may have any of them: there the line of the markers' names tells.
+    A TRC file begins with a path, which may have any of them: there the line of the markers' names tells. The cells of
+    a storage of OpenSim may hold commas, and its header anything: there the line behind the header tells.
     """
     lines = head.splitlines()
+    ends = [k for k, line in enumerate(lines) if line.strip().lower() == END_OF_STORAGE_HEADER.encode()]
+    if ends and any(b"\t" in line for line in lines[ends[0] + 1 :]):
+        return "\t"
     if head.removeprefix(b"\xef\xbb\xbf").lstrip()[:12].lower() == b"pathfiletype":
         lines = [line for line in lines if line.lstrip()[:5].lower() == b"frame"] or lines
     for line in lines:

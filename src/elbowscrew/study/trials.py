@@ -13,7 +13,7 @@ from typing import Final
 
 from elbowscrew.errors import UsageError
 from elbowscrew.reading.registry import ENDINGS, FORMATS
-from elbowscrew.reading.source import first_bytes
+from elbowscrew.reading.source import END_OF_STORAGE_HEADER, first_bytes
 from elbowscrew.results.result_files import is_summary
 from elbowscrew.study.folder import MARK
 from elbowscrew.study.manifest import is_manifest, read_manifest
@@ -25,6 +25,7 @@ _WORDS: Final = re.compile(
     r"format version|rigid ?body|rotation|position|pathfiletype|capture|quaternion|marker|righthanded|frame|time|take",
     re.IGNORECASE,
 )
+_ORIENTATIONS: Final = re.compile(r"^\s*datatype\s*=\s*quaternion", re.IGNORECASE | re.MULTILINE)
 _NUMBER: Final = re.compile(r"\s*[-+]?(\d+([.,]\d+)?|[.,]\d+)([eE][-+]?\d+)?\s*")
 
 
@@ -212,7 +213,8 @@ def _other_table(path: Path) -> str:
     A damaged recording must come up as a failure, so only a sound table about something else is passed over: a header
     of several words, none of them known from exports, with rows as long as it is.
     """
-    if path.suffix.casefold() != ".csv":
+    ending = path.suffix.casefold()
+    if ending not in (".csv", ".sto"):
         return ""
     if is_manifest(path):
         return "a manifest; give it in place of the folder"
@@ -223,6 +225,11 @@ def _other_table(path: Path) -> str:
     except (OSError, UnicodeDecodeError):
         return ""
     lines = [line for line in head.splitlines() if line.strip()]
+    if ending == ".sto":
+        other = any(line.strip().casefold() == END_OF_STORAGE_HEADER for line in lines) and not _ORIENTATIONS.search(
+            head
+        )
+        return "a storage of OpenSim, but not of orientations" if other else ""
     if len(lines) < 2 or "\0" in head or _WORDS.search("\n".join(lines[:8])):
         return ""
     delimiter = max(",;\t", key=lines[0].count)

@@ -12,12 +12,13 @@ from elbowscrew.errors import AnalysisError, SettingError
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.joints import Joint
 from elbowscrew.model import BodyQuality, QualityWarning, Recording, RigidBody, marker_matches
+from elbowscrew.motion.tracking.body_pairs import on_the_spot_warning, turns_on_the_spot
 from elbowscrew.motion.tracking.marker_poses import body_from_markers
 from elbowscrew.motion.tracking.quality import check_bodies
 from elbowscrew.motion.tracking.selection import ChosenBodies, choose_bodies
 from elbowscrew.settings import Settings
 
-_NOT_ANALYZED: Final = ("same-pose", "constant-positions")
+_NOT_ANALYZED: Final = ("same-pose",)
 
 
 class TrackedBodies(NamedTuple):
@@ -78,6 +79,11 @@ def tracked_bodies(recording: Recording, settings: Settings) -> TrackedBodies:
     if unusable is not None:
         msg = f"{unusable.message}; choose other bodies, or export the take again"
         raise AnalysisError(msg)
+    nowhere = [found.body.name for found in checked.bodies if not found.body.located]
+    if nowhere:
+        msg = f"body {nowhere[0]!r} has no measured positions, and nothing says where the joint is"
+        raise AnalysisError(msg)
+    doubts = tuple(on_the_spot_warning(found.body.name) for found in checked.bodies if turns_on_the_spot(found.body))
     proximal = None if proximal is None else checked.bodies[0].body
     broken_rows = np.unique(np.concatenate([found.broken_rows for found in checked.bodies]))
     return TrackedBodies(
@@ -87,7 +93,7 @@ def tracked_bodies(recording: Recording, settings: Settings) -> TrackedBodies:
         broken_rows=broken_rows,
         elapsed=checked.elapsed,
         quality=checked.quality,
-        warnings=(*recording.warnings, *chosen_bodies.warnings, *checked.warnings),
+        warnings=(*recording.warnings, *chosen_bodies.warnings, *checked.warnings, *doubts),
     )
 
 

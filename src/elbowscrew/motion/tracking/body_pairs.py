@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
@@ -66,16 +67,27 @@ def check_same_pose(one: RigidBody, other: RigidBody) -> tuple[QualityWarning, .
     return (QualityWarning(code="same-pose", message=message, count=int(rows.size)),)
 
 
-def check_constant_positions(one: RigidBody, other: RigidBody) -> tuple[QualityWarning, ...]:
-    """Tell of two bodies, unchecked, that both turn while the positions of both are exactly constant."""
-    for body in (one, other):
-        rotation, position = pose_from_dual_quat(body.dual_quat_lab_body[body.tracked])
-        if len(position) < 2 or (np.ptp(position, axis=0) > _CONSTANT_M).any():
-            return ()
-        if (np.abs(rotation @ rotation[0]) > np.cos(_TURNED / 2.0)).all():
-            return ()
+def turns_on_the_spot(body: RigidBody) -> bool:
+    """Whether a body turns while its position stays exactly as it is."""
+    rotation, position = pose_from_dual_quat(body.dual_quat_lab_body[body.tracked])
+    if not body.located or len(position) < 2 or (np.ptp(position, axis=0) > _CONSTANT_M).any():
+        return False
+    return bool((np.abs(rotation @ rotation[0]) <= np.cos(_TURNED / 2.0)).any())
+
+
+def constant_positions_warning(names: Sequence[str]) -> QualityWarning:
+    """Say that bodies turn while the positions of all of them stay exactly as they are."""
     message = (
-        f"bodies {one.name!r} and {other.name!r} turn while their positions stay exactly as they are: these are no "
-        "measured positions, and nothing says where the joint is"
+        f"bodies {', '.join(map(repr, names))} turn while their positions stay exactly as they are: these are no "
+        "measured positions, and the orientations alone are used"
     )
-    return (QualityWarning(code="constant-positions", message=message),)
+    return QualityWarning(code="constant-positions", message=message)
+
+
+def on_the_spot_warning(name: str) -> QualityWarning:
+    """Say that one body alone does."""
+    message = (
+        f"body {name!r} turns while its position stays exactly as it is: if that was not measured, slide and place of "
+        "the axis mean nothing"
+    )
+    return QualityWarning(code="on-the-spot", message=message)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import combinations
 from typing import Final, NamedTuple
 
@@ -11,7 +12,12 @@ from numpy.typing import NDArray
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import BodyQuality, ClockQuality, QualityWarning, Recording, RigidBody, Spread
 from elbowscrew.motion.difference import angle_between, origin_distance
-from elbowscrew.motion.tracking.body_pairs import check_constant_positions, check_same_pose, check_swaps
+from elbowscrew.motion.tracking.body_pairs import (
+    check_same_pose,
+    check_swaps,
+    constant_positions_warning,
+    turns_on_the_spot,
+)
 from elbowscrew.motion.tracking.clock import allowed_offset, elapsed_time
 from elbowscrew.motion.tracking.losses import frames_warning
 from elbowscrew.motion.tracking.lost_poses import CheckedBody, check_tracking
@@ -58,9 +64,15 @@ def check_bodies(recording: Recording, bodies: tuple[RigidBody, ...], settings: 
         warnings += found.warnings
         warnings += _sign_flip_warnings(body, flipped, recording)
         warnings += [warning for check in BODY_CHECKS for warning in check(body, recording)]
+    on_the_spot = [found.body.name for found in checked if turns_on_the_spot(found.body)]
+    if len(on_the_spot) > 1:
+        warnings.append(constant_positions_warning(on_the_spot))
+        checked = tuple(
+            replace(found, body=found.body.without_positions()) if turns_on_the_spot(found.body) else found
+            for found in checked
+        )
     for one, other in combinations(bodies, 2):
         warnings += check_same_pose(one, other)
-        warnings += check_constant_positions(one, other)
         warnings += check_swaps(one, other, recording, elapsed)
     quality = tuple(_body_quality(found, flipped.size, elapsed) for found, flipped in zip(checked, flips, strict=True))
     return CheckedRecording(elapsed, checked, quality, tuple(warnings))
@@ -81,7 +93,7 @@ def _body_quality(checked: CheckedBody, sign_flips: int, elapsed: Float) -> Body
         sign_flips=sign_flips,
         leaps=int(checked.leap_rows.size),
         fastest_turn=float((turn / span).max(initial=0.0)),
-        fastest_speed=float((distance / span).max(initial=0.0)),
+        fastest_speed=float((distance / span).max(initial=0.0)) if body.located else None,
         marker_residual=_spread(body.marker_residual, body),
         reported_error=_spread(body.reported_error, body),
         pivot_offset=None if body.marker_offsets is None else float(np.linalg.norm(body.marker_offsets.mean(axis=0))),
