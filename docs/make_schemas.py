@@ -56,13 +56,31 @@ def schema(name: str) -> dict[str, Any]:
 def _settings() -> dict[str, Any]:
     """Every setting by the name of its option, as `elbowscrew.results.summary.settings_summary` gives it."""
     properties = {}
-    for field, value in Settings.model_json_schema(mode="serialization")["properties"].items():
+    made = Settings.model_json_schema(mode="serialization")
+    for field, value in _whole(made["properties"], made.get("$defs", {})).items():
         for key in ("about", "default", "metavar", "shown", "title"):
             value.pop(key, None)
         if field in ("method", "law"):  # a summary has what the default comes to
             value["anyOf"] = [one for one in value["anyOf"] if one != {"type": "null"}]
         properties[option_name(field)] = value
     return {"type": "object", "properties": properties, "required": list(properties), "additionalProperties": False}
+
+
+def _whole(part: Any, definitions: dict[str, Any]) -> Any:
+    """Put each definition in the place where it is named, without the words that speak to programmers."""
+    match part:
+        case {"$ref": str(place)}:
+            made = {key: value for key, value in definitions[place.rpartition("/")[2]].items() if key != "description"}
+            return {**_whole(made, definitions), "additionalProperties": False}
+        case dict():
+            return {key: _whole(value, definitions) for key, value in part.items() if not _is_word(key, value)}
+        case list():
+            return [_whole(value, definitions) for value in part]
+    return part
+
+
+def _is_word(key: str, value: Any) -> bool:
+    return key == "title" and isinstance(value, str)
 
 
 def _texts() -> dict[str, dict[str, str]]:

@@ -68,9 +68,7 @@ def compare_trials(
     given = list(paths)
     for number, path in enumerate(given, start=1):
         try:
-            recording = read_recording(
-                path, units=wanted.units, rotation=wanted.rotation, rate_hz=wanted.rate_hz, markers=wanted.markers
-            )
+            recording = read_recording(path, markers=wanted.markers, **wanted.statements)
             found.append(compare(recording, wanted, plan))
         except ElbowscrewError as error:
             failures.append((str(path), error))

@@ -18,6 +18,8 @@ found and what to do next.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 _LONGEST_VALUE = 80
 _LONGEST_MESSAGE = 2000
 
@@ -36,6 +38,22 @@ def shortened(message: str) -> str:
     if len(message) <= _LONGEST_MESSAGE:
         return message
     return f"{message[: _LONGEST_MESSAGE * 3 // 4]} … {message[-_LONGEST_MESSAGE // 4 :]}"
+
+
+class Missing(NamedTuple):
+    """A statement that a file lacks.
+
+    Attributes
+    ----------
+    setting : str
+        The field of `elbowscrew.Settings` that supplies it.
+    lacks, give : str
+        In words, as in "does not state its unit of length" and "--units m, cm or mm".
+    """
+
+    setting: str
+    lacks: str
+    give: str
 
 
 class ElbowscrewError(Exception):
@@ -77,22 +95,23 @@ class SettingError(ElbowscrewError):
 
 
 class MissingStatementError(SettingError):
-    """The file lacks a statement that an option must supply.
+    """The file lacks statements that options must supply.
 
     Attributes
     ----------
-    lacks, give : str
-        What the file does not state, and the option that does, so that several can be asked for at once.
+    missing : tuple of Missing
+        All of them, so that they are asked for at once.
     """
 
-    def __init__(self, message: str, *, lacks: str = "", give: str = "") -> None:
+    def __init__(self, message: str, *missing: Missing) -> None:
         super().__init__(message)
-        self.lacks, self.give = lacks, give
+        self.missing = missing
 
     @classmethod
-    def of(cls, path: object, lacks: str, give: str) -> MissingStatementError:
+    def of(cls, path: object, *missing: Missing) -> MissingStatementError:
         """Say what a file lacks and what gives it."""
-        return cls(f"{path}: the file {lacks}; give {give}", lacks=lacks, give=give)
+        lacks, give = ([one[k] for one in missing] for k in (1, 2))
+        return cls(f"{path}: the file {' and '.join(lacks)}; give {', and '.join(give)}", *missing)
 
 
 class AnalysisError(ElbowscrewError):

@@ -44,14 +44,7 @@ def analyze_file(
         As `elbowscrew.read_recording` and `elbowscrew.analyze` do.
     """
     markers = (*settings.markers, *(() if landmarks is None else landmarks.markers))
-    recording = read_recording(
-        path,
-        distal_path=distal_path,
-        units=settings.units,
-        rotation=settings.rotation,
-        rate_hz=settings.rate_hz,
-        markers=markers,
-    )
+    recording = read_recording(path, distal_path=distal_path, markers=markers, **settings.statements)
     try:
         return analyze(recording, settings, landmarks=landmarks)
     except ElbowscrewError as error:

@@ -10,7 +10,7 @@ import itertools
 import math
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Final, Literal
+from typing import TYPE_CHECKING, Any, Final, Literal
 
 from pydantic import BaseModel, field_validator, model_validator
 
@@ -31,6 +31,7 @@ from elbowscrew.choices import (
     RotationType,
     StatedJoint,
 )
+from elbowscrew.column_file import ColumnFile, read_column_file
 from elbowscrew.declaring import (
     BODIES,
     FORMER_NAMES,
@@ -178,6 +179,9 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
     rate_hz: float | None = setting(
         None, "Frames a second, if the file has no times, in hertz.", BODIES, metavar="HZ", ge=1e-3, le=1e6
     )
+    columns: ColumnFile | None = setting(
+        None, "File that says which columns of a table are the clock, bodies and markers.", BODIES, metavar="FILE.toml",
+    )  # fmt: skip
 
     # An elbow's own words for the two bodies, as they were before: taken and given, but not stored.
     if TYPE_CHECKING:
@@ -195,6 +199,11 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
     def markers(self) -> tuple[str, ...]:
         """All markers wanted of the recording."""
         return (*(self.proximal_markers or ()), *(self.distal_markers or ()))
+
+    @property
+    def statements(self) -> dict[str, Any]:
+        """What is said of a file that it does not say itself, as `elbowscrew.read_recording` takes it."""
+        return {"units": self.units, "rotation": self.rotation, "rate_hz": self.rate_hz, "columns": self.columns}
 
     @property
     def figure_formats(self) -> tuple[str, ...]:
@@ -289,6 +298,12 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
 
         return read_cycle_times(Path(value)) if isinstance(value, str | Path) else value
 
+    @field_validator("columns", mode="before")
+    @classmethod
+    def _column_file(cls, value: object) -> object:
+        """Take the name of the file, too."""
+        return read_column_file(Path(value)) if isinstance(value, str | Path) else value
+
     @field_validator("skin_motion")
     @classmethod
     def _check_skin(cls, value: tuple[float, ...] | None) -> tuple[float, ...] | None:
@@ -351,3 +366,6 @@ Settings.__doc__ = f"{(Settings.__doc__ or '').rstrip()}{attributes(SETTINGS)}"
 
 LISTS: Final = tuple(one.option for one in SETTINGS if one.several)
 """Options of settings of which there may be several."""
+
+FILES: Final = tuple(one.option for one in SETTINGS if one.metavar.startswith("FILE"))
+"""Options whose value is the name of a file."""

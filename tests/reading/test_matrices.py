@@ -108,7 +108,7 @@ def test_one_body_alone_is_told(tmp_path: Path) -> None:
 
 def test_what_the_file_does_not_state_is_asked_for_at_once(tmp_path: Path) -> None:
     path = write(tmp_path / "ulna.tra", both()[1])
-    with pytest.raises(SettingError, match="give --units m, cm or mm and --rate HZ"):
+    with pytest.raises(SettingError, match="give --units m, cm or mm, and --rate HZ"):
         read_recording(path)
     with pytest.raises(SettingError, match="give --rate HZ"):
         read_recording(path, units="mm")

@@ -110,7 +110,7 @@ def sourced(path: str) -> Recording:
 def test_a_source_is_told_without_its_folder(path: str) -> None:
     assert source_summary(sourced(path)) == {
         "name": "trial.csv", "sha256": "0" * 64, "layout": "motive columns", "take": "take 1", "length_unit": "m",
-        "rotation": "Quaternion", "distal_file": None,
+        "rotation": "Quaternion", "distal_file": None, "columns_file": None,
     }  # fmt: skip
     assert source_summary(sourced("bad\udcff.csv"))["name"] == "bad?.csv"  # bytes of a name that are no text
 

@@ -138,3 +138,14 @@ def test_a_storage_of_opensim_without_orientations_is_passed_over(tmp_path: Path
     found = find_trials([str(tmp_path)])
     assert [trial.label for trial in found.trials] == ["sensors.sto"]
     assert [one.reason for one in found.skipped] == ["a storage of OpenSim, but not of orientations"]
+
+
+def test_with_a_file_of_columns_every_table_is_a_trial(study: Path) -> None:
+    (study / "people.csv").write_text("subject,age\nA,31\n")
+    (study / "take.txt").write_text("t,q\n0,1\n")
+    (study / "take.c3d").write_text("no table")
+    manifest = study / "study.csv"
+    manifest.write_text("path\npeople.csv\n")
+    found = {trial.path.name for trial in find_trials(["study"], any_table=True).trials}
+    assert {"people.csv", "take.txt"} <= found
+    assert not {"take.c3d", "study.csv"} & found

@@ -194,6 +194,7 @@ def _source(told: Told) -> dict[str, Any]:
         "take": header["Take Name"],
         "length_unit": {"Meters": "m", "Centimeters": "cm", "Millimeters": "mm"}[header["Length Units"]],
         "distal_file": None,
+        "columns_file": None,
         "rotation": header["Rotation Type"].lower(),
     }
 

@@ -98,6 +98,7 @@ def batch(
     """
     from elbowscrew.cli import render, render_study
     from elbowscrew.cli.progress import shown_progress
+    from elbowscrew.configuring import settings_from
     from elbowscrew.errors import ResultError
     from elbowscrew.study.executors import LOCAL_CLUSTER, available_cores, open_executor
     from elbowscrew.study.study import run_study
@@ -106,7 +107,13 @@ def batch(
     of_cluster = scheduler is not None and scheduler != LOCAL_CLUSTER
     count = workers or (_HANDED_TO_CLUSTER if of_cluster else available_cores())
     executor = open_executor(scheduler, count, wait)
-    study = find_trials(paths, recursive=recursive, follow_symlinks=follow_symlinks, exclude=output)
+    study = find_trials(
+        paths,
+        recursive=recursive,
+        follow_symlinks=follow_symlinks,
+        exclude=output,
+        any_table=settings_from(config, given).columns is not None,
+    )
     render_study.skipped_files(study.skipped, verbose=verbose)
     with shown_progress(quiet=quiet, verbose=verbose) as report:
         result = run_study(

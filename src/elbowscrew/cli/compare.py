@@ -15,8 +15,8 @@ _MODELS = "Model"
 
 
 @settings_options(
-    "joint", "proximal", "distal", "proximal-markers", "distal-markers", "units", "rotation", "rate", "lowpass",
-    "inversion", "phases", "tolerance", "radius", "figure-format",
+    "joint", "proximal", "distal", "proximal-markers", "distal-markers", "units", "rotation", "rate", "columns",
+    "lowpass", "inversion", "phases", "tolerance", "radius", "figure-format",
     defaults={"lowpass": "by residual analysis, 6 at most", "tolerance": "2mm"},
 )  # fmt: skip
 def compare(
@@ -114,7 +114,7 @@ def compare(
     from elbowscrew.cli.progress import shown_steps
     from elbowscrew.configuring import settings_from
     from elbowscrew.errors import ElbowscrewError
-    from elbowscrew.reading.registry import read_recording, recordings_in
+    from elbowscrew.reading.registry import ENDINGS, TABLE_ENDINGS, read_recording, recordings_in
     from elbowscrew.results.recording_summary import warnings_summary
     from elbowscrew.results.result_files import COMPARISON
     from elbowscrew.results.staging import check_result_folder
@@ -130,8 +130,9 @@ def compare(
     if trial.is_dir():
         from elbowscrew.comparing import compare_trials
 
+        files = recordings_in(trial, ENDINGS if settings.columns is None else TABLE_ENDINGS)
         with shown_steps("Trials", quiet=quiet) as report:
-            over_trials = compare_trials(recordings_in(trial), settings, plan, report=report)
+            over_trials = compare_trials(files, settings, plan, report=report)
         summary = write_comparison(over_trials, target, force=force)
         for path, error in over_trials.failures:
             render.note(f"{path}: {error}" if path not in str(error) else str(error))
@@ -140,13 +141,7 @@ def compare(
         from elbowscrew.motion.interpolation.comparison import compare as compare_recording
 
         with shown_steps("Steps", quiet=quiet) as report:
-            recording = read_recording(
-                trial,
-                units=settings.units,
-                rotation=settings.rotation,
-                rate_hz=settings.rate_hz,
-                markers=settings.markers,
-            )
+            recording = read_recording(trial, markers=settings.markers, **settings.statements)
             try:
                 comparison = compare_recording(recording, settings, plan, report=report)
             except ElbowscrewError as error:

@@ -10,7 +10,7 @@ from elbowscrew.cli import options
 from elbowscrew.cli.analysis_options import settings_options
 
 
-@settings_options("units", "rotation", "rate", "frozen", "max-turn", "max-speed")
+@settings_options("units", "rotation", "rate", "columns", "frozen", "max-turn", "max-speed")
 def info(
     trial: options.TrialFile,
     distal_path: options.DistalFile = None,
@@ -33,12 +33,7 @@ def info(
 
     settings = settings_from(None, given)
     wanted = options.parts("markers", markers) or ()
-    stated: dict[str, Any] = {
-        "distal_path": distal_path,
-        "units": settings.units,
-        "rotation": settings.rotation,
-        "rate_hz": settings.rate_hz,
-    }
+    stated: dict[str, Any] = {"distal_path": distal_path, **settings.statements}
     try:
         recording = read_recording(trial, **stated, markers=wanted)
     except NoBodiesError:

@@ -12,6 +12,7 @@ from typing import Final, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from elbowscrew.column_file import ColumnFile
 from elbowscrew.geometry import dual_quaternion, quaternion
 from elbowscrew.geometry.arrays import Bool, Float, Index
 from elbowscrew.model.array_record import ArrayRecord
@@ -276,6 +277,8 @@ class Source:
     metadata: Mapping[str, str] = field(default_factory=dict)
     distal: Source | None = None
     """The distal body's file, where it has one of its own."""
+    columns: ColumnFile | None = None
+    """What said which columns hold what, where the file does not."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)

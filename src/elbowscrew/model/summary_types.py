@@ -16,8 +16,8 @@ from elbowscrew.model.anatomy import LandmarkFrame, Side
 from elbowscrew.model.joint_summary_types import FitName, JointTypeSummary, LineSummary, NumbersOfType, Vector
 
 
-class DistalFileSummary(TypedDict):
-    """The distal body's file."""
+class OtherFileSummary(TypedDict):
+    """A file beside the recording's own."""
 
     name: str
     sha256: str
@@ -34,8 +34,10 @@ class SourceSummary(TypedDict):
     length_unit: str | None
     rotation: str | None
     """Quaternion, or the order of the Euler angles; empty where the file has no rotations."""
-    distal_file: DistalFileSummary | None
-    """None where both bodies stand in one file."""
+    distal_file: OtherFileSummary | None
+    """The distal body's file; None where both bodies stand in one file."""
+    columns_file: OtherFileSummary | None
+    """The file of --columns, by which a table was read; what it says is in the settings."""
 
 
 class WarningSummary(TypedDict):

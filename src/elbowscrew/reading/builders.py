@@ -103,8 +103,8 @@ class BodyBuilder:
         self._invalid += int((block.loss == TrackingLoss.INVALID).sum())
         return block.dual_quat_lab_body
 
-    def append_matrices(self, rotation: Float, position: Float) -> None:
-        """Add frames: rotation matrices (n, 3, 3), body to laboratory, and positions (n, 3) in meters.
+    def append_matrices(self, rotation: Float, position: Float | None) -> None:
+        """Add frames: rotation matrices (n, 3, 3), body to laboratory, and positions as in `append`.
 
         Zeros and blanks are what is written for a body that was not solved; any other matrix that is no rotation is
         damage.

@@ -45,6 +45,24 @@ def is_rate(value: float) -> bool:
     return _LOWEST_HZ <= value <= _HIGHEST_HZ
 
 
+def frames_and_times(
+    frame: Float | None, time_s: Float | None, rows: range, rate_hz: float | None
+) -> NDArray[np.float64]:
+    """Give frame numbers and times (n, 2) of rows of a table that may have only one of them.
+
+    Parameters
+    ----------
+    frame, time_s : ndarray, shape (n,), or None
+        As the table has them.
+    rows : range
+        The rows' own numbers from 0, which are the frames of a table that has none.
+    rate_hz : float or None
+        Frames a second, where there are no times.
+    """
+    frames = np.array(rows, dtype=np.float64) if frame is None else frame
+    return np.stack([frames, frames / (rate_hz or np.nan) if time_s is None else time_s], axis=1)
+
+
 def rate_of(frame: NDArray[np.int64], time_s: Float) -> float:
     """Frames a second from the first row to the last; NaN if the times do not increase so."""
     frames, span = float(frame[-1] - frame[0]), float(time_s[-1] - time_s[0])

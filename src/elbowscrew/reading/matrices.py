@@ -11,14 +11,14 @@ from typing import Final
 
 import numpy as np
 
-from elbowscrew.errors import RecordingError, SettingError
+from elbowscrew.errors import Missing, MissingStatementError, RecordingError
 from elbowscrew.geometry.arrays import Bool, Float
 from elbowscrew.model import QualityWarning, Recording, Source
 from elbowscrew.quantities import METERS
 from elbowscrew.reading.builders import BodyBuilder
 from elbowscrew.reading.cells import parse_number, read_blocks
 from elbowscrew.reading.clock import cut_warnings
-from elbowscrew.reading.options import ReadOptions
+from elbowscrew.reading.options import ASK_FOR_UNITS, ReadOptions
 from elbowscrew.reading.source import TextSource
 
 _CELLS: Final = 16
@@ -81,10 +81,11 @@ def read(source: TextSource, options: ReadOptions) -> Recording:
 def _stated(source: TextSource, options: ReadOptions) -> tuple[float, float]:
     """Give the unit in meters and the frames a second, which the file has not; ask for both at once."""
     if options.units is None or options.rate_hz is None:
-        missing = [("--units m, cm or mm", options.units), ("--rate HZ", options.rate_hz)]
-        told = " and ".join(option for option, given in missing if given is None)
-        msg = f"{source.path}: a table of 4 x 4 matrices states neither unit of length nor frame rate: give {told}"
-        raise SettingError(msg)
+        asked = [
+            Missing("units", "states no unit of length", ASK_FOR_UNITS),
+            Missing("rate_hz", "has no times", "--rate HZ"),
+        ]
+        raise MissingStatementError.of(source.path, *(one for one in asked if getattr(options, one.setting) is None))
     return METERS[options.units], options.rate_hz
 
 

@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from elbowscrew.errors import MissingStatementError, RecordingError, SettingError
+from elbowscrew.errors import Missing, MissingStatementError, RecordingError, SettingError
 from elbowscrew.geometry import quaternion
 from elbowscrew.model import QualityWarning, Recording, Source
 from elbowscrew.quantities import METERS
@@ -90,8 +90,7 @@ def _stated(
         try:
             _rotation_type(source, header, bodies, options.rotation)
         except MissingStatementError as no_order:
-            lacks = f"{no_unit.lacks} and {no_order.lacks}"
-            raise MissingStatementError.of(source.path, lacks, f"{no_unit.give}, and {no_order.give}") from no_order
+            raise MissingStatementError.of(source.path, *no_unit.missing, *no_order.missing) from no_order
         raise
     return unit, _rotation_type(source, header, bodies, options.rotation)
 
@@ -117,7 +116,8 @@ def _rotation_type(source: TextSource, header: Header, bodies: tuple[BodyColumns
         raise RecordingError(msg) if stated else SettingError(msg)
     if not order:
         give = f"--rotation {', '.join(quaternion.EULER_ORDERS)}"
-        raise MissingStatementError.of(source.path, "does not state the order of its Euler angles", give)
+        missing = Missing("rotation", "does not state the order of its Euler angles", give)
+        raise MissingStatementError.of(source.path, missing)
     if given and given != order:
         msg = f"rotation: the file states {stated} itself, which {rotation!r} contradicts; leave --rotation out"
         raise SettingError(msg)

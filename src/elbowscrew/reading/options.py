@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from elbowscrew.errors import ElbowscrewError, MissingStatementError, NoBodiesError, SettingError
+from elbowscrew.column_file import ColumnFile
+from elbowscrew.errors import ElbowscrewError, Missing, MissingStatementError, NoBodiesError, SettingError
 from elbowscrew.model import marker_matches
 from elbowscrew.quantities import METERS
 
@@ -22,6 +23,7 @@ _SHORTEST_CUT: Final = 4
 
 _NAMES_TOLD: Final = 24
 
+ASK_FOR_UNITS: Final = "--units m, cm or mm"
 ASK_FOR_MARKERS: Final = "give --proximal-markers and --distal-markers"
 
 
@@ -39,6 +41,8 @@ class ReadOptions:
         Frames a second of a file that has no times.
     markers : tuple of str
         Names or patterns of the markers wanted; the others are not read.
+    columns : ColumnFile or None
+        What somebody says of the columns of a table.
     alone : bool
         Whether the file is all of the recording; else the other body of the joint stands in another.
     """
@@ -47,6 +51,7 @@ class ReadOptions:
     rotation: str | None = None
     rate_hz: float | None = None
     markers: tuple[str, ...] = ()
+    columns: ColumnFile | None = None
     alone: bool = True
 
     def wants(self, marker: str) -> bool:
@@ -74,7 +79,7 @@ def stated_unit(path: Path, stated: str, options: ReadOptions) -> str:
             if stated.strip()
             else ("does not state its unit of length")
         )
-        raise MissingStatementError.of(path, what, "--units m, cm or mm")
+        raise MissingStatementError.of(path, Missing("units", what, ASK_FOR_UNITS))
     return unit or str(options.units)
 
 
@@ -85,6 +90,13 @@ def _known_unit(stated: str) -> str | None:
     cut = len(text) >= _SHORTEST_CUT
     found = {unit for name, unit in _UNIT_NAMES.items() if name == text or (cut and name.startswith(text))}
     return found.pop() if len(found) == 1 else None
+
+
+def did_you_mean(wanted: str, names: Sequence[str]) -> str:
+    """Ask back by the names that are nearly the one wanted, in any case of letters; empty if there is none."""
+    known = {name.casefold(): name for name in names}
+    near = [known[name] for name in difflib.get_close_matches(wanted.casefold(), known, n=3)]
+    return f"; did you mean {' or '.join(map(repr, near))}?" if near else ""
 
 
 def nothing_wanted(path: Path, what: str, names: Sequence[str], options: ReadOptions) -> ElbowscrewError:
@@ -108,8 +120,7 @@ def nothing_wanted(path: Path, what: str, names: Sequence[str], options: ReadOpt
         f" and {len(names) - _NAMES_TOLD} more" if len(names) > _NAMES_TOLD else ""
     )
     if options.markers and names:
-        near = difflib.get_close_matches(options.markers[0], names, n=3)
-        mean = f"; did you mean {', '.join(near)}?" if near else ""
+        mean = did_you_mean(options.markers[0], names)
         return SettingError(
             f"{path}: no marker fits {', '.join(options.markers)}{mean}; the file has {told or 'no markers'}"
         )

@@ -9,10 +9,21 @@ from itertools import chain, islice
 from pathlib import Path
 from typing import Final, Generic, TypeVar
 
+from elbowscrew.column_file import ColumnFile, read_column_file
 from elbowscrew.errors import RecordingError, SettingError, UsageError
 from elbowscrew.model import Recording
 from elbowscrew.quantities import METERS
-from elbowscrew.reading import c3d, matrices, motive_columns, plain_table, qualisys, row_tagged, storage, trc
+from elbowscrew.reading import (
+    c3d,
+    matrices,
+    motive_columns,
+    named_columns,
+    plain_table,
+    qualisys,
+    row_tagged,
+    storage,
+    trc,
+)
 from elbowscrew.reading.cells import parse_number
 from elbowscrew.reading.clock import is_rate
 from elbowscrew.reading.joining import joined
@@ -105,6 +116,8 @@ BINARY_FORMATS: Final[tuple[Format[bytes, Path], ...]] = (
 _ENDINGS: Final = (*(one.endings for one in FORMATS), *(one.endings for one in BINARY_FORMATS))
 ENDINGS: Final = tuple(dict.fromkeys(chain.from_iterable(_ENDINGS)))
 """How the names of recordings end, in folders and for patterns; a file that is named itself may end as it likes."""
+TABLE_ENDINGS: Final = (".csv", ".tsv", ".txt")
+"""How those of tables end, where a file of columns says what is in them."""
 
 
 def read_recording(
@@ -114,6 +127,7 @@ def read_recording(
     units: str | None = None,
     rotation: str | None = None,
     rate_hz: float | None = None,
+    columns: str | os.PathLike[str] | ColumnFile | None = None,
     markers: str | Sequence[str] = (),
 ) -> Recording:
     """Read a recording.
@@ -132,6 +146,8 @@ def read_recording(
         "quaternion" or an Euler order such as "XYZ", for a file that states none.
     rate_hz : float, optional
         Frames a second, for a plain table that has no times, and for matrices.
+    columns : path-like or ColumnFile, optional
+        The TOML file that says what the columns of any other table are.
     markers : str or sequence of str, optional
         Names of markers to read, or patterns such as "Arm*"; none by default.
 
@@ -148,7 +164,7 @@ def read_recording(
         If the file lacks a statement that `units`, `rotation` or `rate_hz` must supply, or they contradict it, or its
         format knows no such thing.
     UsageError
-        If `units` or `rate_hz` is no possible one.
+        If `units`, `rate_hz` or `columns` is no possible one.
 
     Examples
     --------
@@ -165,12 +181,32 @@ def read_recording(
         msg = f"rate_hz: expected a frame rate in hertz, found {rate_hz!r}"
         raise UsageError(msg)
     patterns = (markers,) if isinstance(markers, str) else tuple(markers)
-    options = ReadOptions(units=units, rotation=rotation, rate_hz=rate_hz, markers=patterns, alone=distal_path is None)
+    options = ReadOptions(
+        units=units,
+        rotation=rotation,
+        rate_hz=rate_hz,
+        markers=patterns,
+        columns=_column_file(columns),
+        alone=distal_path is None,
+    )
     proximal = _read(Path(path), options)
     return proximal if distal_path is None else joined(proximal, _read(Path(distal_path), options))
 
 
+def _column_file(given: str | os.PathLike[str] | ColumnFile | None) -> ColumnFile | None:
+    if given is None or isinstance(given, ColumnFile):
+        return given
+    try:
+        return read_column_file(Path(given))
+    except ValueError as error:
+        msg = f"columns: {error}"
+        raise UsageError(msg) from error
+
+
 def _read(file: Path, options: ReadOptions) -> Recording:
+    if options.columns is not None:
+        _check_options(file, "named columns", options, _UNITS | _MARKERS | _RATE)
+        return named_columns.read(open_source(file), options, options.columns)
     head = first_bytes(file, _HEAD_BYTES)
     for binary in BINARY_FORMATS:
         if binary.recognizes(head):
@@ -205,12 +241,13 @@ def _refusal(source: TextSource, first_cell: str) -> str:
         )
     return (
         f"{source.path}:1: the header is missing (the file begins with a number), so nothing says what the columns "
-        "are; export the take again with the header on"
+        "are; export the take again with the header on, or say what they are by --columns FILE.toml "
+        "(docs/plain-table.md)"
     )
 
 
-def recordings_in(folder: str | os.PathLike[str]) -> tuple[Path, ...]:
-    """Files of a folder that may be recordings, by their endings, in the order of their names.
+def recordings_in(folder: str | os.PathLike[str], endings: tuple[str, ...] = ENDINGS) -> tuple[Path, ...]:
+    """Files of a folder that may be recordings, by the endings of their names, in the order of these.
 
     Raises
     ------
@@ -219,11 +256,11 @@ def recordings_in(folder: str | os.PathLike[str]) -> tuple[Path, ...]:
     """
     root = Path(folder)
     try:
-        found = sorted(path for path in root.iterdir() if path.suffix.casefold() in ENDINGS and path.is_file())
+        found = sorted(path for path in root.iterdir() if path.suffix.casefold() in endings and path.is_file())
     except OSError as error:
         msg = f"{root}: cannot be read: {error.strerror or error}"
         raise RecordingError(msg) from error
     if not found:
-        msg = f"{root}: expected recordings ({', '.join(ENDINGS)}) in the folder, found none"
+        msg = f"{root}: expected recordings ({', '.join(endings)}) in the folder, found none"
         raise RecordingError(msg)
     return tuple(found)

@@ -203,4 +203,6 @@ def _settings(settings: Settings) -> list[tuple[str, Any, str, bool]]:
     values = settings_summary(settings)
     usual = settings_summary(Settings(tolerance_mm=settings.tolerance_mm))  # method and law go by the tolerance
     usual["tolerance"] = None
+    if settings.columns is not None:
+        values["columns"] = settings.columns.name
     return [(one.option, values[one.option], one.text, values[one.option] != usual[one.option]) for one in SETTINGS]

@@ -53,6 +53,7 @@ def source_summary(recording: Recording) -> SourceSummary:
             "length_unit": None,
             "rotation": None,
             "distal_file": None,
+            "columns_file": None,
         }
     return {
         "name": _file_name(source.path),
@@ -64,6 +65,9 @@ def source_summary(recording: Recording) -> SourceSummary:
         "distal_file": None
         if source.distal is None
         else {"name": _file_name(source.distal.path), "sha256": source.distal.sha256},
+        "columns_file": None
+        if source.columns is None
+        else {"name": _file_name(source.columns.name), "sha256": source.columns.sha256},
     }
 
 

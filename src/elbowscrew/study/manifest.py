@@ -15,7 +15,7 @@ from elbowscrew.declaring import option_name
 from elbowscrew.errors import UsageError
 from elbowscrew.opening import read_text
 from elbowscrew.reading.source import first_bytes
-from elbowscrew.settings import LISTS, Settings
+from elbowscrew.settings import FILES, LISTS, Settings
 from elbowscrew.study.trial import Trial
 from elbowscrew.study_columns import STUDY_COLUMNS, study_header
 
@@ -79,7 +79,7 @@ def read_manifest(path: Path) -> list[Trial]:
         settings = {}
         for column, key in zip(header, keys, strict=True):
             if key in _SETTINGS and values[key]:
-                value = _value(key, values[key], delimiter)
+                value = str(path.parent / values[key]) if key in FILES else _value(key, values[key], delimiter)
                 fault = _fault({key: value})
                 if fault:
                     faults.append(f"{path}:{line}: column {column!r}: {fault}")

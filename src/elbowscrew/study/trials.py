@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Final
 
 from elbowscrew.errors import UsageError
-from elbowscrew.reading.registry import ENDINGS, FORMATS
+from elbowscrew.reading.registry import ENDINGS, FORMATS, TABLE_ENDINGS
 from elbowscrew.reading.source import END_OF_STORAGE_HEADER, first_bytes
 from elbowscrew.results.result_files import is_summary
 from elbowscrew.study.folder import MARK
@@ -46,7 +46,12 @@ class Study:
 
 
 def find_trials(
-    paths: Sequence[str], *, recursive: bool = False, follow_symlinks: bool = False, exclude: Path | None = None
+    paths: Sequence[str],
+    *,
+    recursive: bool = False,
+    follow_symlinks: bool = False,
+    exclude: Path | None = None,
+    any_table: bool = False,
 ) -> Study:
     """Find the trials that paths stand for.
 
@@ -60,6 +65,8 @@ def find_trials(
         Follow links that lead out of the folder given.
     exclude : Path, optional
         The output folder: nothing in it is a trial.
+    any_table : bool
+        Take every table for a recording, as a file of columns says what is in it.
 
     Returns
     -------
@@ -71,7 +78,7 @@ def find_trials(
     UsageError
         If a path leads nowhere, a manifest does not fit, or there is no trial at all.
     """
-    search = _Search(recursive, follow_symlinks, exclude)
+    search = _Search(recursive, follow_symlinks, exclude, any_table)
     alone = len(paths) == 1
     for text in paths:
         path = Path(text)
@@ -101,7 +108,9 @@ def natural_key(text: str) -> tuple[list[tuple[int, str]], str]:
 class _Search:
     """What has been found up to now."""
 
-    def __init__(self, recursive: bool, follow_symlinks: bool, exclude: Path | None) -> None:
+    def __init__(self, recursive: bool, follow_symlinks: bool, exclude: Path | None, any_table: bool) -> None:
+        self.any_table = any_table
+        self.endings = TABLE_ENDINGS if any_table else ENDINGS
         self.recursive = recursive
         self.follow_symlinks = follow_symlinks
         self.exclude = None if exclude is None else _identity(exclude)
@@ -131,7 +140,7 @@ class _Search:
             msg = f"{text}: no file fits this pattern; check it, or give the folder"
             raise UsageError(msg)
         for path in matches:
-            if path.is_file() and path.suffix.casefold() in ENDINGS and not self._ours(path.parent):
+            if path.is_file() and path.suffix.casefold() in self.endings and not self._ours(path.parent):
                 self._candidate(path, _posix(path))
 
     def folder(self, root: Path, prefix: str) -> None:
@@ -148,7 +157,7 @@ class _Search:
         if self.below:
             msg = f"no trial in the folder itself; --recursive looks into the folders below, such as {self.below[0]!r}"
         else:
-            ends = ", ".join(ENDINGS)
+            ends = ", ".join(self.endings)
             passed = f"; passed over: {self.skipped[0].path} ({self.skipped[0].reason})" if self.skipped else ""
             msg = f"no trial found: expected files that end in {ends}{passed}"
         raise UsageError(msg)
@@ -161,7 +170,7 @@ class _Search:
             path = left.pop()
             try:
                 if not path.is_dir():
-                    if path.suffix.casefold() in ENDINGS:
+                    if path.suffix.casefold() in self.endings:
                         yield path
                     continue
                 identity = _identity(path)
@@ -200,14 +209,14 @@ class _Search:
         return (folder / MARK).exists() or is_summary(folder / "summary.json")
 
     def _candidate(self, path: Path, label: str, *, by_file: bool = True) -> None:
-        reason = _other_table(path)
+        reason = _other_table(path, any_table=self.any_table)
         if reason:
             self.skipped.append(Skipped(path=label, reason=reason))
         else:
             self.add(path, label, by_file=by_file)
 
 
-def _other_table(path: Path) -> str:
+def _other_table(path: Path, *, any_table: bool) -> str:
     """Say what a file is that is certainly no recording; empty for all that is one, or may be a damaged one.
 
     A damaged recording must come up as a failure, so only a sound table about something else is passed over: a header
@@ -218,6 +227,8 @@ def _other_table(path: Path) -> str:
         return ""
     if is_manifest(path):
         return "a manifest; give it in place of the folder"
+    if any_table:
+        return ""
     try:
         head = first_bytes(path, _HEAD_BYTES).decode(
             "utf-8-sig", "strict" if path.stat().st_size < _HEAD_BYTES else "ignore"
