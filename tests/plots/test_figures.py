@@ -64,10 +64,13 @@ def test_lost_frames_and_movements_are_shaded(analysis: Analysis) -> None:
     assert (shaded(moving, analysis.screw.time_s) == analysis.phases.moving).all()
 
 
-def test_the_band_of_the_angle_is_its_95_percent_interval() -> None:
-    analysis = analyze(simulate_trial(frames=120, inversion=60).recording, Settings(marker_noise_mm=0.2))
+def test_the_band_of_the_angle_is_its_95_percent_interval_where_it_can_be_seen() -> None:
+    recording = simulate_trial(frames=120, inversion=60).recording
+    exact = plots.plot_theta(Figure().add_subplot(), analyze(recording, Settings(marker_noise_mm=0.1)))
+    assert "95 % interval" not in exact.get_legend_handles_labels()[1]
+    analysis = analyze(recording, Settings(marker_noise_mm=2.0))
     ax = plots.plot_theta(Figure().add_subplot(), analysis)
-    (band,) = (one for one in ax.collections if str(one.get_label()).startswith("95 %"))
+    (band,) = (one for one in ax.collections if one.get_label() == "95 % interval")
     path = np.asarray(band.get_paths()[0].vertices)
     row = 60
     there = path[np.abs(path[:, 0] - analysis.screw.time_s[row]) < 1e-9, 1]

@@ -27,6 +27,8 @@ from elbowscrew.view.scene import Bodies, axis_segments, bodies_in_space, direct
 from elbowscrew.view.trial_view import TrialView
 
 _MOST_POINTS: Final = 4000
+_AROUND: Final = 32
+_LEAST_SEEN: Final = 0.008
 
 
 class _MeanFrame(NamedTuple):
@@ -49,36 +51,67 @@ def plot_axes_in_space(ax: Axes3D, analysis: Analysis | TrialView) -> Axes3D:
     view = view_of(analysis)
     unit = view.settings.length_unit
     bodies = bodies_in_space(view)
-    proximal = bodies.proximal
-    clusters = [markers for markers in (bodies.proximal_markers, bodies.distal_markers) if markers is not None]
     mean = _mean_frame(view, bodies)
     half = half_length(bodies, mean.center)
     rows, segments = axis_segments(view, mean.center, half)
     segments = length_in(segments, unit)
     colors = color_scale(view).to_rgba(angle_in(view.angle[rows], view.settings.angle_unit))
-    ax.add_collection3d(Line3DCollection(list(segments), colors=colors, linewidths=0.7, alpha=0.8))
+    ax.add_collection3d(Line3DCollection(list(segments), colors=colors, linewidths=0.7))
     ends = length_in(mean.center + 1.3 * half * np.outer([-1.0, 1.0], mean.direction), unit)
-    ax.plot(*ends.T, color="black", linewidth=1.6, label="mean axis")
+    ax.plot(*ends.T, linewidth=1.6, label="mean axis", **style.AXES[0])
     words = view.named_joint
     plot_path(ax, bodies.path, unit, f"{words.distal.name} path")
     shown = [segments.reshape(-1, 3), ends, length_in(bodies.corners, unit)]
-    if proximal is not None:
-        ax.plot(*length_in(proximal[None], unit).T, "^", color="#0072B2", markersize=5, label=words.proximal.name)
-        shown.append(length_in(proximal[None], unit))
-    for k, cluster in enumerate(clusters):
-        label = "markers" if k == 0 else None
-        ax.plot(*length_in(cluster, unit).T, ".", color="#666666", markersize=3, label=label)
-        shown.append(length_in(cluster, unit))
+    for origin, markers, look, word in (
+        (bodies.proximal, bodies.proximal_markers, style.PROXIMAL, words.proximal.name),
+        (bodies.start, bodies.distal_markers, style.DISTAL, words.distal.name),
+    ):
+        shown += plot_body(ax, origin, markers, unit, look, word)
     equal_aspect(ax, np.concatenate(shown))
-    for name, label in (("x", ax.set_xlabel), ("y", ax.set_ylabel), ("z", ax.set_zlabel)):
-        label(f"{name} ({unit})", labelpad=-2)
+    label_space(ax, unit)
     return ax
 
 
 def plot_path(ax: Axes3D, path: Float, unit: LengthUnit, label: str) -> None:
     """Draw the path (N, 3) of the distal body's origin, meters."""
     rows = drawn_rows(*path.T)
-    ax.plot(*length_in(path[rows], unit).T, color="#D55E00", linewidth=1.2, label=label)
+    ax.plot(*length_in(path[rows], unit).T, label=label, **style.PATH)
+
+
+def plot_body(
+    ax: Axes3D, origin: Float | None, markers: Float | None, unit: LengthUnit, look: dict[str, Any], word: str
+) -> list[Float]:
+    """Draw a body's origin (3,) and markers (M, 3), meters, and give the points (K, 3) as they stand in the figure."""
+    shown = []
+    if origin is not None:
+        shown.append(length_in(origin[None], unit))
+        ax.plot(*shown[-1].T, label=f"{word}: origin", **{**look, "markersize": 2.0 * look["markersize"]})
+    if markers is not None:
+        shown.append(length_in(markers, unit))
+        ax.plot(*shown[-1].T, label=f"{word}: markers", **look)
+    return shown
+
+
+def plot_cone(ax: Axes3D, center: Float, direction: Float, along: Float, reach: Float, color: str, label: str) -> None:
+    """Draw what surrounds an axis, `reach` (K,) from it at `along` (K,), by its rings and by lines from end to end.
+
+    Where it would be no wider than the axis itself it is left to the panels that enlarge it.
+    """
+    if reach.max() < _LEAST_SEEN * np.ptp(along):
+        return
+    u, v = directions_across(direction)[0]
+    turn = np.linspace(0.0, 2.0 * np.pi, _AROUND + 1)
+    ring = np.cos(turn)[:, None] * u + np.sin(turn)[:, None] * v
+    surface = center + along[:, None, None] * direction + reach[:, None, None] * ring
+    rings = [surface[0], surface[along.size // 2], surface[-1]]
+    lines = list(surface[:, ::4].swapaxes(0, 1))
+    ax.add_collection3d(Line3DCollection([*rings, *lines], colors=color, linewidths=0.6, label=label))
+
+
+def label_space(ax: Axes3D, unit: LengthUnit) -> None:
+    """Write at the coordinates of a space what they are."""
+    for name, label in (("x", ax.set_xlabel), ("y", ax.set_ylabel), ("z", ax.set_zlabel)):
+        label(f"{name} ({unit})", labelpad=-2)
 
 
 def plot_axis_directions(ax: Axes, analysis: Analysis | TrialView) -> Axes:
@@ -144,7 +177,7 @@ def equal_aspect(ax: Axes3D, points: Float) -> None:
     ax.set_xlim(*bounds[0])
     ax.set_ylim(*bounds[1])
     ax.set_zlim(*bounds[2])
-    ax.set_box_aspect((1.0, 1.0, 1.0), zoom=0.92)
+    ax.set_box_aspect((1.0, 1.0, 1.0), zoom=0.86)
     for axis in (ax.xaxis, ax.yaxis, ax.zaxis):
         axis.set_major_locator(MaxNLocator(4))
         axis.set_tick_params(pad=-1)

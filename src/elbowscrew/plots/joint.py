@@ -13,14 +13,13 @@ from mpl_toolkits.mplot3d.axes3d import Axes3D
 
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import Analysis
-from elbowscrew.plots.axis import color_scale, equal_aspect, plot_path
-from elbowscrew.plots.style import CONFIDENCE, SPREAD
+from elbowscrew.plots import style
+from elbowscrew.plots.axis import color_scale, equal_aspect, label_space, plot_cone, plot_path
 from elbowscrew.quantities import angle_in, length_in
 from elbowscrew.results.trial_views import view_of
 from elbowscrew.view.scene import Bundle, Region, bodies_in_space, directions_across, joint_bundle
 from elbowscrew.view.trial_view import TrialView
 
-_AROUND: Final = 24
 _ALONG_IN_SPACE: Final = 13
 _ALONG: Final = 41
 
@@ -31,23 +30,16 @@ def plot_joint_axis_in_space(ax: Axes3D, analysis: Analysis | TrialView) -> Axes
     bundle = _bundle(view)
     unit = view.settings.length_unit
     colors = color_scale(view).to_rgba(angle_in(view.angle[bundle.rows], view.settings.angle_unit))
-    ax.add_collection3d(Line3DCollection(list(bundle.segments), colors=colors, linewidths=0.6, alpha=0.8))
+    ax.add_collection3d(Line3DCollection(list(bundle.segments), colors=colors, linewidths=0.6))
     ends = _ends(bundle)
-    ax.plot(*ends.T, color="black", linewidth=1.6, label=bundle.name)
-    u, v = directions_across(bundle.direction)[0]
+    ax.plot(*ends.T, linewidth=1.6, label=bundle.name, **style.AXES[0])
     along = np.linspace(-bundle.half, bundle.half, _ALONG_IN_SPACE)
-    turn = np.linspace(0.0, 2.0 * np.pi, _AROUND)
-    ring = np.cos(turn)[:, None] * u + np.sin(turn)[:, None] * v
-    for region, look in _regions(bundle):
-        surface = bundle.center + along[:, None, None] * bundle.direction + region.reach(along)[:, None, None] * ring
-        ax.plot_surface(
-            *np.moveaxis(surface, 2, 0), color=look.get("color", look.get("facecolor")), alpha=0.25, linewidth=0.0
-        )
+    for region, label, look in _regions(bundle):
+        plot_cone(ax, bundle.center, bundle.direction, along, region.reach(along), look["edgecolor"], label)
     bodies = bodies_in_space(view)
     plot_path(ax, bodies.path, unit, f"{view.named_joint.distal.name} path")
     equal_aspect(ax, np.concatenate([ends, length_in(bodies.corners, unit)]))
-    for name, label in (("x", ax.set_xlabel), ("y", ax.set_ylabel), ("z", ax.set_zlabel)):
-        label(f"{name} ({unit})", labelpad=-2)
+    label_space(ax, unit)
     return ax
 
 
@@ -63,10 +55,10 @@ def plot_axis_from_the_side(ax: Axes, analysis: Analysis | TrialView, side: int)
     offset = bundle.segments - bundle.center
     _add_segments(ax, view, bundle, np.stack([offset @ bundle.direction, offset @ directions[side]], axis=2))
     along = np.linspace(-bundle.half, bundle.half, _ALONG)
-    for region, look in _regions(bundle):
+    for region, label, look in _regions(bundle):
         reach = region.reach(along)
-        ax.fill_between(along, -reach, reach, **look)
-    ax.plot([-bundle.half, bundle.half], [0.0, 0.0], color="black", linewidth=1.3, zorder=4, label=bundle.name)
+        ax.fill_between(along, -reach, reach, label=label, **look)
+    ax.plot([-bundle.half, bundle.half], [0.0, 0.0], linewidth=1.3, zorder=4, label=bundle.name, **style.AXES[0])
     ax.set_xlim(-bundle.half, bundle.half)
     reach_of_view = 1.25 * bundle.reach_across(np.inf)
     ax.set_ylim(-reach_of_view, reach_of_view)
@@ -83,9 +75,9 @@ def plot_axis_end_on(ax: Axes, analysis: Analysis | TrialView) -> Axes:
     directions, names = directions_across(bundle.direction)
     offset = bundle.segments - bundle.center
     _add_segments(ax, view, bundle, np.stack([offset @ direction for direction in directions], axis=2))
-    for region, look in _regions(bundle):
+    for region, _, look in _regions(bundle):
         ax.add_patch(Circle((0.0, 0.0), region.radius, **look))
-    ax.plot(0.0, 0.0, "+", color="black", markersize=8, markeredgewidth=1.2, zorder=4)
+    ax.plot(0.0, 0.0, "+", color=style.AXES[0]["color"], markersize=8, markeredgewidth=1.2, zorder=4)
     reach = 1.25 * bundle.reach_across(np.inf)
     ax.set_xlim(-reach, reach)
     ax.set_ylim(-reach, reach)
@@ -119,9 +111,12 @@ def _bundle(view: TrialView) -> Bundle:
     return joint_bundle(view).scaled(float(length_in(np.array(1.0), view.settings.length_unit)))
 
 
-def _regions(bundle: Bundle) -> list[tuple[Region, dict[str, Any]]]:
-    looks: dict[str, dict[str, Any]] = {"spread": SPREAD, "confidence": CONFIDENCE}
-    return [(region, looks[name]) for name, region in bundle.regions.items()]
+def _regions(bundle: Bundle) -> list[tuple[Region, str, dict[str, Any]]]:
+    told = {
+        "spread": ("95 % of the frames' axes", style.SPREAD),
+        "confidence": ("95 % confidence of the joint axis", {**style.BAND, "zorder": 1.5}),
+    }
+    return [(region, *told[name]) for name, region in bundle.regions.items()]
 
 
 def _ends(bundle: Bundle) -> Float:

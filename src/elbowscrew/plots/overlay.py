@@ -62,7 +62,8 @@ def plot_overlay(ax: Axes, curves: Sequence[MeanCurve], unit: AngleUnit = "deg")
     """Draw the curves of trials, their mean, and one standard deviation between trials on either side."""
     stack = angle_in(np.stack([curve.angle for curve in curves]), unit)
     for k, curve in enumerate(stack):
-        ax.plot(PERCENT, curve, color="#9A9A9A", linewidth=0.6, label=f"{len(stack)} trials" if k == 0 else None)
+        label = f"{len(stack)} trials" if k == 0 else None
+        ax.plot(PERCENT, curve, color="#8C8C8C", linewidth=0.5, zorder=2, label=label)
     whole = np.isfinite(stack).all(axis=0)  # a mean of some trials only would jump where the others leave off
     mean = np.where(whole, stack.mean(axis=0), np.nan)
     sd = np.where(whole, stack.std(axis=0, ddof=1), np.nan)
@@ -70,13 +71,10 @@ def plot_overlay(ax: Axes, curves: Sequence[MeanCurve], unit: AngleUnit = "deg")
         PERCENT,
         mean - sd,
         mean + sd,
-        color="#56B4E9",
-        alpha=0.45,
-        linewidth=0.0,
         label="± standard deviation",
-        zorder=2,
+        **style.SPREAD,
     )
-    ax.plot(PERCENT, mean, color="#000000", linewidth=1.6, label="mean", zorder=3)
+    ax.plot(PERCENT, mean, color=style.BLACK, linewidth=1.6, label="mean", zorder=3)
     ax.set_xlim(0.0, 100.0)
     ax.set_xlabel("Time of the movement (%)")
     ax.set_ylabel(f"Angle θ ({unit})")
@@ -85,7 +83,7 @@ def plot_overlay(ax: Axes, curves: Sequence[MeanCurve], unit: AngleUnit = "deg")
 
 def overlay_figure(curves: Sequence[MeanCurve], *, width_mm: float = WIDTH_MM, unit: AngleUnit = "deg") -> Figure:
     """Make the figure of several trials over the normalized time of the movement."""
-    figure = style.new_figure(width_mm, 0.4 * width_mm + 24.0)
+    figure = style.new_figure(width_mm, 0.32 * width_mm + 26.0)
     ax = plot_overlay(figure.add_subplot(), curves, unit)
-    figure.legend(*ax.get_legend_handles_labels(), loc="outside upper center", ncols=3)
+    style.legend(figure, ax)
     return figure

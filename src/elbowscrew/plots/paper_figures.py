@@ -12,23 +12,18 @@ from matplotlib.figure import Figure
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import Analysis
 from elbowscrew.plots import series, style
-from elbowscrew.plots.figures import NARROW_MM, WIDTH_MM, MakeFigure
+from elbowscrew.plots.figures import WIDTH_MM, MakeFigure
 from elbowscrew.quantities import angle_in
 from elbowscrew.results.trial_views import view_of
 from elbowscrew.view.trial_view import TrialView
 
-# Okabe and Ito's colors with line styles of their own, so that they are apart in grey as well.
-_COMPONENTS: Final[tuple[dict[str, Any], ...]] = (
-    {"color": "#000000", "linestyle": "-"},
-    {"color": "#D55E00", "linestyle": (0, (5, 2))},
-    {"color": "#0072B2", "linestyle": (0, (1, 1.2))},
-    {"color": "#009E73", "linestyle": (0, (6, 2, 1, 2))},
-)
+_DASHES: Final[tuple[Any, ...]] = ("-", (0, (5, 2)), (0, (1, 1.2)), (0, (6, 2, 1, 2)))
+"""Of e0 to e3."""
 
 
 def _angle_figure(analysis: Analysis | TrialView, *, width_mm: float = WIDTH_MM, modeled: bool) -> Figure:
     view = view_of(analysis)
-    figure = style.new_figure(width_mm, 0.4 * width_mm + 20.0)
+    figure = style.new_figure(width_mm, 0.32 * width_mm + 26.0)
     ax = figure.add_subplot()
     unit, time_s = view.settings.angle_unit, view.time_s
     rows = view.keyframes.row
@@ -41,25 +36,26 @@ def _angle_figure(analysis: Analysis | TrialView, *, width_mm: float = WIDTH_MM,
     ax.set_ylabel(f"Angle θ ({unit})")
     _alike(ax, angle_in(view.angle, unit), angle_in(view.modeled_angle, unit))
     series.over_time(ax, time_s)
-    figure.legend(*ax.get_legend_handles_labels(), loc="outside upper center", ncols=4)
+    style.legend(figure, ax)
     return figure
 
 
 def _euler_figure(analysis: Analysis | TrialView, *, width_mm: float = WIDTH_MM, modeled: bool) -> Figure:
     view = view_of(analysis)
-    figure = style.new_figure(width_mm, 0.4 * width_mm + 20.0)
+    figure = style.new_figure(width_mm, 0.32 * width_mm + 26.0)
     ax = figure.add_subplot()
     time_s = view.time_s
     shown = view.modeled_euler_parameters if modeled else view.euler_parameters
-    for component, look in enumerate(_COMPONENTS):
+    look = style.MODELED if modeled else style.MEASURED
+    for component, dashes in enumerate(_DASHES):
         values = shown[:, component]
-        series.line(ax, time_s, values, label=f"$e_{component}$", linewidth=1.3, **look)
+        series.line(ax, time_s, values, label=f"$e_{component}$", **{**look, "linestyle": dashes})
     if not modeled:
         series.mark_tracking(ax, view)
     ax.set_ylabel("Modeled $e_k$ (–)" if modeled else "Measured $e_k$ (–)")
     _alike(ax, view.euler_parameters, view.modeled_euler_parameters)
     series.over_time(ax, time_s)
-    figure.legend(*ax.get_legend_handles_labels(), loc="outside upper center", ncols=4 if width_mm < NARROW_MM else 6)
+    style.legend(figure, ax)
     return figure
 
 

@@ -16,6 +16,7 @@ from elbowscrew.motion.movements.phases import runs_of
 from elbowscrew.plots import style
 from elbowscrew.quantities import angle_in, length_in
 from elbowscrew.results.trial_views import view_of
+from elbowscrew.view.bands import is_seen
 from elbowscrew.view.decimation import drawn_band, drawn_rows
 from elbowscrew.view.trial_view import TrialView
 
@@ -29,10 +30,7 @@ def plot_theta(ax: Axes, analysis: Analysis | TrialView) -> Axes:
     angle = angle_in(view.angle, unit)
     reach = angle_in(NORMAL_95 * view.angle_sd, unit)
     time_s = view.time_s
-    if np.isfinite(reach).any():
-        label = f"95 % interval (±{np.nanmedian(reach):.2g} {unit})"
-        rows, low, high = drawn_band(angle - reach, angle + reach)
-        ax.fill_between(time_s[rows], low, high, label=label, **style.BAND)
+    band(ax, time_s, angle, reach)
     line(ax, time_s, angle, label="measured", **style.MEASURED)
     line(ax, time_s, angle_in(view.modeled_angle, unit), label=_model_label(view), **style.MODELED)
     rows = view.keyframes.row
@@ -106,22 +104,21 @@ def _plot_error(ax: Axes, view: TrialView, values: Float, name: str, unit: str) 
     if np.isfinite(values).any():
         level = float(np.sqrt(np.nanmean(values**2)))
         ax.axhline(level, **style.LEVEL)
-        ax.annotate(
-            f"RMS {level:.3g} {unit}",
-            (1.0, level),
-            xycoords=ax.get_yaxis_transform(),
-            xytext=(0.0, 2.0),
-            textcoords="offset points",
-            ha="right",
-            va="bottom",
-            bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.0, "alpha": 0.85},
-        )
+        ax.set_title(f"RMS {level:.3g} {unit}", loc="right", fontweight="normal")
     rows = view.keyframes.row
     ax.plot(time_s[rows], values[rows], label="keyframes", **style.KEYFRAME)
     mark_tracking(ax, view)
     ax.set_ylabel(f"{name} ({unit})")
     ax.set_ylim(bottom=min(0.0, ax.get_ylim()[0]))
     return over_time(ax, time_s)
+
+
+def band(ax: Axes, time_s: Float, values: Float, reach: Float) -> Axes:
+    """Draw the 95 % interval about a curve, where it can be seen beside the curve's own width."""
+    if is_seen(values, reach):
+        rows, low, high = drawn_band(values - reach, values + reach)
+        ax.fill_between(time_s[rows], low, high, label="95 % interval", **style.BAND)
+    return ax
 
 
 def line(ax: Axes, time_s: Float, values: Float, *, label: str, **look: Any) -> Axes:

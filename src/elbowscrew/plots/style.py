@@ -3,41 +3,63 @@
 from __future__ import annotations
 
 from contextlib import AbstractContextManager
-from typing import Any, Final
+from itertools import pairwise
+from typing import Any, Final, cast
 
 import matplotlib as mpl
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
+from matplotlib.font_manager import FontProperties
 from matplotlib.layout_engine import ConstrainedLayoutEngine
+from matplotlib.ticker import FixedLocator, MaxNLocator
+from matplotlib.transforms import Bbox
 
-# From the palette of Okabe and Ito, and apart in grey as well: line styles differ on top of it.
-MEASURED: Final[dict[str, Any]] = {"color": "#000000", "linewidth": 1.3, "linestyle": "-"}
-MODELED: Final[dict[str, Any]] = {"color": "#D55E00", "linewidth": 1.3, "linestyle": (0, (5, 2))}
+# One color means one thing in all figures. From the palettes of Okabe and Ito and of Tol; line styles, markers and
+# lightness tell the lines apart in grey as well. No transparency, which EPS does not have.
+BLACK: Final = "#000000"  # what was measured
+BLUE: Final = "#0072B2"  # the model and the poses it goes through
+ORANGE: Final = "#F2B134"  # what holds 95 % of the errors
+GREEN: Final = "#009E73"  # the distal body's path
+GREY: Final = "#CCCCCC"  # spread: of the frames' axes, of cycles, of trials
+
+MEASURED: Final[dict[str, Any]] = {"color": BLACK, "linewidth": 1.2, "linestyle": "-"}
+MODELED: Final[dict[str, Any]] = {"color": BLUE, "linewidth": 1.3, "linestyle": (0, (5, 2))}
 KEYFRAME: Final[dict[str, Any]] = {
-    "color": "#0072B2", "marker": "o", "markersize": 5.5, "linestyle": "none", "markerfacecolor": "white",
-    "markeredgewidth": 1.3, "zorder": 5, "clip_on": False,
+    "color": BLUE, "marker": "o", "markersize": 5.0, "linestyle": "none", "markerfacecolor": "white",
+    "markeredgewidth": 1.2, "zorder": 5, "clip_on": False,
 }  # fmt: skip
-MOVING: Final[dict[str, Any]] = {"color": "#E6EFF8", "linewidth": 0.0, "zorder": -1}
-LOST: Final[dict[str, Any]] = {"color": "#DDDDDD", "linewidth": 0.0, "zorder": 0}
+AXES: Final[tuple[dict[str, Any], ...]] = (
+    {"color": "#882255", "linestyle": "-"},
+    {"color": "#CC6677", "linestyle": (0, (5, 2))},
+    {"color": "#44AA99", "linestyle": (0, (1, 1.2))},
+)
+"""The joint's axes, and the angles about them."""
+PATH: Final[dict[str, Any]] = {"color": GREEN, "linewidth": 1.2}
+PROXIMAL: Final[dict[str, Any]] = {
+    "color": "#333333", "marker": "s", "linestyle": "none", "markersize": 3.2, "markeredgewidth": 0.7,
+}  # fmt: skip
+DISTAL: Final[dict[str, Any]] = {**PROXIMAL, "marker": "o", "markerfacecolor": "white", "markersize": 3.6}
+"""Markers of the two bodies; the origin of each has the same look, larger."""
+MOVING: Final[dict[str, Any]] = {"color": "#E6F0FA", "linewidth": 0.0, "zorder": -1}
+LOST: Final[dict[str, Any]] = {"color": "#F3D3CB", "linewidth": 0.0, "zorder": 0}
 FILLED: Final[dict[str, Any]] = {
     "facecolor": "none", "edgecolor": "#888888", "hatch": "//////", "linewidth": 0.0, "zorder": 0,
 }  # fmt: skip
 LEVEL: Final[dict[str, Any]] = {"color": "#666666", "linewidth": 0.8, "linestyle": (0, (1, 2))}
-SPREAD: Final[dict[str, Any]] = {
-    "color": "#CCCCCC", "alpha": 0.6, "linewidth": 0.0, "zorder": 1, "label": "95 % of the frames' axes",
-}  # fmt: skip
-CONFIDENCE: Final[dict[str, Any]] = {
-    "facecolor": "#EE7733", "edgecolor": "#AA3300", "alpha": 0.8, "linewidth": 0.8, "zorder": 1.5,
-    "label": "95 % confidence of the joint axis",
-}  # fmt: skip
-BAND: Final[dict[str, Any]] = {"color": "#888888", "alpha": 0.5, "linewidth": 0.0, "zorder": 1}
+BAND: Final[dict[str, Any]] = {"facecolor": ORANGE, "edgecolor": "#A86F00", "linewidth": 0.4, "zorder": 1}
+SPREAD: Final[dict[str, Any]] = {"facecolor": GREY, "edgecolor": "#999999", "linewidth": 0.4, "zorder": 1}
 # Viridis without its light end, which vanishes on white paper.
 COLORMAP: Final = ListedColormap(mpl.colormaps["viridis"](np.linspace(0.0, 0.88, 256)), name="angle")
 
-_MM_PER_INCH: Final = 25.4
-_DOTS_PER_INCH: Final = 300
+MM_PER_INCH: Final = 25.4
+POINTS_PER_MM: Final = 72.0 / MM_PER_INCH
+DOTS_PER_INCH: Final = 300
+_TEXT: Final = 7.5
+_SETTLED: Final = 4  # layouts at most
+_LEAST_AIR: Final = 2.0  # pixels
 _RC: Final[dict[Any, Any]] = {
     "font.family": "sans-serif",
     "font.sans-serif": ["DejaVu Sans"],
@@ -51,16 +73,18 @@ _RC: Final[dict[Any, Any]] = {
     "axes.spines.top": False,
     "axes.spines.right": False,
     "axes.formatter.useoffset": False,
-    "xtick.labelsize": 7.5,
-    "ytick.labelsize": 7.5,
+    "xtick.labelsize": _TEXT,
+    "ytick.labelsize": _TEXT,
     "xtick.major.width": 0.7,
     "ytick.major.width": 0.7,
     "hatch.linewidth": 0.5,
-    "legend.fontsize": 7.5,
+    "legend.fontsize": _TEXT,
     "legend.frameon": False,
-    "legend.handlelength": 2.6,
+    "legend.handlelength": 2.2,
+    "legend.columnspacing": 1.4,
     "savefig.dpi": "figure",
     "pdf.fonttype": 42,
+    "ps.fonttype": 42,
     "svg.fonttype": "path",
     "svg.hashsalt": "elbowscrew",
 }
@@ -75,18 +99,140 @@ def publication_style() -> AbstractContextManager[None]:
 
 def new_figure(width_mm: float, height_mm: float) -> Figure:
     """Return an empty figure of that size on paper, without pyplot's global state; `settle` lays it out."""
-    figure = Figure(figsize=(width_mm / _MM_PER_INCH, height_mm / _MM_PER_INCH), dpi=_DOTS_PER_INCH)
+    figure = Figure(figsize=(width_mm / MM_PER_INCH, height_mm / MM_PER_INCH), dpi=DOTS_PER_INCH)
     FigureCanvasAgg(figure)  # so that laying out and drawing share a renderer
     return figure
+
+
+def letter(*panels: Axes) -> None:
+    """Name the panels of a figure a, b, ..."""
+    for ax, name in zip(panels, "abcdefgh", strict=False):
+        ax.set_title(name, loc="left")
+
+
+def legend(figure: Figure, *panels: Axes, below: bool = False) -> None:
+    """Explain all that the panels have labels for, above them or below, in as many columns as fit.
+
+    The figure grows by the rows of it, so that the panels keep their size.
+    """
+    keys: dict[str, Any] = {}
+    for ax in panels:
+        for handle, label in zip(*ax.get_legend_handles_labels(), strict=True):
+            keys.setdefault(label, handle)
+    if not keys:
+        return
+    width, height = figure.get_size_inches()
+    columns = _columns(figure, list(keys), 72.0 * width)
+    rows = -(-len(keys) // columns)
+    figure.set_size_inches(width, height + (1.5 * rows + 1.0) * _TEXT / 72.0)
+    place: Any = "outside lower center" if below else "outside upper center"
+    figure.legend(keys.values(), keys.keys(), loc=place, ncols=columns)
+
+
+def _columns(figure: Figure, labels: list[str], width: float) -> int:
+    """How many columns of a legend fit into a width, points."""
+    renderer = cast(Any, figure.canvas).get_renderer()
+    font = FontProperties(size=_TEXT)
+    points = 72.0 / figure.dpi
+    widths = [points * renderer.get_text_width_height_descent(label, font, "$" in label)[0] for label in labels]
+    beside = (mpl.rcParams["legend.handlelength"] + mpl.rcParams["legend.handletextpad"]) * _TEXT
+    between = mpl.rcParams["legend.columnspacing"] * _TEXT
+    for columns in range(len(labels), 1, -1):
+        parts = [max(part.tolist()) for part in np.array_split(np.array(widths), columns)]
+        if sum(parts) + columns * beside + (columns - 1) * between + 2.0 * _TEXT <= width:
+            return columns
+    return 1
 
 
 def settle(figure: Figure) -> None:
     """Lay a figure out once and for all, the places of its axes rounded.
 
+    Ticks are found anew when the axes have their size, and may be wider than those the layout left room for: then it is
+    laid out again. Tick labels that would touch are thinned.
+
     The layout's solver leaves last digits that differ from run to run, and with them the bytes of a file. It works
     here once: as the figure's own engine it would do so, and draw all for it, each time the figure is saved.
     """
-    ConstrainedLayoutEngine().execute(figure)
+    for _ in range(_SETTLED):
+        ConstrainedLayoutEngine().execute(figure)
+        for ax in figure.axes:
+            _place(ax, ax.get_position(original=True).bounds)
+        figure.draw_without_rendering()
+        _place_spaces(figure)
+        if not _thinned(figure) and not _cut_off(figure):
+            return
+
+
+def _place(ax: Axes, bounds: tuple[float, float, float, float]) -> None:
+    left, bottom, width, height = (round(float(value), 6) for value in bounds)
+    ax.set_position((left, bottom, width, height), which="both")
+
+
+def _place_spaces(figure: Figure) -> None:
+    """Move each view in space to the middle of the room that it has, smaller if need be: the layout sees no part of it.
+
+    Other panels keep to the grid, whose columns the widest labels set; a space has labels of its own all around.
+    """
+    spaces = [ax for ax in figure.axes if ax.name == "3d"]
+    width = figure.bbox.width
+    for ax in spaces:
+        box = ax.get_tightbbox()
+        if box is None:
+            continue
+        middle = 0.5 * (box.x0 + box.x1)
+        beside = [other for one in figure.axes if _share_a_row(one, ax) and (other := one.get_tightbbox()) is not None]
+        left = max([other.x1 for other in beside if 0.5 * (other.x0 + other.x1) < middle], default=0.0)
+        right = min([other.x0 for other in beside if 0.5 * (other.x0 + other.x1) > middle], default=width)
+        air = 2.0 * _LEAST_AIR
+        scale = min(1.0, (right - left - 2.0 * air) / box.width)
+        old = ax.get_position()
+        shift = (0.5 * (left + right) - middle) / width
+        center = 0.5 * (old.x0 + old.x1) + shift, 0.5 * (old.y0 + old.y1)
+        size = scale * old.width, scale * old.height
+        corner = center[0] - 0.5 * size[0], center[1] - 0.5 * size[1]
+        _place(ax, (*corner, *size))
+    if spaces:
+        figure.draw_without_rendering()
+
+
+def _share_a_row(one: Axes, other: Axes) -> bool:
+    """Whether two panels, not the same, stand beside each other in the grid."""
+    first, second = one.get_subplotspec(), other.get_subplotspec()
+    if one is other or first is None or second is None:
+        return False
+    return first.rowspan.start < second.rowspan.stop and second.rowspan.start < first.rowspan.stop
+
+
+def _cut_off(figure: Figure) -> bool:
+    """Whether anything reaches over the edge of the paper, or up to it."""
+    paper = figure.bbox.padded(-_LEAST_AIR)
+    boxes = [box for ax in figure.axes if (box := ax.get_tightbbox()) is not None]
+    return any(bool(np.any(box.min < paper.min) or np.any(box.max > paper.max)) for box in boxes)
+
+
+def _thinned(figure: Figure) -> bool:
+    """Take fewer ticks where labels touch; tell whether any did."""
+    found = False
     for ax in figure.axes:
-        left, bottom, width, height = (round(float(value), 6) for value in ax.get_position(original=True).bounds)
-        ax.set_position((left, bottom, width, height), which="both")
+        for axis in (ax.xaxis, ax.yaxis) if ax.name != "3d" else ():
+            labels = _labels(axis)
+            if _touch(labels, 0 if axis is ax.xaxis else 1):
+                axis.set_major_locator(MaxNLocator(max(len(labels) - 2, 2), steps=[1, 2, 2.5, 5, 10]))
+                found = True
+    return found
+
+
+def _labels(axis: Any) -> list[Bbox]:
+    """Places of the tick labels that are drawn; none where the ticks are not to be changed."""
+    if axis.get_scale() != "linear" or isinstance(axis.get_major_locator(), FixedLocator):
+        return []
+    low, high = sorted(axis.get_view_interval())
+    labels = [tick.label1 for tick in axis.get_major_ticks() if low <= tick.get_loc() <= high]
+    return [label.get_window_extent() for label in labels if label.get_visible() and label.get_text()]
+
+
+def _touch(boxes: list[Bbox], along: int) -> bool:
+    """Whether neighbors lie closer to each other than half a digit's width along the axis, or at all up the axis."""
+    ends = sorted((box.min[along], box.max[along]) for box in boxes)
+    apart = 0.3 * _TEXT * DOTS_PER_INCH / 72.0 if along == 0 else 0.0
+    return len(ends) > 2 and any(after[0] - before[1] < apart for before, after in pairwise(ends))

@@ -48,10 +48,12 @@ class AxisInBody(NamedTuple):
 class JointInBody(NamedTuple):
     """What a body sees of the joint at the reference, meters.
 
-    Its own markers (M, 3) and the other body's, None where the file has none; the other body's origin (3,); the axes;
-    and the center (3,) with the semi-axes (3, 3) of its 95 % ellipsoid, None where there is none.
+    Which one it is and its word; its own markers (M, 3) and the other body's, None where the file has none; the other
+    body's origin (3,); the axes; and the center (3,) with the semi-axes (3, 3) of its 95 % ellipsoid, None where there
+    is none.
     """
 
+    end: End
     word: str
     markers: Float | None
     other_markers: Float | None
@@ -84,6 +86,7 @@ def joint_in_body(view: TrialView, end: End) -> JointInBody:
     ball, words = view.joint_summary["ball"], view.named_joint
     center = None if ball is None else ball["center_in_proximal_mm" if proximal else "center_in_distal_mm"]
     return JointInBody(
+        end=end,
         word=words.proximal.name if proximal else words.distal.name,
         markers=here,
         other_markers=None if there is None else transform_points(to_here, there),

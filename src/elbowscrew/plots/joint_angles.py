@@ -1,0 +1,147 @@
+"""The joint's own angles over time, and an axis that wanders with them."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from elbowscrew.geometry.arrays import Float
+from elbowscrew.geometry.sensitivity import NORMAL_95
+from elbowscrew.model import Analysis
+from elbowscrew.model.joint_type import JointAngles
+from elbowscrew.motion.difference import piercing
+from elbowscrew.plots import style
+from elbowscrew.plots.figures import NARROW_MM, WIDTH_MM
+from elbowscrew.plots.series import band, line, mark_tracking, over_time
+from elbowscrew.quantities import angle_in, length_in
+from elbowscrew.results.trial_views import view_of
+from elbowscrew.view.decimation import drawn_rows
+from elbowscrew.view.joint_space import ANGLE_NAMES
+from elbowscrew.view.scene import directions_across
+from elbowscrew.view.trial_view import TrialView
+
+
+def joint_angles_figure(analysis: Analysis | TrialView, *, width_mm: float = WIDTH_MM) -> Figure:
+    """Make the figure of the joint's own angles over time, of two against each other, and of what is left."""
+    view, angles = _with_angles(analysis)
+    both = angles.angle.shape[1] == 2
+    if width_mm < NARROW_MM:
+        heights = [58.0, 36.0, 42.0, *([0.8 * width_mm] if both else [])]
+        figure = style.new_figure(width_mm, sum(heights))
+        grid = figure.add_gridspec(len(heights), 1, height_ratios=heights)
+        cells = [grid[k, 0] for k in range(len(heights))]
+    else:
+        figure = style.new_figure(width_mm, 110.0)
+        grid = figure.add_gridspec(3, 2 if both else 1, width_ratios=[1.5, 1.0] if both else None)
+        cells = [*(grid[k, 0] for k in range(3)), *([grid[:2, 1]] if both else [])]
+    panels = [figure.add_subplot(cell) for cell in cells]
+    plot_joint_angles(panels[0], view).set_xlabel("")
+    plot_residual_rotation(panels[1], view).set_xlabel("")
+    plot_residual_translation(panels[2], view)
+    if both:
+        plot_angles_together(panels[3], view)
+    style.letter(*panels)
+    style.legend(figure, *panels)
+    return figure
+
+
+def _with_angles(analysis: Analysis | TrialView) -> tuple[TrialView, JointAngles]:
+    """Give the view and the joint's own angles; ValueError of a joint without any."""
+    view = view_of(analysis)
+    if view.joint_angles is None:
+        msg = "this joint has no angles of its own to draw"
+        raise ValueError(msg)
+    return view, view.joint_angles
+
+
+def plot_joint_angles(ax: Axes, analysis: Analysis | TrialView) -> Axes:
+    """Draw the joint's own angles over time with their 95 % intervals."""
+    view, angles = _with_angles(analysis)
+    unit = view.settings.angle_unit
+    names = ANGLE_NAMES[angles.angle.shape[1]]
+    for k, name in enumerate(names):
+        values, reach = angle_in(angles.angle[:, k], unit), angle_in(NORMAL_95 * angles.angle_sd[:, k], unit)
+        band(ax, angles.time_s, values, reach)
+        line(ax, angles.time_s, values, label=name, linewidth=1.2, zorder=2, **style.AXES[k])
+    mark_tracking(ax, view)
+    ax.set_ylabel(f"{names[0] if len(names) == 1 else 'Angles'} ({unit})")
+    return over_time(ax, angles.time_s)
+
+
+def plot_residual_rotation(ax: Axes, analysis: Analysis | TrialView) -> Axes:
+    """Draw the rotation that the joint leaves of each pose, over time."""
+    view, angles = _with_angles(analysis)
+    unit = view.settings.angle_unit
+    return _plot_residual(ax, view, angle_in(angles.residual_rotation, unit), f"Residual rotation ({unit})")
+
+
+def plot_residual_translation(ax: Axes, analysis: Analysis | TrialView) -> Axes:
+    """Draw the distance that the joint leaves of each pose, over time."""
+    view, angles = _with_angles(analysis)
+    unit = view.settings.length_unit
+    return _plot_residual(ax, view, length_in(angles.residual_translation, unit), f"Residual position ({unit})")
+
+
+def _plot_residual(ax: Axes, view: TrialView, values: Float, name: str) -> Axes:
+    line(ax, view.time_s, values, label="residual", **{**style.MEASURED, "linewidth": 0.6})
+    mark_tracking(ax, view)
+    ax.set_ylabel(name.replace(" ", "\n", 1))
+    ax.set_ylim(0.0, 1.08 * _largest(values))
+    return over_time(ax, view.time_s)
+
+
+def _largest(values: Float) -> float:
+    found = float(np.nanmax(values, initial=0.0)) if np.isfinite(values).any() else 0.0
+    return found if found > 0.0 else 1.0
+
+
+def plot_angles_together(ax: Axes, analysis: Analysis | TrialView) -> Axes:
+    """Draw the second angle against the first."""
+    view, angles = _with_angles(analysis)
+    unit = view.settings.angle_unit
+    rows = drawn_rows(*angles.angle.T)
+    first, second = angle_in(angles.angle[rows], unit).T
+    ax.plot(first, second, color="#000000", linewidth=0.9)
+    start = np.flatnonzero(np.isfinite(first) & np.isfinite(second))[:1]
+    ax.plot(first[start], second[start], marker="D", color=style.BLACK, markersize=4.0, linestyle="none", label="start")
+    names = ANGLE_NAMES[2]
+    ax.set_xlabel(f"{names[0]} ({unit})")
+    ax.set_ylabel(f"{names[1]} ({unit})")
+    return ax
+
+
+def axis_path_figure(analysis: Analysis | TrialView, *, width_mm: float = WIDTH_MM) -> Figure:
+    """Make the figure of an axis that wanders: its tilt and its shift from the mean axis against the angle."""
+    view = view_of(analysis)
+    path = view.axis_path
+    if path is None:
+        msg = "no wander of this joint's axis was found"
+        raise ValueError(msg)
+    narrow = width_mm < NARROW_MM
+    figure = style.new_figure(width_mm, 110.0 if narrow else 68.0)
+    panels = [figure.add_subplot(2, 1, k) if narrow else figure.add_subplot(1, 2, k) for k in (1, 2)]
+    direction = view.joint_direction
+    across, toward = directions_across(direction)
+    settings = view.settings
+    angle = angle_in(path.angle, settings.angle_unit)
+    offset = piercing(path.direction, path.point, direction, view.joint_point) - view.joint_point
+    for k, (u, name) in enumerate(zip(across, toward, strict=True)):
+        tilt = angle_in(np.arctan2(path.direction @ u, path.direction @ direction), settings.angle_unit)
+        shift = length_in(offset @ u, settings.length_unit)
+        for ax, values, sd in (
+            (panels[0], tilt, angle_in(path.axis_sd, settings.angle_unit)),
+            (panels[1], shift, length_in(path.point_sd, settings.length_unit)),
+        ):
+            reach = NORMAL_95 * sd / np.sqrt(2.0)  # of one component
+            if np.isfinite(reach).any():
+                ax.fill_between(angle, values - reach, values + reach, label="95 % of each", **style.BAND)
+            ax.plot(angle, values, label=f"toward {name}", linewidth=1.3, marker="o", markersize=2.5, **style.AXES[k])
+    panels[0].set_ylabel(f"Tilt from the mean axis ({settings.angle_unit})")
+    panels[1].set_ylabel(f"Shift from the mean axis ({settings.length_unit})")
+    for ax in panels:
+        ax.axhline(0.0, **style.LEVEL)
+        ax.set_xlabel(f"Angle ({settings.angle_unit})")
+    style.letter(*panels)
+    style.legend(figure, panels[0], below=True)
+    return figure

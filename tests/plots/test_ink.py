@@ -1,0 +1,65 @@
+"""No figure has ink at the edge, texts over each other, or a legend over what it explains.
+
+Each figure is drawn as narrow as it may be and at three other widths, of trials of all kinds in turn;
+``benchmarks/figures.py`` draws all figures of all trials at all widths.
+"""
+
+from __future__ import annotations
+
+import pytest
+from drawn_trials import KINDS, drawn_trial
+from ink import faults_of
+from matplotlib.figure import Figure
+
+from elbowscrew.plots.registry import figure_function, has_figure
+from elbowscrew.plots.style import letter, new_figure, publication_style, settle
+from elbowscrew.view.figure_names import FIGURE_ENTRIES
+
+WIDTHS_MM = (70.0, 85.0, 120.0, 170.0, 180.0)
+NAMES = tuple(FIGURE_ENTRIES)
+
+
+def widths_and_kinds(name: str) -> list[tuple[float, str]]:
+    """Four widths, the narrowest among them, each with another kind of trial that has the figure."""
+    kinds = [kind for kind in KINDS if has_figure(name, drawn_trial(kind))]
+    first = NAMES.index(name)
+    widths = (60.0, *(WIDTHS_MM[(first + 2 * k) % len(WIDTHS_MM)] for k in range(3)))
+    return [(width, kinds[(first + k) % len(kinds)]) for k, width in enumerate(widths)]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_nothing_is_cut_off_or_drawn_over(name: str) -> None:
+    found = {}
+    for width, kind in widths_and_kinds(name):
+        with publication_style():
+            figure = figure_function(name)(drawn_trial(kind), width_mm=width)
+            settle(figure)
+            found[width, kind] = faults_of(figure)
+    assert not {at: faults for at, faults in found.items() if faults}
+
+
+def drawn(figure: Figure) -> str:
+    with publication_style():
+        return "; ".join(faults_of(figure))
+
+
+def test_what_is_wrong_is_seen() -> None:
+    """The test above can fail: by each of the faults that it looks for."""
+    with publication_style():
+        figure = new_figure(85.0, 60.0)
+        ax = figure.add_subplot()
+        ax.plot([0.0, 1.0], [0.0, 1.0], label="line")
+        ax.set_ylabel("Angle (deg)")
+        letter(ax)
+        settle(figure)
+        assert faults_of(figure) == []
+        ax.text(0.4, 0.4, "first")
+        ax.text(0.41, 0.41, "second")
+        assert "'first' over 'second'" in drawn(figure)
+        ax.text(0.9, 0.2, "a text that is too long")
+        assert "is cut off" in drawn(figure)
+        assert "ink at the right edge" in drawn(figure)
+        ax.legend(loc="center")
+        assert "legend over line 'line'" in drawn(figure)
+        figure.legend(["line"], loc="lower left")
+        assert "legend over an axes" in drawn(figure)
