@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from cluster_noise import Hinge, Noise, fitted, interval_of, seen, skin, white, with_rms_alone
+from oracles import rodrigues
 from poses import random_poses
 from trials import joint_poses
 
@@ -49,3 +50,15 @@ def test_an_analysis_knows_of_the_markers_what_there_is_to_know(noise: Noise, ga
     assert found.axis_cone == pytest.approx(wanted, rel=0.05)
     alone = with_rms_alone(case)
     assert interval_of(alone, fitted(alone)[1]).radius(rows) > gain * 0.95 * wanted
+
+
+@pytest.mark.parametrize("frames", [8, 12, 16])
+def test_markers_at_rest_to_the_last_digit_have_no_spectrum(frames: int) -> None:
+    shape = np.array([[0.0, 0.0, 0.001], [0.09, 0.0, 0.0], [0.0, 0.06, 0.0]])
+    angle = np.linspace(0.0, 1.2, frames)
+    turning = rodrigues(np.array([0.0, 0.0, 1.0]), angle) @ shape.T + np.array([[0.3], [0.01], [0.005]])
+    still = [Marker(name=f"A{k}", position=np.tile(place, (frames, 1))) for k, place in enumerate(shape)]
+    moved = [Marker(name=f"F{k}", position=turning[:, :, k].round(9)) for k in range(3)]
+    frame = np.arange(frames)
+    recording = Recording(bodies=(), frame=frame, time_s=frame / 100.0, rate_hz=100.0, markers=(*still, *moved))
+    assert analyze(recording, CHOICE).screw.angle == pytest.approx(angle, abs=1e-7)

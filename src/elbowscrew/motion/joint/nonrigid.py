@@ -29,6 +29,7 @@ _ANGLE_BINS: Final = 15
 _PAIR_BINS: Final = 5  # of each of two angles
 _ALIKE: Final = 3.0
 _RANK: Final = 1e-6
+_LEAST_POWER: Final = 1e-12
 
 
 def nonrigid_covariance(
@@ -162,8 +163,11 @@ def _worth_of_model(z: Float, angle: Float, model: _Stationary, *, own_shape: bo
     basis = basis[:, size > _RANK * size[0]][:, :3]
     rank = basis.shape[1]
     series = cosine_transform(basis)
-    expected = series.T @ (model.power[:, None] * series)
-    relative = np.linalg.solve(np.linalg.cholesky(expected), basis.T @ z)
+    # Of a cluster at rest to the last digit there is no spectrum, and of a filtered one nothing at high frequencies.
+    scale = float(model.power.max())
+    power = np.maximum(model.power / scale, _LEAST_POWER)
+    expected = series.T @ (power[:, None] * series)
+    relative = np.linalg.solve(np.linalg.cholesky(expected), basis.T @ (z / np.sqrt(scale)))
     square = relative @ relative.T
     worth = _WORTH if model.flat >= 0.5 else _WORTH[_WORTH <= _WORTH_IF_COLORED]
     prior = worth + rank + 1.0
