@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -480,6 +481,14 @@ def test_what_was_done_is_said_and_nothing_else(name: str, cases: Callable[[str]
                 assert sentence not in case.text, f"{decision}: {sentence!r} is not so: {case.text}"
         if own is None:  # an outcome of which nothing is said
             assert outcome in ("none", "as exported", "None", "ends"), (decision, outcome)
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_sentences_end_with_a_stop_and_begin_after_a_space(name: str, cases: Callable[[str], Case]) -> None:
+    text = re.sub(r"\w+\.(csv|json|toml)|\d\.\d+\.\d+(\.dev\d+)?", "name", cases(name).text)
+    assert text.endswith(".")
+    assert not re.findall(r".{0,20}[.,;:)][A-Za-z].{0,20}", text)
+    assert not re.findall(r".{0,20}(?:  | [.,;:)]).{0,20}", text)
 
 
 def test_each_outcome_is_met(cases: Callable[[str], Case]) -> None:

@@ -417,6 +417,12 @@ def test_every_other_number_on_the_page_is_looked_at(told: Told) -> None:
         assert any(text.startswith(message) for text in told.page.texts), message
 
 
+def test_what_intervals_include_is_said_wherever_there_are_some(told: Told) -> None:
+    method = told.joint["joint_type"]["interval_method"]
+    said = [text for text in told.page.texts if text.startswith("The 95 % intervals are those of the clusters")]
+    assert [f", {method}. They hold if" in text for text in said] == [True] * (method is not None)
+
+
 # ---------------------------------------------------------------- terminal
 
 

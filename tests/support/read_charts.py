@@ -19,6 +19,7 @@ class Read:
 
     def __init__(self, root: ElementTree.Element) -> None:
         self.root = root
+        assert not "".join(one.tail or "" for one in root.iter() if one is not root).strip(), "text beside the drawing"
         texts = [one for one in self.root.iter("text") if TICK.fullmatch(one.text or "")]
         along = [one for one in texts if one.get("text-anchor") == "middle"]
         up = [one for one in texts if one.get("text-anchor") == "end"]
