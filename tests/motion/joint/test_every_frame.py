@@ -115,3 +115,15 @@ def test_a_filter_narrows_the_error_bars_and_unknown_noise_takes_them_from_the_r
     told = identify_joint(seen, covariance, exact[0], noise_known=True, forced="hinge")
     untold = identify_joint(seen, 100.0 * covariance, exact[0], noise_known=False, forced="hinge")
     assert untold.angle_sd == pytest.approx(told.angle_sd, rel=0.1)
+
+
+def test_a_long_trial_of_a_rigid_joint_has_residuals_and_no_angles(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It ended in an error where frames are taken by their neighbors, which a joint without angles does not have."""
+    rng = np.random.default_rng(4)
+    seen, covariance = mj.noisy(np.tile(mj.rest_pose(rng), (3000, 1)), rng, 0.1, 2e-4)
+    mechanism = fit_type("rigid", Poses.of(seen[::30], covariance[::30])).mechanism
+    monkeypatch.setattr(every_frame, "_MOST_SETTLED", 1500)
+    found = numbers_everywhere(mechanism, everywhere(seen, covariance), seen[0])
+    assert found.angle.shape == (3000, 0)
+    noise = np.sqrt(np.trace(covariance[:, :3, :3], axis1=1, axis2=2).mean())
+    assert np.sqrt(np.mean(found.residual_rotation**2)) == pytest.approx(noise, rel=0.05)

@@ -85,9 +85,10 @@ def numbers_everywhere(mechanism: Mechanism, frames: Everywhere, reference: Floa
         nearest of 20,000 frames.
     """
     rows = np.flatnonzero(np.isfinite(frames.joint[:, 0]))
-    settle = _settled_block if rows.size <= _MOST_SETTLED else _NearestWeights.of(mechanism, frames, rows).stepped
     start = reference_numbers(mechanism, frames, reference)
     own = start.covariance.shape[1]
+    every = rows.size <= _MOST_SETTLED or own == 0  # a rigid joint's frames have no numbers to step
+    settle = _settled_block if every else _NearestWeights.of(mechanism, frames, rows).stepped
     count = len(frames.joint)
     angle, deviation = np.full((count, own), np.nan), np.full((count, own), np.nan)
     rotation, translation = np.full(count, np.nan), np.full(count, np.nan)
