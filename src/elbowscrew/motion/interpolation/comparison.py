@@ -28,6 +28,7 @@ from elbowscrew.motion.interpolation.joint_model import Interpolation, ModelJoin
 from elbowscrew.motion.interpolation.keyframe_selection import select_keyframes
 from elbowscrew.motion.interpolation.keyframe_sources import ComparisonPlan, SourcePoses, keyframe_sources_of
 from elbowscrew.motion.interpolation.keyframes import keyframes_at, spread_rows
+from elbowscrew.motion.interpolation.keyframes_at_gaps import keyframe_doubts
 from elbowscrew.motion.interpolation.law_fit import FittedLaw, laws_of
 from elbowscrew.motion.interpolation.model_building import body_points, phases_of
 from elbowscrew.motion.interpolation.model_errors import model_errors
@@ -91,7 +92,8 @@ def compare(
     measured = measure(recording, raw)
     joint_type = measured_joint_type(measured, measured_joint_axis(measured, measured_mean_axis(measured), raw), raw)
     course = course_of_frames(measured, joint_type)
-    phases = phases_of(measured, course, measured_cuts(measured, raw, joint_type).movements, raw)
+    movements = measured_cuts(measured, raw, joint_type).movements
+    phases = phases_of(measured, course, movements, raw)
     points = body_points(measured.distal, raw)
     joint = _joint(measured, joint_type) if "joint" in plan.methods else None
     rows: list[dict[str, Any]] = []
@@ -123,7 +125,7 @@ def compare(
         laws=laws,
         selections=selections,
         points=points,
-        warnings=measured.warnings + doubts,
+        warnings=measured.warnings + keyframe_doubts(phases, course, measured, movements) + doubts,
     )
 
 

@@ -25,6 +25,7 @@ from elbowscrew.motion.difference import DEFAULT_RADIUS, points_from_markers, po
 from elbowscrew.motion.interpolation.joint_model import ModelJoint, interpolation_called
 from elbowscrew.motion.interpolation.keyframe_selection import select_keyframes
 from elbowscrew.motion.interpolation.keyframes import keyframes_at, phase_time, rows_of_frames
+from elbowscrew.motion.interpolation.keyframes_at_gaps import keyframe_doubts
 from elbowscrew.motion.interpolation.law_fit import FittedLaw, laws_of
 from elbowscrew.motion.interpolation.model_phases import model_phases, one_phase, phases_of_keyframes
 from elbowscrew.motion.interpolation.modeling import ModeledPoses, model_motion
@@ -76,11 +77,13 @@ def build_model(
     coordinates, make, known = interpolation_called(method, pose, joint)
     points = body_points(measured.distal, settings)
     rows = None
+    doubts: tuple[QualityWarning, ...] = ()
     if settings.keyframes is not None:
         rows, inversion_row = rows_of_frames(course, frame, settings.keyframes, settings.inversion)
         phases = phases_of_keyframes(rows, course, inversion_row)
     else:
         phases = phases_of(measured, course, movements, settings)
+        doubts = keyframe_doubts(phases, course, measured, movements)
     inversions = _inversion_rows(phases, course, settings)
     if settings.tolerance_mm is not None and settings.model_law == "linear":
         phases = one_phase(_measured_rows(measured))  # time itself needs no turns
@@ -110,7 +113,7 @@ def build_model(
         selection=selection,
         poses=poses,
         points=points,
-        warnings=_warnings(keyframes, inversions, measured, poses) + _turns_apart(keyframes, measured, method),
+        warnings=_warnings(keyframes, inversions, measured, poses) + _turns_apart(keyframes, measured, method) + doubts,
     )
 
 

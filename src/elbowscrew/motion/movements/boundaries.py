@@ -84,6 +84,8 @@ class Movements:
         The strokes that the movements consist of: motion in one sense.
     stroke_begin_sd_s, stroke_end_sd_s : ndarray, shape (K,)
         Their standard deviations.
+    stroke_begin_gap_s, stroke_end_gap_s : ndarray, shape (K, 2)
+        Begin and end of the gap that they are told from; NaN where there is none.
     outward : ndarray of bool, shape (K,)
         Whether a stroke is outward.
     reverses : ndarray of bool, shape (K - 1,)
@@ -102,6 +104,8 @@ class Movements:
     stroke_end_s: Float
     stroke_begin_sd_s: Float
     stroke_end_sd_s: Float
+    stroke_begin_gap_s: Float
+    stroke_end_gap_s: Float
     outward: Bool
     reverses: Bool
     turn_s: Float
@@ -161,7 +165,9 @@ def no_movements() -> Movements:
     return Movements(
         onset_s=none, offset_s=none, onset_sd_s=none, offset_sd_s=none, onset_reasons=(), offset_reasons=(),
         stroke_begin_s=none, stroke_end_s=none,
-        stroke_begin_sd_s=none, stroke_end_sd_s=none, outward=flags, reverses=flags, turn_s=none,
+        stroke_begin_sd_s=none, stroke_end_sd_s=none,
+        stroke_begin_gap_s=np.empty((0, 2)), stroke_end_gap_s=np.empty((0, 2)),
+        outward=flags, reverses=flags, turn_s=none,
     )  # fmt: skip
 
 
@@ -174,7 +180,16 @@ def long_gaps(elapsed: Float, known: NDArray[np.intp]) -> Float:
 
 
 def gap_at(seconds: Float, gaps: Float) -> Float:
-    """Length of the longest of the gaps (G, 2) that one of the times of a row (K, P) lies in, shape (K,); 0 if none."""
-    inside = (gaps[:, 0] <= seconds[..., None]) & (seconds[..., None] < gaps[:, 1])
-    lengths: Float = np.where(inside, gaps[:, 1] - gaps[:, 0], 0.0).max(axis=(1, 2), initial=0.0)
-    return lengths
+    """Give the longest of the gaps (G, 2) that one of the times of a row (K, P) lies in, shape (K, 2); NaN if none."""
+    inside = np.any((gaps[:, 0] <= seconds[..., None]) & (seconds[..., None] < gaps[:, 1]), axis=1)
+    found = np.full((len(seconds), 2), np.nan)
+    if len(gaps):
+        lengths = np.where(inside, gaps[:, 1] - gaps[:, 0], 0.0)
+        some = inside.any(axis=1)
+        found[some] = gaps[np.argmax(lengths, axis=1)[some]]
+    return found
+
+
+def duration_of(gaps: Float) -> Float:
+    """Durations of gaps (..., 2); 0 of none."""
+    return np.nan_to_num(gaps[..., 1] - gaps[..., 0])

@@ -9,7 +9,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowscrew.geometry.arrays import Float
-from elbowscrew.motion.movements.boundaries import Cuts, Cycles, Movements, long_gaps, no_cycles, no_movements
+from elbowscrew.motion.movements.boundaries import (
+    Cuts,
+    Cycles,
+    Movements,
+    duration_of,
+    long_gaps,
+    no_cycles,
+    no_movements,
+)
 from elbowscrew.motion.movements.cycles import Flanks, cycles_of, flanks_of
 from elbowscrew.motion.movements.rests import Strokes, strokes_of
 from elbowscrew.motion.movements.swings import fast_content, noise_of, swings_of
@@ -134,8 +142,8 @@ def _movements(strokes: Strokes, rate_hz: float, turns: Float, *, fast: bool) ->
             for side, gap, other in zip(sides.tolist(), lost_s.tolist(), laws.tolist(), strict=True)
         )
         for sides, lost_s, laws in (
-            (first, strokes.begin_gap_s[first], law[0]),
-            (last + 1, strokes.end_gap_s[last], law[1]),
+            (first, duration_of(strokes.begin_gap_s[first]), law[0]),
+            (last + 1, duration_of(strokes.end_gap_s[last]), law[1]),
         )
     ]
     return Movements(
@@ -149,6 +157,8 @@ def _movements(strokes: Strokes, rate_hz: float, turns: Float, *, fast: bool) ->
         stroke_end_s=end,
         stroke_begin_sd_s=strokes.begin_sd / rate_hz,
         stroke_end_sd_s=strokes.end_sd / rate_hz,
+        stroke_begin_gap_s=strokes.begin_gap_s,
+        stroke_end_gap_s=strokes.end_gap_s,
         outward=strokes.outward,
         reverses=strokes.reverses,
         turn_s=turns,

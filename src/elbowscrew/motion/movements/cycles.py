@@ -7,7 +7,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from elbowscrew.geometry.arrays import Float, Index
-from elbowscrew.motion.movements.boundaries import REASONS, Cycles, Reasons, gap_at
+from elbowscrew.motion.movements.boundaries import REASONS, Cycles, Reasons, duration_of, gap_at
 from elbowscrew.motion.movements.feet import (
     GAP_SD,
     LAW_SD,
@@ -175,7 +175,7 @@ def _lost_beside(flanks: Flanks, samples: Float, gaps: Float) -> Float:
     rising, falling = flanks.rising, flanks.falling
     lost = np.column_stack(
         [
-            gap_at(np.column_stack(times), gaps)
+            duration_of(gap_at(np.column_stack(times), gaps))
             for times in (
                 (start, rising.low_at, rising.half),
                 (top, rising.half, rising.top_at, falling.top_at, falling.half),

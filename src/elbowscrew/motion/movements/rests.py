@@ -7,7 +7,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from elbowscrew.geometry.arrays import Bool, Float, Index
-from elbowscrew.motion.movements.boundaries import gap_at
+from elbowscrew.motion.movements.boundaries import duration_of, gap_at
 from elbowscrew.motion.movements.feet import GAP_SD, LOW_SHARE, Feet, feet_of, moves_at_end, pooled, pooled_feet
 from elbowscrew.motion.movements.foot_laws import Distances, Shapes, Sharp, by_shape, shapes_of, sharp_of
 from elbowscrew.motion.movements.phases import runs_of
@@ -32,8 +32,9 @@ class Strokes(NamedTuple):
     begin, end : ndarray
         Feet of the stroke; where two strokes overlap there, both at the turn between them.
     begin_sd, end_sd : ndarray
-    begin_gap_s, end_gap_s : ndarray
-        Gap that the foot lies in, or a crossing that it is told from; seconds, 0 where there is none.
+    begin_gap_s, end_gap_s : ndarray, shape (K, 2)
+        Begin and end of the gap that the foot lies in, or a crossing that it is told from; seconds, NaN where there is
+        none.
     outward : ndarray of bool
         Whether the rotation increases.
     reverses : ndarray of bool, shape (K - 1,)
@@ -107,8 +108,8 @@ def strokes_of(swings: Swings, gaps: Float) -> Strokes:
         gap_at(np.column_stack([foot, at, feet.half]) / swings.rate_hz, gaps)
         for foot, at in ((begin, begin_at), (end, end_at))
     )
-    begin_sd = np.hypot(np.sqrt(before_var + begins.law_var), GAP_SD * begin_gap_s * swings.rate_hz)
-    end_sd = np.hypot(np.sqrt(after_var + ends.law_var), GAP_SD * end_gap_s * swings.rate_hz)
+    begin_sd = np.hypot(np.sqrt(before_var + begins.law_var), GAP_SD * duration_of(begin_gap_s) * swings.rate_hz)
+    end_sd = np.hypot(np.sqrt(after_var + ends.law_var), GAP_SD * duration_of(end_gap_s) * swings.rate_hz)
     rest_s = (begin[1:] - end[:-1]) / swings.rate_hz
     rest_sd_s = np.hypot(begin_sd[1:], end_sd[:-1]) / swings.rate_hz
     over = rest_s < 0.0

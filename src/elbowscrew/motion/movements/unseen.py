@@ -27,6 +27,8 @@ class Gaps(NamedTuple):
     highest, lowest : ndarray
         How far the series goes in between if it is slowed down evenly: half-way from the higher, or lower, end to where
         the tangents at the two ends meet.
+    highest_tip, lowest_tip : ndarray
+        Where these meet, or the higher and the lower end: farther it does not go if it only slows down.
     """
 
     before: Index
@@ -35,6 +37,8 @@ class Gaps(NamedTuple):
     after_slope: Float
     highest: Float
     lowest: Float
+    highest_tip: Float
+    lowest_tip: Float
 
 
 def gaps_of(series: Float, time: Float, longer_s: float = 0.0) -> Gaps:
@@ -52,13 +56,16 @@ def gaps_of(series: Float, time: Float, longer_s: float = 0.0) -> Gaps:
     meets = np.divide(series[after] - series[before] - slopes[1] * span, turn, out=np.zeros(at.size), where=turn != 0.0)
     tip = series[before] + slopes[0] * meets
     inside = (meets > 0.0) & (meets < span)
+    top, bottom = np.where(inside, np.maximum(tip, high), high), np.where(inside, np.minimum(tip, low), low)
     return Gaps(
         before=before.astype(np.int64),
         after=after.astype(np.int64),
         before_slope=slopes[0],
         after_slope=slopes[1],
-        highest=np.where(inside, 0.5 * (high + np.maximum(tip, high)), high),
-        lowest=np.where(inside, 0.5 * (low + np.minimum(tip, low)), low),
+        highest=0.5 * (high + top),
+        lowest=0.5 * (low + bottom),
+        highest_tip=top,
+        lowest_tip=bottom,
     )
 
 
