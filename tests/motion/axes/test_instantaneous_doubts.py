@@ -12,6 +12,7 @@ import pytest
 from elbowscrew import Analysis, Recording, RigidBody, Settings, analyze, simulate_trial
 from elbowscrew.cli import main
 from elbowscrew.geometry import dual_quat_from_screw
+from elbowscrew.geometry.arrays import Float
 
 
 def told(analysis: Analysis, code: str) -> list[str]:
@@ -53,6 +54,35 @@ def test_what_a_filter_that_was_given_leaves_out_is_told(
     )
     assert bool(told(found, "fast-motion-left-out")) == left_out
     assert bool(told(found, "speeds-off")) == left_out
+
+
+def fast_strokes(time: Float) -> Recording:
+    """Four strokes of 90 deg out and back in 0.12 s each, by a harmonic law, from half a second on."""
+    moving = np.clip(time - 0.5, 0.0, 0.96)
+    angle = 45.0 * (1.0 - np.cos(2.0 * np.pi * moving / 0.24))
+    angle += np.random.default_rng(4).normal(0.0, 0.02, time.size)
+    pose = dual_quat_from_screw(np.radians(angle), 0.0 * angle, [0.0, 0.6, 0.8], [0.1, 0.0, 0.0])
+    body = RigidBody(name="b", dual_quat_lab_body=pose, loss=np.zeros(time.size, dtype=np.uint8))
+    rate_hz = (time.size - 1) / float(time[-1])
+    return Recording(bodies=(body,), frame=np.arange(time.size), time_s=time, rate_hz=rate_hz)
+
+
+def test_no_rest_hides_what_a_filter_leaves_out() -> None:
+    """A second of strokes and two of rest, or 100: what is left out of the movement is the same."""
+    said = []
+    for rest_s in (2.0, 100.0):
+        time = np.arange(round((1.5 + rest_s) * 100.0)) / 100.0
+        (message,) = told(analyze(fast_strokes(time), Settings(lowpass_hz=6.0)), "fast-motion-left-out")
+        said.append(float(message.split("leaves out ")[1].split()[0]))
+    assert said[0] > 2.0
+    assert said[1] == pytest.approx(said[0], rel=0.1)
+
+
+def test_what_a_filter_leaves_out_is_told_on_a_clock_of_two_rates() -> None:
+    time = np.concatenate([np.arange(200) / 200.0, 1.0 + np.arange(200) / 100.0])
+    found = analyze(fast_strokes(time), Settings(lowpass_hz=6.0, resample_hz=200.0))
+    assert told(found, "fast-motion-left-out")
+    assert not told(analyze(fast_strokes(time), Settings(lowpass_hz=40.0, resample_hz=200.0)), "fast-motion-left-out")
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from elbowscrew.errors import SettingError
-from elbowscrew.geometry import quaternion
+from elbowscrew.geometry import quaternion, sclerp
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_quaternion import conjugate, multiply, pose_from_dual_quat
 from elbowscrew.model import HelicalSteps, InstantaneousMotion, MeanAxis, QualityWarning, RigidBody
@@ -93,11 +93,15 @@ def measured_instantaneous_motion(
         known = np.isfinite(raw[:, 0])
         chosen = smoothing._replace(cutoff_hz=smoothing.cutoff_hz or twist_cutoff(measured, settings))
         D = _since_reference(*chosen.apply(proximal, distal), measured)
-        warnings = _left_out(raw[known, :4], D[known, :4], chosen, settings)
+        noise = rotation_noise(raw[known, :4])
+        warnings = _left_out(raw[known, :4], D[known, :4], smoothing.elapsed[known], noise, chosen, settings)
         smoothing = chosen
-    elif smoothing.elapsed is measured.unfiltered.elapsed:
-        raw = measured.unfiltered.relative
-        warnings = _left_out(raw[known, :4], measured.joint.dual_quat_proximal_distal[known, :4], smoothing, settings)
+    else:
+        recorded = measured.unfiltered.relative
+        raw = _poses_at(smoothing.elapsed, recorded, measured.unfiltered.elapsed)[known, :4]
+        noise = rotation_noise(recorded[np.isfinite(recorded[:, 0]), :4])
+        filtered = measured.joint.dual_quat_proximal_distal[known, :4]
+        warnings = _left_out(raw, filtered, smoothing.elapsed[known], noise, smoothing, settings)
     twist = twists(
         expressed(D, measured.joint, measured.express_in), known, smoothing.elapsed, smoothing.rate_hz, smoothing.margin
     )
@@ -114,14 +118,34 @@ def measured_instantaneous_motion(
     return motion, warnings + _without_axes(motion, settings.min_rate_rad_s, smoothing.rate_hz, other)
 
 
-def _left_out(raw: Float, filtered: Float, filter_: Smoothing, settings: Settings) -> tuple[QualityWarning, ...]:
-    """Warn where the filter took more out of the rotations (N, 4) than their noise."""
+def _poses_at(wanted: Float, poses: Float, elapsed: Float) -> Float:
+    """Poses (N, 8) at the times of another clock; those of the same one as they are."""
+    if wanted is elapsed:
+        return poses
+    before = np.clip(np.searchsorted(elapsed, wanted, side="right") - 1, 0, elapsed.size - 2)
+    fraction = (wanted - elapsed[before]) / (elapsed[before + 1] - elapsed[before])
+    return sclerp(poses[before], poses[before + 1], np.clip(fraction, 0.0, 1.0))
+
+
+def _left_out(
+    raw: Float, filtered: Float, elapsed: Float, noise: float, filter_: Smoothing, settings: Settings
+) -> tuple[QualityWarning, ...]:
+    """Warn where the filter took more out of the rotations (N, 4) than their noise, in the mean over the movement.
+
+    Every frame counts by the square of its speed, so that no rest, however long, hides what the movement loses.
+    """
     off = quaternion.multiply(quaternion.conjugate(filtered), raw)
     square = 4.0 * np.sum(off[:, 1:] ** 2, axis=1)  # a small rotation
-    square = square[np.isfinite(square)]
-    if not square.size or filter_.cutoff_hz is None:
+    known = np.isfinite(square)
+    if known.sum() < 2 or filter_.cutoff_hz is None:
         return ()
-    rms, noise = float(np.sqrt(square.mean())), np.sqrt(3.0) * rotation_noise(raw)
+    square, filtered, elapsed = square[known], filtered[known], elapsed[known]
+    apart = quaternion.multiply(quaternion.conjugate(filtered[:-1]), filtered[1:])[:, 1:]
+    speed_square = np.sum(apart**2, axis=1) / np.diff(elapsed) ** 2
+    weight = np.append(speed_square, 0.0) + np.append(0.0, speed_square)
+    if not weight.any():
+        return ()
+    rms, noise = float(np.sqrt(np.average(square, weights=weight))), np.sqrt(3.0) * noise
     if rms <= max(_LEFT_OUT_NOISE * noise, _LEAST_LEFT_OUT):
         return ()
     if settings.lowpass_hz is None:
@@ -131,8 +155,8 @@ def _left_out(raw: Float, filtered: Float, filter_: Smoothing, settings: Setting
     largest = float(np.sqrt(square.max()))
     message = (
         f"{which[0]} are of motion up to {filter_.cutoff_hz:.3g} Hz, {which[1]}; that leaves out {np.degrees(rms):.2g} "
-        f"deg RMS of rotation, {np.degrees(largest):.2g} deg at worst, where the noise is {np.degrees(noise):.2g} deg: "
-        "what is faster is not in them (--lowpass HZ sets the cut-off)"
+        f"deg RMS of rotation while the joint moves, {np.degrees(largest):.2g} deg at worst, where the noise is "
+        f"{np.degrees(noise):.2g} deg: what is faster is not in them (--lowpass HZ sets the cut-off)"
     )
     return (QualityWarning(code="fast-motion-left-out", message=message),)
 
