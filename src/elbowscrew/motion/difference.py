@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from elbowscrew.geometry import _rows
+from elbowscrew.geometry import _rows, dual_quaternion, quaternion
 from elbowscrew.geometry._blocks import in_blocks
 from elbowscrew.geometry._small_angle import divide, length, row_length
 from elbowscrew.geometry.arrays import Float
@@ -137,3 +137,19 @@ def points_from_markers(offsets: Float) -> BodyPoints:
 def points_from_radius(radius: float) -> BodyPoints:
     """Points spread alike in all directions about the body's origin, with that radius of gyration."""
     return BodyPoints(centroid=np.zeros(3), covariance=np.eye(3) * radius**2 / 3.0, origin="radius")
+
+
+def summed_rotation(quat: Float) -> Float:
+    """Rotation vectors from pose to pose, summed, shape (N, 3); its derivative is the angular velocity.
+
+    Parameters
+    ----------
+    quat : ndarray, shape (N, 4)
+        NaN where there is no pose: after a gap the sum begins anew.
+    """
+    step = quaternion.multiply(quat[1:], quaternion.conjugate(quat[:-1]))
+    padded = np.zeros((len(step), 8))
+    padded[:, :4] = step
+    turn = 2.0 * dual_quaternion.log(dual_quaternion.canonical(padded))[:, :3]
+    total = np.concatenate([np.zeros((1, 3)), np.cumsum(np.nan_to_num(turn), axis=0)])
+    return np.where(np.isfinite(quat[:, :1]), total, np.nan)

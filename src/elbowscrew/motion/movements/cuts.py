@@ -22,6 +22,7 @@ from elbowscrew.motion.movements.cycles import Flanks, cycles_of, flanks_of
 from elbowscrew.motion.movements.rests import Strokes, strokes_of
 from elbowscrew.motion.movements.swings import fast_content, noise_of, swings_of
 from elbowscrew.motion.movements.unseen import hidden_stretches
+from elbowscrew.motion.tracking.inserted import recorded_rows
 
 _FEWEST_SAMPLES: Final = 10
 
@@ -78,7 +79,7 @@ def cut(
             hidden_s=np.empty((0, 2)),
         )
     even = _even(twist, elapsed, rate_hz, known)
-    sigma = noise_of(twist) if noise is None else noise
+    sigma = _white_noise(twist) if noise is None else noise
     swings = swings_of(even, rate_hz, sigma, least_swing)
     gaps = long_gaps(elapsed, known)
     strokes = strokes_of(swings, gaps)
@@ -97,6 +98,12 @@ def cut(
         excursion=float(np.ptp(swings.smooth)),
         hidden_s=hidden,
     )
+
+
+def _white_noise(twist: Float) -> float:
+    """Noise of a rotation (N,), radians: where frames were put in between, the white noise that is as dense below."""
+    recorded = recorded_rows(twist[:, None])
+    return noise_of(twist[recorded]) * float(np.sqrt(recorded.step))
 
 
 def _even(twist: Float, elapsed: Float, rate_hz: float, known: NDArray[np.intp]) -> Float:

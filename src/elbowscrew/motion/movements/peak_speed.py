@@ -7,13 +7,14 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from elbowscrew.geometry import dual_quaternion, quaternion
 from elbowscrew.geometry._blocks import evenly_thinned
 from elbowscrew.geometry._small_angle import length
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import QualityWarning, Repetitions
+from elbowscrew.motion.difference import summed_rotation
 from elbowscrew.motion.movements.boundaries import Cycles
 from elbowscrew.motion.movements.phases import nearest_rows
+from elbowscrew.motion.tracking.inserted import recorded_poses
 
 # Widths of the fits, frames to either side: from five poses to most of a stroke.
 _LEAST_HALF: Final = 2
@@ -110,20 +111,14 @@ def _weights(half: int) -> tuple[Float, Float, float]:
     return offset / (offset @ offset), cubic, float(length(cubic))
 
 
-def summed_rotation(quat: Float) -> Float:
-    """Rotation vectors from pose to pose, summed, shape (N, 3); its derivative is the angular velocity.
-
-    Parameters
-    ----------
-    quat : ndarray, shape (N, 4)
-        NaN where there is no pose: after a gap the sum begins anew.
-    """
-    step = quaternion.multiply(quat[1:], quaternion.conjugate(quat[:-1]))
-    padded = np.zeros((len(step), 8))
-    padded[:, :4] = step
-    turn = 2.0 * dual_quaternion.log(dual_quaternion.canonical(padded))[:, :3]
-    total = np.concatenate([np.zeros((1, 3)), np.cumsum(np.nan_to_num(turn), axis=0)])
-    return np.where(np.isfinite(quat[:, :1]), total, np.nan)
+def _noise_along(series: Float, first: int, last: int) -> float | None:
+    """Noise of a summed rotation (N, 3) along the way from one row to another; None where nothing tells it."""
+    wobble, way = np.abs(np.diff(series, 5, axis=0)), series[last] - series[first]
+    wobble = wobble[np.isfinite(wobble[:, 0])]
+    if not len(wobble) or not way.any():
+        return None
+    noise = np.median(wobble, axis=0) / _MAD / np.sqrt(_FIFTH_DIFFERENCE)
+    return float(length(noise * way) / length(way))
 
 
 def speed_doubts(quat: Float, elapsed: Float, cycles: Cycles, repetitions: Repetitions) -> tuple[QualityWarning, ...]:
@@ -139,6 +134,8 @@ def speed_doubts(quat: Float, elapsed: Float, cycles: Cycles, repetitions: Repet
     repetitions : Repetitions
         With the highest speeds of the same cycles.
     """
+    recorded = recorded_poses(quat)
+    quat, elapsed = quat[recorded], elapsed[recorded]
     time = elapsed - elapsed[0]
     off: list[tuple[float, float, PeakSpeed]] = []
     chosen = evenly_thinned(np.arange(cycles.start_s.size), _MOST_CYCLES)
@@ -153,11 +150,10 @@ def speed_doubts(quat: Float, elapsed: Float, cycles: Cycles, repetitions: Repet
             series = summed_rotation(quat[part])[::every]
             if not np.isfinite(told) or last - first < 2 * _LEAST_HALF * every or len(series) < 12:
                 continue
-            wobble = np.abs(np.diff(series, 5, axis=0))
-            if not np.isfinite(wobble).any():
-                continue
-            noise = float(np.nanmedian(wobble)) / _MAD / np.sqrt(_FIFTH_DIFFERENCE)
             begin = (first - part.start) // every
+            noise = _noise_along(series, begin, begin + (last - first) // every)
+            if noise is None:
+                continue
             step_s = float(np.median(np.diff(time[part]))) * every
             found = peak_speed(series, begin, begin + (last - first) // every, step_s, noise)
             if found is not None and abs(told - found.speed) > max(_TOLD_SHARE * found.speed, _TOLD_SD * found.sd):

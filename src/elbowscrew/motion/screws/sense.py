@@ -14,6 +14,7 @@ import numpy as np
 from elbowscrew.geometry._small_angle import length, row_length
 from elbowscrew.geometry.arrays import Bool, Float, Index
 from elbowscrew.model import Sense
+from elbowscrew.motion.tracking.inserted import recorded_poses
 
 SignedChoice = Literal["auto", "yes", "no"]
 
@@ -153,7 +154,8 @@ def rotation_noise(quat: Float) -> float:
         return 0.0
     flips = np.einsum("ni,ni->n", quat[1:], quat[:-1]) < 0.0
     sign = np.cumprod(np.concatenate([[1.0], np.where(flips, -1.0, 1.0)]))
-    size = row_length(np.diff(quat.T * sign, 3, axis=1))
+    series = quat * sign[:, None]
+    size = row_length(np.diff(series[recorded_poses(series)].T, 3, axis=1))
     size = size[np.isfinite(size)]
     if size.size < _LEAST_DIFFERENCES:
         return 0.0

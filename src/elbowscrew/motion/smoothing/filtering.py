@@ -11,6 +11,7 @@ from elbowscrew.errors import SettingError
 from elbowscrew.geometry.arrays import Bool, Float, Index
 from elbowscrew.geometry.dual_quaternion import conjugate, continuous_signs, multiply, normalize
 from elbowscrew.motion.difference import points_from_radius, rms_displacement
+from elbowscrew.motion.tracking.inserted import recorded_poses
 
 # Two passes of a 2nd-order Butterworth filter are at -3 dB where one is at -3/2 dB: (f/f_design)^4 = sqrt(2) - 1.
 _TWO_PASSES: Final = float((np.sqrt(2.0) - 1.0) ** 0.25)
@@ -130,7 +131,8 @@ def automatic_cutoff(
     line over the share of the noise's variance that does not show in it; this line, fitted to the upper frequencies
     and continued to 0 Hz, gives the whole noise, and the cut-off is the lowest one whose residual is no larger. (Over
     the frequency itself, as in Winter, the residual of noise is bent and the line misses the noise by 2 %: at 100 Hz
-    that is little, at 450 Hz it doubles the cut-off.)
+    that is little, at 450 Hz it doubles the cut-off.) Frames that were put in between by what exported the file tell
+    nothing of the noise and are left out (`recorded_poses`).
 
     Parameters
     ----------
@@ -154,8 +156,12 @@ def automatic_cutoff(
     ----------
     Winter 2009, residual analysis.
     """
-    fewest = max(int(np.ceil(rate_hz / _LOWEST_HZ)), _FEWEST_FOR_NOISE)
     series = continuous_signs(poses)
+    recorded = recorded_poses(series)
+    series, elapsed, rate_hz = series[recorded], elapsed[recorded], rate_hz / recorded.step
+    if broken_rows is not None:
+        broken_rows = -(-(broken_rows - recorded.start) // recorded.step)
+    fewest = max(int(np.ceil(rate_hz / _LOWEST_HZ)), _FEWEST_FOR_NOISE)
     runs = _spread(_runs(series, elapsed, rate_hz, broken_rows, fewest), fewest)
     highest_hz = _HIGHEST_SHARE * rate_hz
     if not runs or _NOISE_SHARE * rate_hz <= _LOWEST_HZ:

@@ -19,6 +19,7 @@ from elbowscrew.motion.tracking.body_pairs import (
     turns_on_the_spot,
 )
 from elbowscrew.motion.tracking.clock import allowed_offset, elapsed_time
+from elbowscrew.motion.tracking.inserted import inserted_warnings
 from elbowscrew.motion.tracking.losses import frames_warning
 from elbowscrew.motion.tracking.lost_poses import CheckedBody, check_tracking
 from elbowscrew.settings import Settings
@@ -180,7 +181,7 @@ def _pivot_warnings(body: RigidBody, _recording: Recording) -> list[QualityWarni
     return [QualityWarning(code="pivot-offset", message=message, severity="note")]
 
 
-BODY_CHECKS: Final = (_residual_warnings, _pivot_warnings)
+BODY_CHECKS: Final = (_residual_warnings, _pivot_warnings, inserted_warnings)
 """A new check of a body is one function and one entry here."""
 
 
