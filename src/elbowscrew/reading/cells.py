@@ -5,15 +5,19 @@ from __future__ import annotations
 import csv
 import re
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
+import orjson
 from numpy.typing import NDArray
 
 from elbowscrew.errors import RecordingError
 from elbowscrew.reading.source import TextSource
 
+# What JSON allows in a list beside numbers: blanks, words, text, and more lists.
+_NO_JSON_NUMBER: Final = (*" \t\r\n", *"tfn", '"', "[", "{")
 _NUMBER: Final = re.compile(r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
 
 
@@ -117,19 +121,19 @@ def _parse_block(
     as many as the header.
     """
     delimiter = source.delimiter
-    quoted = any('"' in line for line in block)
+    quoted = '"' in "".join(block)
     counts = {line.count(delimiter) + 1 for line in block}
     mixed = source.decimal_comma and any("," in line for line in block) and any("." in line for line in block)
     if not quoted and not mixed and (len(counts) == 1 or shape.group) and all(map(shape.allows, counts)):
-        plain = [line.replace(",", ".") for line in block] if source.decimal_comma else block
-        try:
-            values = np.loadtxt(plain, delimiter=delimiter, usecols=columns, comments=None, ndmin=2)
-        except ValueError:
-            pass  # a blank or a faulty cell: the slow way tells which
-        else:
-            if values.shape[0] == len(block) and np.isfinite(values).all():
-                found = shape if shape.group else replace(shape, width=counts.pop(), exact=True)
-                return found, np.asarray(values, dtype=np.float64)
+        values = None if source.decimal_comma else _json_numbers(block, counts, columns)
+        if values is None:
+            plain = [line.replace(",", ".") for line in block] if source.decimal_comma else block
+            # A blank or a faulty cell is an error: the slow way tells which.
+            with suppress(ValueError):
+                values = np.loadtxt(plain, delimiter=delimiter, usecols=columns, comments=None, ndmin=2)
+        if values is not None and values.shape[0] == len(block) and np.isfinite(values).all():
+            found = shape if shape.group else replace(shape, width=counts.pop(), exact=True)
+            return found, np.asarray(values, dtype=np.float64)
     rows = []
     marks: set[str] = set()
     for offset, line in enumerate(block):
@@ -160,6 +164,37 @@ def _parse_block(
                 msg = f"{location}: numbers have both commas and points: the decimal mark is ambiguous; save again"
                 raise RecordingError(msg)
     return shape, np.array(rows, dtype=np.float64).reshape(len(rows), len(columns))
+
+
+def _json_numbers(lines: list[str], counts: set[int], columns: Sequence[int]) -> NDArray[np.float64] | None:
+    """Numbers of some columns, shape (rows, columns), by a reader of JSON, in half the time of `np.loadtxt`.
+
+    None where the first cells of the lines, so many as are needed, are not all numbers as JSON writes them.
+
+    Parameters
+    ----------
+    lines : list of str
+        Their cells separated by commas.
+    counts : set of int
+        Of the cells that there are in a line.
+    columns : sequence of int
+    """
+    needed = max(columns) + 1
+    if not lines:
+        return None
+    if min(counts) > needed:
+        lines = [line[: -1 - len(line.split(",", needed)[needed])] for line in lines]
+    elif len(counts) > 1:
+        return None
+    text = ",".join(lines)
+    # JSON has no integer -0.
+    if any(mark in text for mark in _NO_JSON_NUMBER) or "-0," in text or text.endswith("-0"):
+        return None
+    try:
+        cells = orjson.loads(f"[{text}]")
+    except orjson.JSONDecodeError:
+        return None
+    return np.fromiter(cells, dtype=np.float64, count=len(cells)).reshape(len(lines), -1)[:, columns]
 
 
 def _numbers(

@@ -1,0 +1,56 @@
+"""Numbers out of lines of text: the same value whichever way they are read, and nothing else taken for one."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from elbowscrew.errors import RecordingError
+from elbowscrew.reading.cells import read_blocks
+from elbowscrew.reading.source import TextSource
+
+DIGITS = st.text("0123456789", min_size=1, max_size=25)
+SIGN = st.sampled_from(["", "-", "+"])
+EXPONENT = st.one_of(st.just(""), st.integers(-330, 270).map("e{}".format), st.integers(0, 20).map("E+{}".format))
+NUMBER = st.builds(
+    "{}{}{}{}{}".format, SIGN, DIGITS, st.sampled_from(["", "."]), st.one_of(st.just(""), DIGITS), EXPONENT
+)
+
+
+def read(path: Path, lines: list[str], columns: list[int], *, width: int, group: int = 0) -> np.ndarray:
+    path.write_text("".join(line + "\n" for line in lines))
+    source = TextSource(path=path, sha256="", ends_with_newline=True, delimiter=",")
+    return np.concatenate(list(read_blocks(source, 0, columns, width, group=group)))
+
+
+@given(rows=st.lists(st.tuples(NUMBER, NUMBER, NUMBER), min_size=1, max_size=5))
+def test_every_number_is_the_nearest_there_is_with_its_sign(
+    rows: list[tuple[str, str, str]], tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    """Python's own conversion, which rounds correctly, is the oracle; the sign of a zero counts."""
+    path = tmp_path_factory.getbasetemp() / "numbers.csv"
+    for columns in ([0, 1, 2], [1], [2, 0]):
+        found = read(path, [",".join(row) for row in rows], columns, width=3)
+        exact = np.array([[float(row[column]) for column in columns] for row in rows])
+        np.testing.assert_array_equal(found, exact)
+        np.testing.assert_array_equal(np.signbit(found), np.signbit(exact))
+
+
+@pytest.mark.parametrize("word", ["true", "false", "null", "[]", "{}", '"1"', "1,2", "NaN", "0x1"])
+def test_what_is_no_number_to_a_person_is_none(word: str, tmp_path: Path) -> None:
+    if word == '"1"':  # quotes of CSV
+        assert read(tmp_path / "a.csv", ["0.5,1.5", f"0.5,{word}"], [1], width=2).tolist() == [[1.5], [1.0]]
+        return
+    with pytest.raises(RecordingError, match=r"a\.csv:2"):
+        read(tmp_path / "a.csv", ["0.5,1.5", f"0.5,{word}"], [1], width=2)
+
+
+def test_lines_of_several_lengths_keep_their_columns(tmp_path: Path) -> None:
+    """Two cells more in one line must not shift the next, nor fill up what another lacks."""
+    lines = ["1,2,3", "4,5,6,7,8", "9,10,11"]
+    assert read(tmp_path / "a.csv", lines, [0, 2], width=3, group=2).tolist() == [[1, 3], [4, 6], [9, 11]]
+    assert read(tmp_path / "b.csv", lines, [0, 1], width=3, group=2).tolist() == [[1, 2], [4, 5], [9, 10]]
