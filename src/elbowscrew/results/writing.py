@@ -77,11 +77,10 @@ def _lines(columns: list[list[Any]]) -> bytes:
 
     No word of the columns may need quotes, or be changed by taking out JSON's.
     """
-    text = orjson.dumps(list(zip(*columns, strict=True)))[2:-2].replace(b"],[", b"\n")
-    for word in (b"null", b'"'):
-        if word in text:
-            text = text.replace(word, b"")
-    return text + b"\n"
+    text = orjson.dumps(list(zip(*columns, strict=True)))[2:-2]
+    # To split and join takes half the time of `bytes.replace`.
+    lines = b"\n".join(text.split(b"],["))
+    return b"".join(lines.split(b"null")).replace(b'"', b"") + b"\n"
 
 
 def _quoted_lines(columns: list[list[Any]]) -> bytes:
