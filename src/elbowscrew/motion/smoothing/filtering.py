@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
+from collections.abc import Callable
+from functools import cache
 from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from elbowscrew.errors import SettingError
-from elbowscrew.geometry.arrays import Bool, Float, Index
+from elbowscrew.geometry.arrays import Float, Index
 from elbowscrew.geometry.dual_quaternion import conjugate, continuous_signs, multiply, normalize
 from elbowscrew.motion.difference import points_from_radius, rms_displacement
 from elbowscrew.motion.tracking.inserted import recorded_poses
@@ -174,50 +177,57 @@ def automatic_cutoff(
     count = int(np.ceil(np.log(highest_hz / _LOWEST_HZ) / np.log(_GRID_STEP))) + 1
     grid = np.geomspace(_LOWEST_HZ, highest_hz, count)
     points = points_from_radius(radius)
-    square = np.zeros(count)
     longest = _Lowpass(rate_hz, grid[0]).settling
     spectra = [_Spectrum.of(series[run], longest) for run in runs]
-    for k, cutoff_hz in enumerate(grid):
-        lowpass = _Lowpass(rate_hz, cutoff_hz)
+
+    @cache
+    def square(k: int) -> float:
+        """Mean square of the residual at a cut-off of the grid; few of them are looked at."""
+        lowpass = _Lowpass(rate_hz, grid[k])
         errors = [
             rms_displacement(series[run], lowpass(spectrum), points)
             for run, spectrum in zip(runs, spectra, strict=True)
         ]
-        square[k] = np.mean(np.concatenate(errors) ** 2)
+        return float(np.mean(np.concatenate(errors) ** 2))
+
     gain, gain_square = np.transpose([_white_gains(rate_hz, cutoff_hz) for cutoff_hz in grid])
     hidden = 2.0 * gain - gain_square
     noise = _noise_band(grid, square, hidden, _NOISE_SHARE * rate_hz)
     if noise is None:
         return float(highest_hz)
-    whole = np.polyfit(hidden[noise], square[noise], 1)[1]
-    above = int(np.argmax(square <= whole))
+    whole = np.polyfit(hidden[noise], [square(k) for k in noise], 1)[1]
+    # The higher the cut-off, the more of every frequency passes, and the smaller is the residual.
+    above = bisect_left(range(count), True, key=lambda k: bool(square(k) <= whole))
+    if above == count:
+        return float(highest_hz)
     if above == 0:
         return _LOWEST_HZ
-    between = np.log(square[[above, above - 1]])
+    between = np.log([square(above), square(above - 1)])
     return float(np.exp(np.interp(np.log(whole), between, np.log(grid[[above, above - 1]]))))
 
 
-def _noise_band(grid: Float, square: Float, hidden: Float, lowest_hz: float) -> Bool | None:
+def _noise_band(grid: Float, square: Callable[[int], float], hidden: Float, lowest_hz: float) -> range | None:
     """Cut-offs of the grid between which the residual is that of white noise; None where there are none.
 
     They are the uppermost. Where frames were repeated or put in between, by whatever exported the file or to fill
     gaps, the noise ends below these: then it is looked for an octave at a time, each half an octave lower, and taken
     where it is densest.
     """
-    noise = grid >= lowest_hz
-    density = square[noise] / (1.0 - hidden[noise])
-    if density[-1] >= max(_WHITE * density[0], _NO_NOISE_M**2):
+    noise = range(int(np.searchsorted(grid, lowest_hz)), grid.size)
+    lower, upper = (square(k) / (1.0 - hidden[k]) for k in (noise[0], noise[-1]))
+    if upper >= max(_WHITE * lower, _NO_NOISE_M**2):
         return noise
     found, densest = None, _NO_NOISE_M**2
     while lowest_hz > _LOWEST_NOISE_HZ:
         lowest_hz /= np.sqrt(2.0)
-        first, middle, last = np.searchsorted(grid, lowest_hz * np.array([1.0, np.sqrt(2.0), 2.0])) - [0, 0, 1]
+        bounds = np.searchsorted(grid, lowest_hz * np.array([1.0, np.sqrt(2.0), 2.0])) - [0, 0, 1]
+        first, middle, last = bounds.tolist()
         lower, upper = (
-            (square[one] - square[other]) / (hidden[other] - hidden[one])
+            (square(one) - square(other)) / (hidden[other] - hidden[one])
             for one, other in ((first, middle), (middle, last))
         )
         if densest < min(lower, upper) and _FLAT * max(lower, upper) < min(lower, upper):
-            found, densest = (grid >= grid[first]) & (grid <= grid[last]), max(lower, upper)
+            found, densest = range(first, last + 1), max(lower, upper)
     return found
 
 
