@@ -1,7 +1,7 @@
 """Feed mutated files of every format to readers and analysis: run ``python benchmarks/fuzz_readers.py COUNT``.
 
 Coverage-guided by atheris (``pip install atheris``). The only error a file may cause is ElbowscrewError, every file
-must be done with in seconds, and what comes back must be whole: finite poses of unit length where a frame counts as
+must be done with in a minute, and what comes back must be whole: finite poses of unit length where a frame counts as
 tracked, NaN where not, numbers in the analysis where it says so. A seed may be a file of ``--columns`` and its table
 below it.
 """
@@ -15,6 +15,7 @@ import subprocess
 import sys
 import tempfile
 import warnings
+import zlib
 from pathlib import Path
 from typing import Any
 
@@ -34,6 +35,8 @@ SCRATCH = Path(tempfile.mkdtemp(prefix="elbowscrew-fuzz-"))
 TARGET = SCRATCH / "mutant.csv"
 COLUMNS = SCRATCH / "columns.toml"
 TABLE = b"# the table\n"
+# An analysis takes as long as hundreds of readings; the choice by the file itself can be repeated.
+ANALYZED_OF = 20
 # What a file may lack.
 STATED = {"units": "mm", "rotation": "YXZ", "rate_hz": 100.0}
 outcomes: dict[str, int] = {}
@@ -182,9 +185,9 @@ ARM, FOREARM = ("a*",), ("f*",)
 
 
 def one(data: bytes) -> None:
-    """Read and analyze one file."""
+    """Read one file, and analyze some."""
     total = sum(outcomes.values())
-    if total and total % 10_000 == 0:
+    if total and total % 1000 == 0:
         print(total, outcomes, flush=True)  # libFuzzer ends the process itself: there is no later moment
     columns, named, table = data.partition(TABLE)
     COLUMNS.write_bytes(columns)
@@ -205,6 +208,9 @@ def one(data: bytes) -> None:
             size = np.linalg.norm(body.dual_quat_lab_body[:, :4], axis=1)
             assert np.allclose(size[body.tracked], 1.0)
             assert np.isnan(body.dual_quat_lab_body[~body.tracked]).all()
+        if zlib.crc32(data) % ANALYZED_OF:
+            outcomes["read"] = outcomes.get("read", 0) + 1
+            return
         try:
             chosen: dict[str, Any] = {} if recording.bodies else {"arm_markers": ARM, "forearm_markers": FOREARM}
             if len(recording.bodies) > 1 and not recording.bodies[0].name.startswith("arm"):
@@ -275,7 +281,7 @@ def main() -> None:
         sys.argv[0],
         f"-runs={count}",
         "-max_len=65536",
-        "-timeout=10",
+        "-timeout=60",
         "-mutate_depth=2",
         "-print_final_stats=1",
         str(corpus),

@@ -202,8 +202,12 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
 
     @property
     def statements(self) -> dict[str, Any]:
-        """What is said of a file that it does not say itself, as `elbowscrew.read_recording` takes it."""
-        return {"units": self.units, "rotation": self.rotation, "rate_hz": self.rate_hz, "columns": self.columns}
+        """What a file must be told, and which of its bones may be meant, as `elbowscrew.read_recording` takes it."""
+        bones = tuple(name for name in (self.proximal, self.distal) if name is not None)
+        return {
+            "units": self.units, "rotation": self.rotation, "rate_hz": self.rate_hz, "columns": self.columns,
+            "bones": bones,
+        }  # fmt: skip
 
     @property
     def figure_formats(self) -> tuple[str, ...]:

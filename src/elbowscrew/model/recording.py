@@ -279,6 +279,10 @@ class Source:
     """The distal body's file, where it has one of its own."""
     columns: ColumnFile | None = None
     """What said which columns hold what, where the file does not."""
+    markers: tuple[str, ...] = ()
+    """Names of all markers in the file, read or not."""
+    bones: tuple[str, ...] = ()
+    """Names of all bones of skeletons in the file, read or not."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)

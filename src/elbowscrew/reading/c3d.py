@@ -97,6 +97,7 @@ def read(path: Path, options: ReadOptions) -> Recording:
             layout="C3D",
             length_unit=unit,
             rotation_type="matrix" if bodies else "",
+            markers=tuple(content.labels("POINT")[: content.points.shape[1]]),
         ),
         warnings=(*warnings, *(warning for marker in builders for warning in marker.warnings())),
     )

@@ -221,6 +221,12 @@ class MotiveBody:
         """What the reader of a result must know of this body's cells."""
         found = []
         name, offsets_known = self._body.name, bool(self._sample.offsets)
+        if self._body.bone:
+            message = (
+                f"bone {name!r} is solved by the model of a skeleton, which constrains how bones move in their joints: "
+                "axis, slide and type of the joint may be the model's, not the person's"
+            )
+            found.append(QualityWarning(code="skeleton-bone", message=message))
         if self._sample.mirrored:
             by = "as that format version does" if self._sample.by_version else "against its own markers"
             message = f"body {name!r} is written mirrored in z, {by} (format version {version}): corrected"

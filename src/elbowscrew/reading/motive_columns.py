@@ -15,7 +15,15 @@ from elbowscrew.reading.cells import read_blocks
 from elbowscrew.reading.clock import check_frames, cut_warnings, frame_rate
 from elbowscrew.reading.cluster_shapes import swap_warnings
 from elbowscrew.reading.motive_bodies import MotiveBody, sample_bodies
-from elbowscrew.reading.motive_header import BodyColumns, Header, body_columns, marker_columns, parse_header
+from elbowscrew.reading.motive_header import (
+    BodyColumns,
+    Header,
+    body_columns,
+    bone_names,
+    marker_columns,
+    no_bodies,
+    parse_header,
+)
 from elbowscrew.reading.options import ReadOptions, stated_unit
 from elbowscrew.reading.source import TextSource
 
@@ -30,8 +38,10 @@ def recognizes(cells: list[str]) -> bool:
 def read(source: TextSource, options: ReadOptions) -> Recording:
     """Read a file of the column layout; see `elbowscrew.reading.registry.read_recording`."""
     header = parse_header(source)
-    wanted = marker_columns(header, options)
-    bodies = body_columns(source, header, needed=not wanted)
+    all_markers, wanted = marker_columns(header), marker_columns(header, options)
+    bodies = body_columns(source, header, options)
+    if not bodies and not wanted:
+        raise no_bodies(source, header, options, list(all_markers))
     unit, order = _stated(source, header, bodies, options)
     samples = sample_bodies(source, header, bodies, METERS[unit], order)
     builders = [MotiveBody(body, METERS[unit], order, sample) for body, sample in zip(bodies, samples, strict=True)]
@@ -74,6 +84,8 @@ def read(source: TextSource, options: ReadOptions) -> Recording:
             length_unit=unit,
             rotation_type=order,
             metadata=header.pairs,
+            markers=tuple(all_markers),
+            bones=bone_names(header),
         ),
         warnings=(*warnings, *_file_warnings(source, header, frame.size)),
     )

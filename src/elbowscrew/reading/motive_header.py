@@ -10,11 +10,12 @@ from dataclasses import dataclass
 from itertools import islice
 from typing import Final
 
-from elbowscrew.errors import NoBodiesError, RecordingError
-from elbowscrew.reading.options import ASK_FOR_MARKERS, ReadOptions
+from elbowscrew.errors import ElbowscrewError, NoBodiesError, RecordingError
+from elbowscrew.reading.options import ASK_FOR_MARKERS, ReadOptions, nothing_wanted
 from elbowscrew.reading.source import TextSource
 
 _HEADER_LINES: Final = 25
+_BONES_TOLD: Final = 24
 _LAST_NUMBER: Final = re.compile(r"(?<!\d)\d{1,9}$", re.ASCII)
 
 
@@ -55,7 +56,7 @@ class Header:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BodyColumns:
-    """Where one rigid body stands: its columns by label, and the X, Y, Z of its markers by number.
+    """Where one rigid body, or a bone, stands: its columns by label, and the X, Y, Z of its markers by number.
 
     The fitted ones are the Rigid Body Marker columns, the seen ones the Marker columns that bear the body's name.
     """
@@ -67,6 +68,7 @@ class BodyColumns:
     error: int | None
     fitted: dict[int, tuple[int, ...]]
     seen: dict[int, tuple[int, ...]]
+    bone: bool = False
 
 
 def parse_header(source: TextSource) -> Header:
@@ -153,29 +155,27 @@ def _label_rows(source: TextSource, rows: list[list[str]], axis_row: int, line: 
     return dict(zip(("type", "name", "id"), candidates, strict=False))
 
 
-def body_columns(source: TextSource, header: Header, *, needed: bool = True) -> tuple[BodyColumns, ...]:
-    """Group the columns of the rigid bodies by id and name, taking every column by its label.
+def body_columns(source: TextSource, header: Header, options: ReadOptions) -> tuple[BodyColumns, ...]:
+    """Group the columns of the rigid bodies by id and name, taking every column by its label; bones asked for follow.
 
     Raises
     ------
     RecordingError
-        If there is none but one is needed, or one is not whole.
+        If a body is not whole, or bones asked for are told in the frames of others.
     """
-    groups: dict[tuple[str, str], list[ColumnKey]] = {}
-    for column in header.columns:
-        if column.kind.casefold() == "rigid body":
-            groups.setdefault((column.identifier, column.name), []).append(column)
-    if not groups and needed:
-        kinds = sorted({column.kind for column in header.columns[2:] if column.kind})
-        found = ", ".join(kinds) if kinds else "no data columns at all"
-        or_markers = f", or {ASK_FOR_MARKERS}" if "Marker" in kinds else ""
+    groups = _grouped(header, "rigid body")
+    names = {name for _, name in groups}
+    bones = {key: one for key, one in _grouped(header, "bone").items() if options.wants_bone(key[1])}
+    bones = {key: one for key, one in bones.items() if key[1] not in names}
+    if bones and header.pairs.get("Coordinate Space", "").casefold() == "local":
         msg = (
-            f"{source.path}: no rigid bodies in the file (found: {found}); in Motive, solve the bodies and tick "
-            f"'Rigid Bodies' in the export{or_markers}"
+            f"{source.path}: bones in local coordinates are told in the frames of their parents; export the take with "
+            "Coordinate Space 'Global'"
         )
-        raise NoBodiesError(msg)
+        raise RecordingError(msg)
     bodies = []
-    for (identifier, name), columns in groups.items():
+    for (identifier, name), columns in (groups | bones).items():
+        bone = (identifier, name) in bones
         rotation = _labeled(source, columns, "rotation", name)
         position = _labeled(source, columns, "position", name)
         if set(position) != set("XYZ") or set(rotation) not in (set("XYZ"), set("XYZW")):
@@ -192,15 +192,47 @@ def body_columns(source: TextSource, header: Header, *, needed: bool = True) -> 
                 rotation=rotation,
                 position=position,
                 error=next((column.index for column in columns if "error" in column.field), None),
-                fitted=_marker_columns(header.columns, "rigid body marker", identifier=identifier),
-                seen=_marker_columns(header.columns, "marker", body=name),
+                fitted={} if bone else _marker_columns(header.columns, "rigid body marker", identifier=identifier),
+                seen={} if bone else _marker_columns(header.columns, "marker", body=name),
+                bone=bone,
             )
         )
     return tuple(bodies)
 
 
-def marker_columns(header: Header, options: ReadOptions) -> dict[str, tuple[int, ...]]:
-    """X, Y and Z columns of the markers asked for, by name; markers of one name have their id behind it."""
+def bone_names(header: Header) -> tuple[str, ...]:
+    """Names of all bones of skeletons."""
+    return tuple(name for _, name in _grouped(header, "bone"))
+
+
+def no_bodies(source: TextSource, header: Header, options: ReadOptions, markers: Sequence[str]) -> ElbowscrewError:
+    """Say that a file has no rigid bodies, nor what was asked for in their place, and what it has, markers included."""
+    if options.markers and markers:
+        return nothing_wanted(source.path, "no rigid bodies in the file", markers, options)
+    kinds = sorted({column.kind for column in header.columns[2:] if column.kind})
+    found = ", ".join(kinds) if kinds else "no data columns at all"
+    bones = bone_names(header)
+    others = [ASK_FOR_MARKERS] if markers else []
+    if bones:
+        told = f"{', '.join(map(repr, bones[:_BONES_TOLD]))}{' and others' if len(bones) > _BONES_TOLD else ''}"
+        others.append(f"name two bones of the skeleton by --proximal and --distal ({told})")
+    return NoBodiesError(
+        f"{source.path}: no rigid bodies in the file (found: {found}); in Motive, solve the bodies and tick "
+        f"'Rigid Bodies' in the export{''.join(f', or {other}' for other in others)}"
+    )
+
+
+def _grouped(header: Header, kind: str) -> dict[tuple[str, str], list[ColumnKey]]:
+    """Columns of one kind by id and name."""
+    groups: dict[tuple[str, str], list[ColumnKey]] = {}
+    for column in header.columns:
+        if column.kind.casefold() == kind:
+            groups.setdefault((column.identifier, column.name), []).append(column)
+    return groups
+
+
+def marker_columns(header: Header, options: ReadOptions | None = None) -> dict[str, tuple[int, ...]]:
+    """X, Y and Z columns of the markers asked for, else of all; markers of one name have their id behind it."""
     grouped: dict[tuple[str, str], dict[str, int]] = {}
     for column in header.columns:
         if column.kind.casefold() == "marker" and column.field == "position":
@@ -209,7 +241,8 @@ def marker_columns(header: Header, options: ReadOptions) -> dict[str, tuple[int,
     found = {}
     for (name, identifier), axes in grouped.items():
         shown = name if names[name] == 1 else f"{name} ({identifier})"
-        if {"X", "Y", "Z"} <= set(axes) and (options.wants(name) or options.wants(shown)):
+        wanted = options is None or options.wants(name) or options.wants(shown)
+        if wanted and {"X", "Y", "Z"} <= set(axes):
             found[shown] = tuple(axes[axis] for axis in "XYZ")
     return found
 

@@ -52,6 +52,7 @@ def read(source: TextSource, options: ReadOptions, named: ColumnFile) -> Recordi
         rate_hz=rate,
         nan_word=True,
         named=named,
+        marker_names=tuple(named.markers),
         bodies=tuple(_body(name, one, place, one.unit or str(options.units)) for name, one in named.bodies.items()),
         markers=tuple(
             MarkerCells(name, tuple(place[column] for column in one.position), one.unit or str(options.units))

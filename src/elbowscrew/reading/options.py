@@ -41,6 +41,8 @@ class ReadOptions:
         Frames a second of a file that has no times.
     markers : tuple of str
         Names or patterns of the markers wanted; the others are not read.
+    bones : tuple of str
+        Names or patterns of the bones of a skeleton that are wanted as bodies; the others are not read.
     columns : ColumnFile or None
         What somebody says of the columns of a table.
     alone : bool
@@ -51,12 +53,17 @@ class ReadOptions:
     rotation: str | None = None
     rate_hz: float | None = None
     markers: tuple[str, ...] = ()
+    bones: tuple[str, ...] = ()
     columns: ColumnFile | None = None
     alone: bool = True
 
     def wants(self, marker: str) -> bool:
         """Whether a marker is among those wanted."""
         return marker_matches(marker, self.markers)
+
+    def wants_bone(self, bone: str) -> bool:
+        """Whether a bone is among those wanted."""
+        return marker_matches(bone, self.bones)
 
 
 def stated_unit(path: Path, stated: str, options: ReadOptions) -> str:

@@ -36,7 +36,8 @@ def read(source: TextSource, options: ReadOptions) -> Recording:
     _check_rate(source, clock, options)
     columns, units = _columns_by_body(source, names, line, len(clock))
     bodies = {name: parts for name, parts in columns.items() if set(_ORIENTATION) <= set(parts)}
-    markers = {name: parts for name, parts in columns.items() if set(parts) == set("xyz") and options.wants(name)}
+    all_markers = {name: parts for name, parts in columns.items() if set(parts) == set("xyz")}
+    markers = {name: parts for name, parts in all_markers.items() if options.wants(name)}
     if not bodies and not markers:
         raise nothing_wanted(source.path, "no rigid bodies in the table", list(columns), options)
     table = TableCells(
@@ -46,6 +47,7 @@ def read(source: TextSource, options: ReadOptions) -> Recording:
         frame=0 if clock[0] == "frame" else None,
         time=clock.index("time_s") if "time_s" in clock else None,
         rate_hz=options.rate_hz,
+        marker_names=tuple(all_markers),
         bodies=tuple(
             BodyCells(
                 name,

@@ -129,6 +129,7 @@ def read_recording(
     rate_hz: float | None = None,
     columns: str | os.PathLike[str] | ColumnFile | None = None,
     markers: str | Sequence[str] = (),
+    bones: str | Sequence[str] = (),
 ) -> Recording:
     """Read a recording.
 
@@ -150,6 +151,9 @@ def read_recording(
         The TOML file that says what the columns of any other table are.
     markers : str or sequence of str, optional
         Names of markers to read, or patterns such as "Arm*"; none by default.
+    bones : str or sequence of str, optional
+        Names of bones of Motive's skeletons to read as bodies, or patterns; none by default. Names that are no bone's
+        mean nothing here.
 
     Returns
     -------
@@ -180,12 +184,12 @@ def read_recording(
     if rate_hz is not None and not is_rate(rate_hz):
         msg = f"rate_hz: expected a frame rate in hertz, found {rate_hz!r}"
         raise UsageError(msg)
-    patterns = (markers,) if isinstance(markers, str) else tuple(markers)
     options = ReadOptions(
         units=units,
         rotation=rotation,
         rate_hz=rate_hz,
-        markers=patterns,
+        markers=(markers,) if isinstance(markers, str) else tuple(markers),
+        bones=(bones,) if isinstance(bones, str) else tuple(bones),
         columns=_column_file(columns),
         alone=distal_path is None,
     )

@@ -94,6 +94,8 @@ class TableCells:
     markers : tuple of MarkerCells
     named : ColumnFile or None
         What said so, where that is not the table's own header.
+    marker_names : tuple of str
+        Of all markers of the table, read or not.
     """
 
     layout: str
@@ -107,6 +109,7 @@ class TableCells:
     bodies: tuple[BodyCells, ...]
     markers: tuple[MarkerCells, ...]
     named: ColumnFile | None = None
+    marker_names: tuple[str, ...] = ()
 
 
 def read_table(source: TextSource, table: TableCells, *warnings: QualityWarning) -> Recording:
@@ -157,6 +160,7 @@ def read_table(source: TextSource, table: TableCells, *warnings: QualityWarning)
             length_unit=", ".join(sorted({*units, *(one.unit for one in table.markers)})),
             rotation_type=", ".join(sorted({one.rotation_type for one in table.bodies})),
             columns=table.named,
+            markers=table.marker_names,
         ),
         warnings=(
             *(warning for body in bodies for warning in body.warnings()),

@@ -82,7 +82,9 @@ def read(source: TextSource, options: ReadOptions) -> Recording:
         time_s=time_s,
         rate_hz=rate,
         markers=tuple(marker.finish() for marker in markers),
-        source=Source(path=str(source.path), sha256=source.sha256, layout="TRC", length_unit=unit),
+        source=Source(
+            path=str(source.path), sha256=source.sha256, layout="TRC", length_unit=unit, markers=tuple(header.columns)
+        ),
         warnings=(*warnings, *cut, *(warning for marker in markers for warning in marker.warnings())),
     )
 
