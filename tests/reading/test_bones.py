@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from elbowscrew import Settings, analyze, read_recording, save_simulation, simulate_trial
+from elbowscrew.cli import main
 from elbowscrew.errors import NoBodiesError, RecordingError, SettingError
 
 TRIAL = simulate_trial(frames=80, inversion=40, top_deg=80.0, seed=4)
@@ -76,3 +77,13 @@ def test_beside_rigid_bodies_bones_are_read_only_by_name(tmp_path: Path) -> None
 def test_bones_in_the_frames_of_their_parents_are_refused(tmp_path: Path) -> None:
     with pytest.raises(RecordingError, match="Coordinate Space 'Global'"):
         read_recording(skeleton(tmp_path / "t.csv", space="Local"), bones="*")
+
+
+def test_info_tells_of_bones(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["info", str(skeleton(tmp_path / "t.csv", bodies=True))]) == 0
+    assert "Anna:LUArm, Anna:LFArm" in capsys.readouterr().out
+    assert main(["info", str(skeleton(tmp_path / "bones.csv"))]) == 0
+    out, err = capsys.readouterr()
+    assert "--proximal Anna:LUArm --distal Anna:LFArm" in out
+    assert "constrain" in out
+    assert "[skeleton-bone]" in err

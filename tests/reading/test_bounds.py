@@ -11,7 +11,7 @@ import pytest
 
 from elbowscrew.cli import main
 from elbowscrew.errors import RecordingError, shortened, shown
-from elbowscrew.reading import cells, motive_header, row_tagged
+from elbowscrew.reading import c3d, cells, motive_header, row_tagged
 from elbowscrew.reading.clock import cut_warnings
 from elbowscrew.reading.registry import read_recording
 from elbowscrew.reading.source import open_source
@@ -147,3 +147,21 @@ def test_no_toml_ends_in_a_traceback(
 def test_trials_with_numbers_of_5000_digits_have_an_order() -> None:
     names = ["t9", "t10", "t" + "1" * 5000, "t" + "2" * 5000, "t010b", "t1" + "0" * 6000]
     assert sorted(names, key=trials.natural_key) == [*names[:2], names[4], names[2], names[3], names[5]]
+
+
+def test_a_c3d_file_that_ends_among_its_parameters_is_refused_before_it_is_opened(
+    real_data: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The library reads on beyond the end until its time is over."""
+
+    def opened(_file: Path) -> bytes:
+        raise AssertionError
+
+    monkeypatch.setattr(c3d, "_worker_output", opened)
+    data = (real_data / "cases" / "c3d_ok.c3d").read_bytes()
+    blocks = data[514]
+    last = data[: 512 * (1 + blocks)].rstrip(b"\0")
+    for size in range(540, len(last), 29):
+        (tmp_path / "t.c3d").write_bytes(data[:size])
+        with pytest.raises(RecordingError, match="ends among its parameters"):
+            read_recording(tmp_path / "t.c3d")

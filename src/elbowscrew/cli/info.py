@@ -17,31 +17,37 @@ def info(
     markers: Annotated[
         list[str] | None, typer.Option(metavar="NAMES", help="Markers to describe: names or patterns, with commas.")
     ] = None,
+    everything: Annotated[
+        bool, typer.Option("--all", help="Describe every body, bone and marker, however many there are.")
+    ] = False,
     *,
     given: dict[str, Any],
     json_output: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
 ) -> None:
     """Show what a file contains, without analyzing it.
 
-    Layout, clock, bodies and their tracking, markers.
+    Layout, clock, bodies and their tracking, bones and markers, what the file does not say, and the next command.
     """
-    from elbowscrew.cli import render
+    from elbowscrew.cli import render, render_file
+    from elbowscrew.cli.next_command import next_command
     from elbowscrew.configuring import settings_from
-    from elbowscrew.errors import NoBodiesError
-    from elbowscrew.reading.registry import read_recording
+    from elbowscrew.reading.options import check_patterns
+    from elbowscrew.reading.unstated import read_what_is_stated
     from elbowscrew.results.recording_summary import summary_from_recording
 
     settings = settings_from(None, given)
     wanted = options.parts("markers", markers) or ()
-    stated: dict[str, Any] = {"distal_path": distal_path, **settings.statements}
-    try:
-        recording = read_recording(trial, **stated, markers=wanted)
-    except NoBodiesError:
-        # Its markers are what there is to tell of.
-        recording = read_recording(trial, **stated, markers=wanted or ("*",))
-    summary = summary_from_recording(recording, settings)
+    recording, missing = read_what_is_stated(
+        trial,
+        **settings.statements
+        | {"distal_path": distal_path, "markers": ("*",) if everything else wanted, "bones": "*" if everything else ()},
+    )
+    check_patterns(trial, wanted, [] if recording.source is None else recording.source.markers)
+    summary = summary_from_recording(recording, settings, missing)
+    command, guessed = next_command([trial, *([] if distal_path is None else [distal_path])], given, summary)
     render.warnings(summary["warnings"])
     if json_output:
-        render.json_object(summary)
+        render.json_object({**summary, "next": command})
     else:
-        render.info_table(summary)
+        render_file.info_table(summary, everything=everything)
+        render_file.next_line(command, guessed=guessed)

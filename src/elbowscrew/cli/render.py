@@ -22,7 +22,6 @@ if TYPE_CHECKING:
         WanderSummary,
     )
     from elbowscrew.model.summary_types import (
-        FileSummary,
         JointWords,
         ModelSummary,
         MotionSummary,
@@ -35,7 +34,6 @@ if TYPE_CHECKING:
     )
     from elbowscrew.paper import PrintedValue
 
-_MARKERS_TOLD = 24
 _FRAMES_TOLD = 12
 _SKIPPED_TOLD = 5
 _PEAKS_TOLD = 6
@@ -114,34 +112,6 @@ def analysis_table(summary: Summary, folder: Path) -> None:
     print_rows(printable(summary["source"]["name"] or ""), rows)
 
 
-def info_table(summary: FileSummary) -> None:
-    """Write what a file holds."""
-    source, trial = summary["source"], summary["trial"]
-    rotation = source["rotation"] or "no rotations"
-    if rotation.isupper():
-        rotation = f"Euler {rotation} (deg)"
-    rows = [
-        ("Layout", ", ".join(filter(None, (source["layout"], rotation, source["length_unit"] or "no positions")))),
-        ("Take", source["take"] or "–"),
-        (
-            "Frames",
-            f"{trial['frames']} ({trial['first_frame']} to {trial['last_frame']}), {trial['rate_hz']:.6g} Hz, "
-            f"{trial['duration_s']:.3f} s",
-        ),
-        ("Roles", summary["roles"]["text"]),
-    ]
-    print_rows(printable(source["name"] or ""), rows)
-    if summary["markers"]:
-        shares = [f"{marker['name']} {100.0 * marker['seen_share']:.0f} %" for marker in summary["markers"]]
-        told = ", ".join(shares[:_MARKERS_TOLD]) + (", ..." if len(shares) > _MARKERS_TOLD else "")
-        print_rows("", [(f"{len(shares)} markers", told)])
-    if trial["bodies"]:
-        _bodies_table(trial["bodies"])
-    notes = [warning for warning in summary["warnings"] if warning["severity"] == "note"]
-    if notes:
-        _print(Text("Notes", style="bold"), *(Text(one_line(f"{note['message']} [{note['code']}]")) for note in notes))
-
-
 def comparison_table(summary: ComparisonSummary | TrialsSummary, folder: Path) -> None:
     """Write the best models of each number of keyframes, and the fewest keyframes within the tolerance."""
     table = Table(box=None, pad_edge=False, header_style="bold")
@@ -166,7 +136,9 @@ def comparison_table(summary: ComparisonSummary | TrialsSummary, folder: Path) -
         rows = [("Models", models + refused)]
         rows += [(f"Fewest, {method}", _fewest(found)) for method, found in summary["selections"].items()]
     rows.append(("Results", str(folder)))
-    _print(Text("RMS displacement of the distal body's points, for N keyframes in each phase", style="bold"), table)
+    print_parts(
+        Text("RMS displacement of the distal body's points, for N keyframes in each phase", style="bold"), table
+    )
     print_rows("", rows)
 
 
@@ -194,29 +166,9 @@ def _mean_sd(mean: float | None, sd: float | None) -> str:
     return _number(mean) + ("" if sd is None else f" ± {sd:.2f}")
 
 
-def _bodies_table(bodies: Iterable[QualitySummary]) -> None:
-    table = Table(box=None, pad_edge=False, header_style="bold")
-    for column in ("Body", "Tracked", "Lost frames", "Fastest", "Fit, mm", "Error, mm"):
-        table.add_column(column, overflow="fold")
-    for body in bodies:
-        table.add_row(
-            Text(printable(body["name"])),
-            f"{100.0 * body['tracked_share']:.1f} %",
-            ", ".join(f"{count} {reason}" for reason, count in body["lost_frames"].items()) or "–",
-            f"{body['fastest_turn_deg_s']:.0f} deg/s, " + _speed(body["fastest_speed_m_s"]),
-            _spread(body["marker_residual_mm"]),
-            _spread(body["reported_error_mm"]),
-        )
-    _print(table)
-
-
-def _speed(speed_m_s: float | None) -> str:
-    return "no positions" if speed_m_s is None else f"{speed_m_s:.1f} m/s"
-
-
-def _spread(spread: SpreadSummary | None) -> str:
-    """Median and maximum."""
-    return "–" if spread is None else f"{spread['median']:.2f}, max {spread['largest']:.2f}"
+def spread(found: SpreadSummary | None) -> str:
+    """Give median and maximum."""
+    return "–" if found is None else f"{found['median']:.2f}, max {found['largest']:.2f}"
 
 
 def paper_table(found: Iterable[PrintedValue]) -> None:
@@ -235,10 +187,11 @@ def paper_table(found: Iterable[PrintedValue]) -> None:
         counts[one.agrees] += 1
         word = "" if one.rounded == one.printed else one.note if one.agrees else "DIFFERS"
         table.add_row(one.place, one.quantity, one.printed, one.rounded, word)
-    _print(table, Text(f"{counts[1]} numbers agree, {counts[0]} differ"))
+    print_parts(table, Text(f"{counts[1]} numbers agree, {counts[0]} differ"))
 
 
-def _print(*parts: RenderableType) -> None:
+def print_parts(*parts: RenderableType) -> None:
+    """Write tables and texts."""
     console = Console(highlight=False)
     with console.capture() as captured:
         for part in parts:
@@ -253,7 +206,7 @@ def print_rows(title: str, rows: Iterable[tuple[str, str]]) -> None:
     table.add_column(overflow="fold")
     for name, value in rows:
         table.add_row(name, Text(printable(value)))
-    _print(*([Text(title, style="bold")] if title else []), table)
+    print_parts(*([Text(title, style="bold")] if title else []), table)
 
 
 def _body(body: QualitySummary | None, joint: JointWords) -> str:

@@ -90,7 +90,8 @@ class QualitySummary(BodySummary):
     sign_flips: int
     """How often the quaternion, as it is in the file, changes its sign."""
     leaps: int
-    fastest_turn_deg_s: float
+    fastest_turn_deg_s: float | None
+    """None where the file does not state what its angles or its clock are."""
     fastest_speed_m_s: float | None
     """None of a body without positions."""
     marker_residual_mm: SpreadSummary | None
@@ -351,18 +352,39 @@ class Summary(TypedDict):
     """Versions of Python and of the libraries that the results depend on."""
 
 
-class FileTrial(RecordingSummary):
+class FileClock(TypedDict):
+    """Frames and clock of a file; rate and clock are None where it does not state a rate that it needs."""
+
+    frames: int
+    first_frame: int
+    last_frame: int
+    rate_hz: float | None
+    """Frames per second."""
+    duration_s: float | None
+    clock: ClockSummary | None
+
+
+class FileTrial(FileClock):
     """Frames, clock and bodies of a file."""
 
     bodies: list[QualitySummary]
+    """Rigid bodies in the order of their numbers, then the bones that were asked for."""
 
 
 class MarkerSummary(TypedDict):
-    """A marker that was asked for."""
+    """A marker of the file."""
 
     name: str
-    seen_share: float
-    """Share of the frames in which it was seen."""
+    seen_share: float | None
+    """Share of the frames in which it was seen; None if it was not asked for."""
+
+
+class MissingSummary(TypedDict):
+    """What the file does not say, and an analysis must be told."""
+
+    option: str
+    lacks: str
+    give: str
 
 
 class RolesSummary(TypedDict):
@@ -382,5 +404,10 @@ class FileSummary(TypedDict):
     source: SourceSummary
     trial: FileTrial
     markers: list[MarkerSummary]
+    bones: list[str]
+    """Bones of skeletons, which are analyzed where they are named."""
     roles: RolesSummary
+    missing: list[MissingSummary]
+    next: NotRequired[str]
+    """The line that analyzes the file, for a shell; words in capitals stand for what is not known."""
     warnings: list[WarningSummary]

@@ -106,6 +106,19 @@ class Statements:
                 return
             at = link_at + step
 
+    @property
+    def are_cut(self) -> bool:
+        """Whether the file ends among the parameters, before the entry without a name that is their last."""
+        if len(self.blocks) >= BLOCK * max(self.blocks[2], 1):
+            return False
+        at = 4
+        for _, link_at in self.entries():
+            step = int.from_bytes(self.blocks[link_at : link_at + 2], self.order)
+            if not step:
+                return False
+            at = link_at + step
+        return at >= len(self.blocks) or self.blocks[at] != 0
+
     def whole_number(self, group: str, name: str) -> int:
         """First value of a parameter of whole numbers; 0 if there is none."""
         for one, _ in self.entries():
@@ -134,15 +147,19 @@ def read_statements(path: Path) -> Statements | None:
 
 
 def check_sizes(path: Path, stated: Statements) -> None:
-    """Refuse a file whose parameters have more values than it has bytes, or whose points' places are not certain.
+    """Refuse a file that cannot hold what its parameters state, or whose points' places are not certain.
 
-    Nothing else is judged here: what cannot be followed is left to the reader.
+    It ends among them, or they have more values than it has bytes. Nothing else is judged here: what cannot be followed
+    is left to the reader.
 
     Raises
     ------
     RecordingError
         If it is so.
     """
+    if stated.are_cut:  # the library would go on for seconds
+        msg = f"{path}: not a C3D file that can be read: it ends among its parameters; copy or export the take again"
+        raise RecordingError(msg)
     values = 0
     for one, _ in stated.entries():
         values += 0 if one is None else one.count

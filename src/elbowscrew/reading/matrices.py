@@ -169,6 +169,6 @@ def _one_body(source: TextSource) -> tuple[QualityWarning]:
     name = source.path.name
     message = (
         f"the file has the matrices of one body only: its motion in the laboratory is told, not that of a joint; for a "
-        f"joint give both files, the proximal body's first, as in 'analyze humerus.tra {name}'"
+        f"joint give both files, the proximal body's first, as in 'analyze PROXIMAL.tra {name}'"
     )
     return (QualityWarning(code="one-body", message=message),)

@@ -106,6 +106,28 @@ def did_you_mean(wanted: str, names: Sequence[str]) -> str:
     return f"; did you mean {' or '.join(map(repr, near))}?" if near else ""
 
 
+def check_patterns(path: Path, patterns: Sequence[str], names: Sequence[str]) -> None:
+    """Check that each name or pattern of markers fits one of these names.
+
+    Raises
+    ------
+    SettingError
+        If one does not; it tells the names.
+    """
+    for pattern in patterns:
+        # Markers of one name have their id behind it.
+        if not any(marker_matches(one, [pattern, f"{pattern} (*)"]) for one in names):
+            told = told_names(names)
+            msg = f"{path}: no marker fits {pattern}{did_you_mean(pattern, names)}; the file has {told or 'no markers'}"
+            raise SettingError(msg)
+
+
+def told_names(names: Sequence[str]) -> str:
+    """Names with commas, of many the first."""
+    more = f" and {len(names) - _NAMES_TOLD} more" if len(names) > _NAMES_TOLD else ""
+    return ", ".join(names[:_NAMES_TOLD]) + more
+
+
 def nothing_wanted(path: Path, what: str, names: Sequence[str], options: ReadOptions) -> ElbowscrewError:
     """Say that a file has no rigid bodies and no marker that was asked for, whose names these are.
 
@@ -123,9 +145,7 @@ def nothing_wanted(path: Path, what: str, names: Sequence[str], options: ReadOpt
     SettingError or NoBodiesError
         The former if others were asked for.
     """
-    told = ", ".join(names[:_NAMES_TOLD]) + (
-        f" and {len(names) - _NAMES_TOLD} more" if len(names) > _NAMES_TOLD else ""
-    )
+    told = told_names(names)
     if options.markers and names:
         mean = did_you_mean(options.markers[0], names)
         return SettingError(

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence, Set
+from dataclasses import replace
+from typing import Final
 
 import numpy as np
 
 from elbowscrew._version import __version__
-from elbowscrew.errors import SettingError
+from elbowscrew.declaring import option_name
+from elbowscrew.errors import Missing, SettingError
 from elbowscrew.model import BodyQuality, QualityWarning, Recording, Spread
 from elbowscrew.model.summary_types import (
     ClockSummary,
+    FileClock,
     FileSummary,
     QualitySummary,
     RecordingSummary,
@@ -20,25 +24,73 @@ from elbowscrew.model.summary_types import (
     WarningSummary,
 )
 from elbowscrew.motion.tracking.quality import check_bodies, clock_quality
-from elbowscrew.motion.tracking.selection import choose_bodies
+from elbowscrew.motion.tracking.selection import bones_of, choose_bodies
 from elbowscrew.reading.options import ASK_FOR_MARKERS
 from elbowscrew.settings import Settings
 
+_NO_LIMIT: Final = 1e300
 
-def summary_from_recording(recording: Recording, settings: Settings | None = None) -> FileSummary:
-    """What a file holds, ready for JSON: source, clock, bodies with their tracking, and which is which segment."""
-    checked = check_bodies(recording, recording.bodies, settings or Settings())
+
+def summary_from_recording(
+    recording: Recording, settings: Settings | None = None, missing: Sequence[Missing] = ()
+) -> FileSummary:
+    """What a file holds, ready for JSON: source, clock, bodies with their tracking, and which is which segment.
+
+    Parameters
+    ----------
+    recording : Recording
+    settings : Settings, optional
+    missing : sequence of Missing
+        What the file does not state: all that depends on it is None.
+    """
+    unknown = {one.setting for one in missing}
+    wanted = settings or Settings()
+    if unknown:  # what is made up leaps at will
+        wanted = wanted.model_copy(update={"max_turn_deg_s": _NO_LIMIT, "max_speed_m_s": _NO_LIMIT})
+    checked = check_bodies(recording, recording.bodies, wanted)
+    found = {marker.name: float(np.isfinite(marker.position).all(axis=1).mean()) for marker in recording.markers}
+    names = () if recording.source is None else recording.source.markers
+    roles, unclear = _roles(recording)
     return {
         "elbowscrew": __version__,
-        "source": source_summary(recording),
-        "trial": {**recording_summary(recording), "bodies": [quality_summary(body) for body in checked.quality]},
-        "markers": [
-            {"name": marker.name, "seen_share": float(np.isfinite(marker.position).all(axis=1).mean())}
-            for marker in recording.markers
+        "source": _known_source(source_summary(recording), unknown),
+        "trial": {
+            **_known_clock(recording, unknown),
+            "bodies": [_known_quality(quality_summary(body), unknown) for body in checked.quality],
+        },
+        "markers": [{"name": name, "seen_share": found.get(name)} for name in dict.fromkeys((*names, *found))],
+        "bones": list(bones_of(recording)),
+        "roles": roles,
+        "missing": [
+            {"option": option_name(one.setting), "lacks": one.lacks, "give": one.give} for one in (*missing, *unclear)
         ],
-        "roles": _roles(recording),
-        "warnings": warnings_summary((*recording.warnings, *checked.warnings)),
+        "warnings": warnings_summary((*recording.warnings, *(() if unknown else checked.warnings))),
     }
+
+
+def _known_source(source: SourceSummary, unknown: Set[str]) -> SourceSummary:
+    length = None if "units" in unknown else source["length_unit"]
+    rotation = None if "rotation" in unknown else source["rotation"]
+    return {**source, "length_unit": length, "rotation": rotation}
+
+
+def _known_clock(recording: Recording, unknown: Set[str]) -> FileClock:
+    told = recording_summary(recording)
+    if "rate_hz" not in unknown:
+        return {**told}
+    return {**told, "rate_hz": None, "duration_s": None, "clock": None}
+
+
+def _known_quality(quality: QualitySummary, unknown: Set[str]) -> QualitySummary:
+    known = quality.copy()
+    if unknown & {"rotation", "rate_hz"}:
+        known["fastest_turn_deg_s"] = None
+    if unknown & {"units", "rate_hz"}:
+        known["fastest_speed_m_s"] = None
+    if unknown & {"units", "rotation"}:  # the markers' distances from the body need both
+        known["marker_residual_mm"] = known["pivot_offset_mm"] = known["shape_deviation"] = None
+        known["reported_error_mm"] = None
+    return known
 
 
 def source_summary(recording: Recording) -> SourceSummary:
@@ -122,23 +174,24 @@ def _spread_mm(spread: Spread | None) -> SpreadSummary | None:
     }
 
 
-def _roles(recording: Recording) -> RolesSummary:
+def _roles(recording: Recording) -> tuple[RolesSummary, tuple[Missing, ...]]:
+    """Which body is which segment, or what must be told of that."""
     if not recording.bodies:
-        return {
-            "proximal": None,
-            "distal": None,
-            "joint": None,
-            "text": f"no rigid bodies; {ASK_FOR_MARKERS} to analyze",
-        }
+        text = f"no rigid bodies; {ASK_FOR_MARKERS} to analyze"
+        unclear = Missing("proximal_markers", "has no rigid bodies", ASK_FOR_MARKERS.removeprefix("give "))
+        return {"proximal": None, "distal": None, "joint": None, "text": text}, (unclear,)
+    bones = bones_of(recording)
+    rigid = tuple(body for body in recording.bodies if body.name not in bones)
     try:
-        chosen = choose_bodies(recording, None, None)
+        chosen = choose_bodies(replace(recording, bodies=rigid) if rigid else recording, None, None)
     except SettingError as error:
-        return {"proximal": None, "distal": None, "joint": None, "text": str(error)}
+        unclear = Missing("proximal", "does not say which bodies are the joint's", "--proximal NAME and --distal NAME")
+        return {"proximal": None, "distal": None, "joint": None, "text": str(error)}, (unclear,)
     joint, distal = chosen.joint, chosen.distal.name
     name = chosen.proximal.name if chosen.proximal is not None else None
     first = f"{joint.proximal.name} {name!r}" if name is not None else f"{joint.proximal.name} that stands still"
     text = f"{first}, {joint.distal.name} {distal!r}"
-    return {"proximal": name, "distal": distal, "joint": joint.name, "text": text}
+    return {"proximal": name, "distal": distal, "joint": joint.name, "text": text}, ()
 
 
 def warnings_summary(warnings: Iterable[QualityWarning]) -> list[WarningSummary]:

@@ -51,7 +51,7 @@ def choose_bodies(
     still = proximal is not None and proximal.casefold() == STILL and not _named(bodies, proximal)
     first = _find(recording, proximal, "proximal") if proximal is not None and not still else None
     second = _find(recording, distal, "distal") if distal is not None else None
-    if proximal is None and len(bodies) == 1 and bodies[0].name in _bones(recording):
+    if proximal is None and len(bodies) == 1 and bodies[0].name in bones_of(recording):
         msg = (
             f"bone {bodies[0].name!r} is one of a skeleton: name both bones, by --proximal and --distal (--proximal "
             f"{STILL} for its motion in the laboratory)"
@@ -182,7 +182,7 @@ def _same_id(identifier: str, key: str) -> bool:
     return identifier.casefold() == key or (len(key) > 8 and identifier.casefold().lstrip("0") == key.lstrip("0"))
 
 
-def _bones(recording: Recording) -> tuple[str, ...]:
+def bones_of(recording: Recording) -> tuple[str, ...]:
     """Names of the bones of skeletons in the file, of which those that were named are read as bodies."""
     return () if recording.source is None else recording.source.bones
 
@@ -196,7 +196,7 @@ def _find(recording: Recording, wanted: str, role: str) -> RigidBody:
         ids = " or ".join(repr(body.identifier) for body in found)
         msg = f"--{role} {wanted!r}: {len(found)} bodies have that name; give the id instead: {ids}"
         raise SettingError(msg)
-    names = {name.casefold(): name for name in (*(body.name for body in bodies), *_bones(recording))}
+    names = {name.casefold(): name for name in (*(body.name for body in bodies), *bones_of(recording))}
     near = [repr(names[one]) for one in difflib.get_close_matches(wanted.strip().casefold(), names)]
     mean = f"; did you mean {' or '.join(near)}?" if near else ""
     msg = f"--{role} {wanted!r}: no such body{mean}; the file has {_listed(bodies)}"
