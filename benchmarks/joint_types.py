@@ -67,7 +67,7 @@ def main() -> None:
 
 
 def intervals(trials: int, seed: int) -> None:
-    """Print how often the truth is within the intervals that stand on markers, residuals and blocks."""
+    """Print how often intervals are told, and which hold, that stand on markers, residuals and blocks."""
     noises = {
         "white 0.2 mm": white(),
         "skin with the flexion, 5 mm": skin(5e-3),
@@ -83,13 +83,17 @@ def intervals(trials: int, seed: int) -> None:
         ("two_axes", 60.0, 8),
         ("ball", 60.0, 1),
     )
-    print("\n| joint | deg | cycles | noise | held | sharpness |\n| --- | --- | --- | --- | --- | --- |")
+    print("\n| joint | deg | cycles | noise | held | told | told and missed | sharpness |")
+    print("| --- | --- | --- | --- | --- | --- | --- | --- |")
     for kind, top_deg, cycles in joints:
         for name, noise in noises.items():
             found = typed_coverage(kind, joint_of(kind, top_deg, cycles), noise, trials, seed=seed, rms_alone=False)
-            held = ", ".join(f"{what} {share:.2f}" for what, share in zip(found.names, found.held, strict=True))
+            held, told, missed = (
+                ", ".join(f"{what} {share:.2f}" for what, share in zip(found.names, shares, strict=True))
+                for shares in (found.held, found.told_share, found.missed_share)
+            )
             sharp = f"{found.sharpness.min():.1f} to {found.sharpness.max():.1f}"
-            print(f"| {kind} | {top_deg:g} | {cycles} | {name} | {held} | {sharp} |", flush=True)
+            print(f"| {kind} | {top_deg:g} | {cycles} | {name} | {held} | {told} | {missed} | {sharp} |", flush=True)
 
 
 def starts(share: int, seed: int) -> None:

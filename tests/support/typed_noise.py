@@ -8,17 +8,19 @@ from typing import Literal
 import moving_joints as mj
 import numpy as np
 from cluster_noise import Held, Hinge, Noise, Seen, seen, white, with_rms_alone
+from numpy.typing import NDArray
 from trials import LINE, START
 
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry import quaternion as qn
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.motion.joint.interval import JointInterval
-from elbowscrew.motion.joint.likelihood import Mechanism, Poses, fit_mechanism
+from elbowscrew.motion.joint.likelihood import Fit, Mechanism, Poses, fit_mechanism
 from elbowscrew.motion.joint.simple_types import Ball
 from elbowscrew.motion.joint.starts import _from_lines
 from elbowscrew.motion.joint.two_axes import TwoAxesMechanism, axes_geometry, geometry_slopes
 from elbowscrew.motion.joint.type_interval import Evidence, interval_of_type
+from elbowscrew.motion.joint.typed import _lines
 from elbowscrew.motion.screws.uncertainty import joint_covariance
 
 Kind = Literal["two_axes", "ball"]
@@ -69,12 +71,23 @@ def skin_of_both(size: float) -> Noise:
 
 @dataclass(frozen=True)
 class TypedCoverage(Held):
-    """Of the numbers that `names` says."""
+    """Of the numbers that `names` says; `told` are those (trials, numbers) that an analysis gives an interval for."""
 
     names: tuple[str, ...]
+    told: NDArray[np.bool_]
+
+    @property
+    def told_share(self) -> Float:
+        """In how many of the trials there is an interval."""
+        return np.asarray(self.told.mean(axis=0))
+
+    @property
+    def missed_share(self) -> Float:
+        """In how many of all trials there is one that does not hold the truth."""
+        return np.asarray(np.mean(self.told & (self.error > self.radius), axis=0))
 
 
-def fitted_type(kind: Kind, case: Seen) -> tuple[Mechanism, JointInterval]:
+def fitted_type(kind: Kind, case: Seen) -> tuple[Fit[Mechanism], JointInterval]:
     """The joint fitted from a start at the truth, and its interval."""
     poses = Poses.of(case.joint, joint_covariance(case.joint, *case.noise))
     start: Mechanism
@@ -88,7 +101,7 @@ def fitted_type(kind: Kind, case: Seen) -> tuple[Mechanism, JointInterval]:
         )
         start = _from_lines(case.joint, one, two)
     fit = fit_mechanism(start, poses)
-    return fit.mechanism, interval_of_type(fit, poses, Evidence(noise_known=True, clusters=case.clusters))
+    return fit, interval_of_type(fit, poses, Evidence(noise_known=True, clusters=case.clusters))
 
 
 def typed_coverage(
@@ -96,17 +109,22 @@ def typed_coverage(
 ) -> TypedCoverage:
     """How far the numbers of a joint are from the truth, and how far they are told to be at most."""
     rng = np.random.default_rng(seed)
-    error, radius = [], []
+    error, radius, told = [], [], []
     for _ in range(trials):
         case = seen(hinge, noise(hinge, rng))
-        mechanism, interval = fitted_type(kind, with_rms_alone(case) if rms_alone else case)
-        told = _of_ball(mechanism, interval) if isinstance(mechanism, Ball) else _of_axes(mechanism, interval)
-        error.append(told[0])
-        radius.append(told[1])
+        fit, interval = fitted_type(kind, with_rms_alone(case) if rms_alone else case)
+        mechanism = fit.mechanism
+        found = _of_ball(mechanism, interval) if isinstance(mechanism, Ball) else _of_axes(mechanism, interval)
+        error.append(found[0])
+        radius.append(found[1])
+        told.append([True, True])
+        if isinstance(mechanism, TwoAxesMechanism):
+            one, two = (line.determined for line in _lines(mechanism, fit, START, interval))
+            told[-1] = [one, one, two, two, one and two, one and two]
     names: tuple[str, ...] = ("center in the proximal body", "center in the distal body")
     if kind == "two_axes":
         names = ("direction 1", "place 1", "direction 2", "place 2", "angle between", "distance")
-    return TypedCoverage(np.array(error), np.array(radius), names)
+    return TypedCoverage(np.array(error), np.array(radius), names, np.array(told))
 
 
 def _of_ball(found: Ball, interval: JointInterval) -> tuple[list[float], list[float]]:

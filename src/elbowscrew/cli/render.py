@@ -275,6 +275,8 @@ def _axes_or_center(motion: MotionSummary) -> str:
     found, axes, ball = motion["joint_type"], motion["joint_numbers"]["two_axes"], motion["joint_numbers"]["ball"]
     if axes is not None:
         told = f"{_one_of_two(axes['axis1'], 'proximal')}; {_one_of_two(axes['axis2'], 'distal')}"
+        if axes["angle_between_deg"] is None:
+            return f"{told}; how they stand to each other is undetermined ({_stands_on(found)})"
         apart = f"{axes['angle_between_deg']:.1f} deg"
         if axes["distance_mm"] is not None:
             apart += f" and {abs(axes['distance_mm']):.1f} mm"

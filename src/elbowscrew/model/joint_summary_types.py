@@ -137,7 +137,10 @@ class JointLineSummary(EstimateSummary):
 
 
 class TwoAxesSummary(TypedDict):
-    """Two axes, the first fixed in the proximal body, the second in the distal one; low and high are 95 % limits."""
+    """Two axes, the first fixed in the proximal body, the second in the distal one.
+
+    Low and high are 95 % limits. How the axes stand to each other is None where one of them is not determined.
+    """
 
     axis1: JointLineSummary
     axis2: JointLineSummary

@@ -66,8 +66,8 @@ class JointLine(ArrayRecord):
     angle_sd : float
         Median standard deviation of the angle of a frame, rad.
     determined : bool
-        Whether the range is 12 times that, times the root of how many frames count as one, and the direction known to
-        15 deg.
+        Whether the range is 12 times that, times the root of how many frames count as one, the direction known to
+        10 deg, and the two axes not drawn together by errors.
     """
 
     direction_proximal: Float
@@ -84,7 +84,7 @@ class JointLine(ArrayRecord):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Measure:
-    """A number with its standard deviation."""
+    """A number with its standard deviation; NaN where that is not known."""
 
     value: float
     sd: float

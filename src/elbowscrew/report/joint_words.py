@@ -41,6 +41,8 @@ def _sentences(view: TrialView) -> Iterator[str]:
 
 
 def _apart(two: TwoAxesSummary) -> str:
+    if two["angle_between_deg"] is None:
+        return "How the axes stand to each other is undetermined."
     limits = f"({number(two['angle_between_deg_low'], 1)} to {number(two['angle_between_deg_high'], 1)})"
     if two["distance_mm"] is None:
         off = f"({number(two['parallel_offset_mm_low'], 1)} to {number(two['parallel_offset_mm_high'], 1)})"

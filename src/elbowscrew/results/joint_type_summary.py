@@ -183,7 +183,7 @@ def _line(line: JointLine, frame: _Frame) -> JointLineSummary:
 
 
 class _Interval(NamedTuple):
-    """A number with its 95 % limits; None where not known."""
+    """A number with its 95 % limits; None where they are not known, as such a number says nothing."""
 
     value: float | None = None
     low: float | None = None
@@ -191,9 +191,7 @@ class _Interval(NamedTuple):
 
 
 def _measure(found: Measure | None, scale: float) -> _Interval:
-    if found is None:
+    if found is None or not np.isfinite(found.sd):
         return _Interval()
     value, reach = scale * found.value, scale * NORMAL_95 * found.sd
-    if not np.isfinite(reach):
-        return _Interval(known(value))
     return _Interval(known(value), value - reach, value + reach)

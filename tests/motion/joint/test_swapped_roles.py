@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -50,20 +51,24 @@ def test_swapped_roles_exchange_the_two_axes() -> None:
 
 
 @pytest.mark.parametrize("jitter", [0.0, 1e-7, 1e-6])
-@pytest.mark.parametrize("stated", [{}, {"marker_noise_mm": 0.2}])
-def test_a_body_that_stands_still_is_like_none(jitter: float, stated: dict[str, float]) -> None:
+@pytest.mark.parametrize("stated", [{}, {"marker_noise_mm": 0.2}, {"noise": "still"}])
+def test_a_body_that_stands_still_is_like_none(jitter: float, stated: dict[str, Any]) -> None:
     """A micrometer of jitter is no cluster's noise: axis and cone do not leap where a body is not quite still."""
-    trial = simulate_trial(joint_type="hinge", proximal="still", frames=200, inversion=95, seed=3).recording
+    trial = simulate_trial(
+        joint_type="hinge", proximal="still", frames=200, inversion=95, rest_before_s=1.0, seed=3
+    ).recording
     arm, forearm = trial.bodies
-    shaken = jitter * np.random.default_rng(4).normal(size=(200, 6)) * [10.0, 10.0, 10.0, 1.0, 1.0, 1.0]
+    shaken = jitter * np.random.default_rng(4).normal(size=(len(arm.loss), 6)) * [10.0, 10.0, 10.0, 1.0, 1.0, 1.0]
     still = dq.multiply(arm.dual_quat_lab_body[0], dq.exp(0.5 * shaken))
     recording = replace(trial, bodies=(replace(arm, dual_quat_lab_body=still), forearm))
     roles = (("none", forearm.name, "distal"), (arm.name, forearm.name, "distal"), (forearm.name, arm.name, "proximal"))
     lines = []
     for proximal, distal, express_in in roles:
-        settings = Settings(proximal=proximal, distal=distal, express_in=express_in, joint="elbow", **stated)  # type: ignore[arg-type]
-        found = analyze(recording, settings).joint_axis.headline
+        settings = Settings(proximal=proximal, distal=distal, express_in=express_in, joint="elbow", **stated)
+        analysis = analyze(recording, settings)
+        found = analysis.joint_axis.headline
         assert found is not None
+        assert "noise-unknown" not in [warning.code for warning in analysis.warnings]
         lines.append(found)
     for line in lines[1:]:
         assert off(lines[0].line.direction, line.line.direction) < 5e-6

@@ -237,8 +237,28 @@ def test_the_joints_noise_is_known_if_that_of_each_moving_body_is() -> None:
     one = JointNoise.of(None, noisy, RATE_HZ, settings).known
     assert one is not None
     assert one[0] is None
-    for proximal, distal in ((silent, noisy), (noisy, silent), (None, silent)):
-        assert JointNoise.of(proximal, distal, RATE_HZ, settings).known is None
+    assert JointNoise.of(None, silent, RATE_HZ, settings).known is None  # nothing moves
+    noiseless = Settings(noise="none")
+    for proximal, distal in ((noisy, noisy), (silent, noisy), (noisy, silent), (None, noisy)):
+        assert JointNoise.of(proximal, distal, RATE_HZ, noiseless).known is None
+
+
+@pytest.mark.parametrize("rounding", [0.0, 1e-15, 1e-12])
+def test_a_body_that_stands_still_needs_no_source_of_noise(rounding: float) -> None:
+    """Neither does it matter by how many units in the last place its poses differ."""
+    still = np.tile(poses(1, (0.0, 0.0)), (200, 1)) + rounding * np.random.default_rng(1).normal(size=(200, 8))
+    noisy, silent, settings = body(poses(200, (TURN_SD, PLACE_SD))), body(still), Settings(noise="still")
+    alone = JointNoise.of(None, noisy, RATE_HZ, settings).known
+    assert alone is not None
+    known = JointNoise.of(silent, noisy, RATE_HZ, settings).known
+    assert known is not None
+    assert known[0] is None
+    assert np.array_equal(known[1].covariance, alone[1].covariance)
+    swapped = JointNoise.of(noisy, silent, RATE_HZ, settings).known
+    assert swapped is not None
+    assert swapped[0] is not None
+    assert np.array_equal(swapped[0].covariance, alone[1].covariance)
+    assert not swapped[1].covariance.any()
 
 
 def test_what_is_assumed_of_an_unknown_noise_is_none_of_a_body_that_is_not_there() -> None:

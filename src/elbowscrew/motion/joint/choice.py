@@ -39,7 +39,6 @@ _LEAST_MOTION: Final = np.radians(1.5)
 _LARGEST_LEFT: Final = 0.012
 _LARGEST_CENTER_SD: Final = 0.05
 _LARGEST_ANGLE_SD: Final = np.radians(8.0)
-_LARGEST_AXIS_SD: Final = np.radians(15.0)
 _LEAST_RANGE: Final = np.radians(1.5)
 _SURE: Final = 3.0
 _THIRD_DIFFERENCES: Final = 20.0  # variance of those of white noise
@@ -50,6 +49,9 @@ _LARGEST_WANDER: Final = np.radians(15.0)
 _WANDERS: Final = "an axis that wanders with the angle explains as much as two axes do"
 _HARDLY: Final = "so little motion tells no axis"
 _LITTLE: Final = "a second rotation is seen, but is too small to tell its axis"
+
+LARGEST_AXIS_SD: Final = np.radians(10.0)
+"""Standard deviation of a direction from which on the fit is not linear in its errors, so that no cone would hold."""
 
 LEAST_RANGE_IN_SD: Final = 12.0
 """Times the standard deviation of a frame's angle that a range takes to tell an axis."""
@@ -181,8 +183,8 @@ class _Contest:
         return bool((reach < LEAST_RANGE_IN_SD * angle_sd(fit)).any())
 
     def sure_axes(self) -> bool:
-        """Whether both directions of two axes are known to 15 deg."""
-        return bool(self["two_axes"].shared_sd[[0, 1, 8, 9]].max() <= _LARGEST_AXIS_SD)
+        """Whether both directions of two axes are known well enough to be told."""
+        return bool(self["two_axes"].shared_sd[[0, 1, 8, 9]].max() <= LARGEST_AXIS_SD)
 
 
 def choose_type(
@@ -275,7 +277,7 @@ def _best(contest: _Contest) -> Choice:
         return _unless_too_far(contest, one, 0.0, doubt=_LITTLE)
     doubt = None
     if not contest.sure_axes():
-        doubt = f"a direction is not known to {np.degrees(_LARGEST_AXIS_SD):.0f} deg"
+        doubt = f"a direction is not known to {np.degrees(LARGEST_AXIS_SD):.0f} deg"
     elif retraced > _MUCH_RETRACED:
         doubt = "their angles go together, as those of one axis that wanders would"
     elif _over(left_single, left_two) < _NEED_SMALL:

@@ -24,6 +24,7 @@ _LENGTH: Final = 0.1  # m that weigh as a radian where rotations and shifts are 
 _LARGEST_ANGLE_SD: Final = np.radians(8.0)
 _LARGEST_WINDING: Final = 2.0 * np.pi + 0.5
 _STEP: Final = 1e-6
+_TINY: Final = float(np.finfo(np.float64).tiny)
 _SCALE: Final = np.array([1.0, 1.0, 1.0, _LENGTH, _LENGTH, _LENGTH])
 
 
@@ -171,6 +172,17 @@ def angle_sd(fit: Fit[Mechanism]) -> Float:
     """Median standard deviation (2,) of both angles, rad, scaled by the fit's own residuals."""
     variance = np.median(np.diagonal(fit.own_covariance, axis1=1, axis2=2), axis=0) * fit.variance
     return np.asarray(np.sqrt(variance), dtype=np.float64)
+
+
+def undone_share(at: TwoAxesMechanism) -> float:
+    """Share of both angles' variance that each of them undoes of the other; negative where they add up.
+
+    ``-2 cos(g) cov(a, b) / (var a + var b)``, g between the directions: to first order the rotation's variance is what
+    is left. Slow errors draw two axes together until large angles against each other follow them.
+    """
+    spread = np.cov(at.frames.T)
+    cosine = float(dq.transform_lines(at.between, Z_LINE)[2])
+    return -2.0 * cosine * float(spread[0, 1]) / max(float(np.trace(spread)), _TINY)
 
 
 def is_phantom(fit: Fit[Mechanism]) -> bool:

@@ -12,7 +12,14 @@ from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.sensitivity import NORMAL_95
 from elbowscrew.model.joint_coordinates import JointCoordinates
 from elbowscrew.model.joint_type import BallJoint, JointLine, JointType, Measure, SecondRotation, TwoAxes
-from elbowscrew.motion.joint.choice import LEAST_RANGE_IN_SD, RMS_TO_RANGE, Choice, choose_type, middle_range
+from elbowscrew.motion.joint.choice import (
+    LARGEST_AXIS_SD,
+    LEAST_RANGE_IN_SD,
+    RMS_TO_RANGE,
+    Choice,
+    choose_type,
+    middle_range,
+)
 from elbowscrew.motion.joint.coordinates import coordinates_of
 from elbowscrew.motion.joint.every_frame import Everywhere, FrameNumbers, numbers_everywhere, reference_numbers
 from elbowscrew.motion.joint.fitting import Fitted, frames_that_count_as_one, shared_covariance
@@ -20,14 +27,15 @@ from elbowscrew.motion.joint.interval import ClusterMotion, JointInterval, Metho
 from elbowscrew.motion.joint.likelihood import Fit, Mechanism, Poses, fit_mechanism, fit_robustly
 from elbowscrew.motion.joint.lines import Z_LINE, nearest_points
 from elbowscrew.motion.joint.simple_types import Ball, OneAxis
-from elbowscrew.motion.joint.two_axes import TwoAxesMechanism, angle_sd, axes_geometry, geometry_slopes
+from elbowscrew.motion.joint.two_axes import TwoAxesMechanism, angle_sd, axes_geometry, geometry_slopes, undone_share
 from elbowscrew.motion.joint.type_interval import Evidence, interval_of_type
 
 _MOST_FRAMES: Final = 5000
 _PARALLEL: Final = np.radians(5.0)
 _SURE: Final = 3.0
 _SHARES_THE_HINGE: Final = 1.5
-_LARGEST_AXIS_SD: Final = np.radians(15.0)
+# Errors that draw the axes together to that extent leave nothing of where they were.
+_LARGEST_UNDONE: Final = 0.36
 # Rows of the tilts and of the shifts of both axes among the 12 shared numbers.
 _TILTS: Final = (np.eye(12)[0:2], np.eye(12)[8:10])
 _SHIFTS: Final = (np.eye(12)[2:4], np.eye(12)[10:12])
@@ -105,7 +113,7 @@ def identify_joint(
         two = _two_axes(written, reference, interval, noise_known=noise_known)
         method = interval.decided_by(_TILTS[0])
         if choice.status == "determined" and not all(line.determined for line in two.lines):
-            reason = f"{choice.reason}; errors that go together leave too few frames to tell both directions"
+            reason = f"{choice.reason}; errors that go together are too large to tell both directions"
             choice = choice._replace(status="approximate", reason=reason)
         return _result(choice, every, scale, coordinates=allowed, two_axes=two, decided_by=method)
     start = reference_numbers(mechanism, everywhere, reference)
@@ -194,10 +202,11 @@ def _to_origin(pose: Float) -> float:
 def _two_axes(fit: Fit[TwoAxesMechanism], reference: Float, interval: JointInterval, *, noise_known: bool) -> TwoAxes:
     at = fit.mechanism
     geometry = axes_geometry(at)
-    sd = [interval.radius(row[None]) / NORMAL_95 for row in geometry_slopes(at)]
-    between = min(geometry.angle, np.pi - geometry.angle)
-    parallel = between < max(_PARALLEL, _SURE * sd[0])
     lines = _lines(at, fit, reference, interval)
+    between, parallel = _between(at, interval)
+    sd = [interval.radius(row[None]) / NORMAL_95 for row in geometry_slopes(at)]
+    if not all(line.determined for line in lines):
+        sd = [float("nan")] * len(sd)  # how two axes stand to each other is no better known than they are
     return TwoAxes(
         axis1=lines[0],
         axis2=lines[1],
@@ -210,6 +219,14 @@ def _two_axes(fit: Fit[TwoAxesMechanism], reference: Float, interval: JointInter
     )
 
 
+def _between(at: TwoAxesMechanism, interval: JointInterval) -> tuple[float, bool]:
+    """Angle (rad) between the axes, 90 deg at most, and whether they count as parallel."""
+    angle = axes_geometry(at).angle
+    folded = min(angle, np.pi - angle)
+    sd = interval.radius(geometry_slopes(at)[:1]) / NORMAL_95
+    return folded, folded < max(_PARALLEL, _SURE * sd)
+
+
 def _lines(
     at: TwoAxesMechanism, fit: Fit[Mechanism], reference: Float, interval: JointInterval
 ) -> tuple[JointLine, JointLine]:
@@ -220,6 +237,7 @@ def _lines(
         (at.proximal, dq.multiply(dq.conjugate(reference), at.proximal)),
         (dq.multiply(reference, at.distal), at.distal),
     ]
+    apart = undone_share(at) <= _LARGEST_UNDONE or _between(at, interval)[1]
     lines = []
     for k, (proximal, distal) in enumerate(poses):
         tilt_sd = max(interval.radius(row[None]) for row in _TILTS[k]) / NORMAL_95
@@ -235,7 +253,7 @@ def _lines(
                 axis_sd=tilt_sd,
                 range=reach,
                 angle_sd=float(deviation[k]),
-                determined=bool(reach >= least * deviation[k] and tilt_sd <= _LARGEST_AXIS_SD),
+                determined=bool(apart and reach >= least * deviation[k] and tilt_sd <= LARGEST_AXIS_SD),
             )
         )
     return lines[0], lines[1]

@@ -35,6 +35,7 @@ _IDENTITY: Final = np.eye(8)[0]
 _COMMON_NOISE: Final = np.diag([6e-6] * 3 + [1e-8] * 3)
 # Exports have six decimals: where some coordinate repeats in all of them its noise is that of the rounding, not none.
 _ROUNDING_SD: Final = np.array([2.0, 2.0, 2.0, 1.0, 1.0, 1.0]) * 1e-6 / np.sqrt(12.0)
+_STANDS_STILL: Final = PoseNoise(covariance=np.zeros((6, 6)), source="stands still", marker_noise=None)
 
 
 def pose_noise(body: RigidBody, rate_hz: float, settings: Settings) -> PoseNoise | None:
@@ -102,10 +103,14 @@ class JointNoise(NamedTuple):
 
     @property
     def known(self) -> tuple[PoseNoise | None, PoseNoise] | None:
-        """Both, the proximal body's None if it stands still; None if one is not known."""
-        if self.distal is None or (self.proximal is None and self.proximal_share > 0.0):
+        """Both, the proximal body's None if it stands still; None if that of a body that moves is not known.
+
+        A body that stands still needs no source: it has no noise, as none has where there is no such body.
+        """
+        first, second = self.moving
+        if (first and self.proximal is None) or (self.distal is None and (second or self.proximal is None)):
             return None
-        return self.proximal, self.distal
+        return self.proximal, _STANDS_STILL if self.distal is None else self.distal
 
     @property
     def assumed(self) -> tuple[PoseNoise | None, PoseNoise]:
