@@ -76,9 +76,10 @@ def test_white_noise_is_held_and_no_more_than_needed(top_deg: float) -> None:
         (Hinge(top_deg=60.0), smooth_skin(5e-3)),
         (Hinge(top_deg=60.0), turning(np.radians(2.0))),
         (Hinge(markers=3), skin(5e-3)),
+        (Hinge(top_deg=60.0, markers=3), smooth_skin(5e-3)),
         (Hinge(still=True), smooth_skin(5e-3)),
     ],
-    ids=["wander", "skin", "smooth skin", "turning", "three markers", "still"],
+    ids=["wander", "skin", "smooth skin", "turning", "three markers", "three, smooth", "still"],
 )
 def test_markers_that_move_widen_the_interval_by_what_they_do(hinge: Hinge, noise: Noise) -> None:
     found = coverage(hinge, noise, TRIALS, seed=4, pitch=True)
@@ -105,6 +106,19 @@ def test_a_cluster_that_goes_with_the_flexion_is_held_where_it_is_stated() -> No
     assert (told.held >= fewest(0.92)).all()
     # No single trial shows it: that is why it is to be stated.
     assert (coverage(Hinge(), moved, TRIALS, seed=6).held < 0.5).all()
+
+
+@pytest.mark.parametrize("noise", [smooth_skin(5e-3), wander(2e-3)], ids=["smooth skin", "wander"])
+@pytest.mark.parametrize("markers", [3, 4])
+def test_noise_that_is_not_white_is_as_sure_as_the_markers_that_show_it(markers: int, noise: Noise) -> None:
+    """The model of its spectrum adds nothing to what 3 M - 6 coordinates tell, and white noise nearly all."""
+    hinge, rng = Hinge(top_deg=60.0, markers=markers), np.random.default_rng(8)
+    for kind, most in ((noise, 3 * markers - 6), (white(), np.inf)):
+        case = seen(hinge, kind(hinge, rng))
+        found = case.clusters[1].covariance(fitted(case)[1])
+        assert found is not None
+        freedom = float(found.weight @ found.freedom)
+        assert freedom == most if np.isfinite(most) else freedom > 100.0
 
 
 @pytest.mark.monte_carlo

@@ -21,9 +21,9 @@ from elbowscrew.motion.screws.pose_noise import covariance_from_markers
 Segment = Literal["proximal", "distal"]
 
 # Degrees of freedom that the stationary model may be worth beside the nu that are measured: nearly none where the
-# noise goes with the angle, which the evidence tells.
+# noise goes with the angle, which the evidence tells, and where it is not white and may go with the angle unseen.
 _WORTH: Final = np.array([0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0, 1e3, 1e4, 1e5])
-_WORTH_IF_COLORED: Final = 2.0
+_WORTH_IF_COLORED: Final = 0.5
 _LEAST_KNOWN: Final = 0.5
 _ANGLE_BINS: Final = 15
 _PAIR_BINS: Final = 5  # of each of two angles
@@ -69,10 +69,11 @@ def nonrigid_covariance(
     moved = np.tensordot(z, psi, axes=(0, 0))  # (nu, P, 6)
     measured = np.einsum("jpa,jqa->pq", moved, moved) / nu
     model = _Stationary(z, influence.angles, own_shape=own_shape)
-    expected, model_freedom = model.covariance(psi, influence)
+    expected = model.covariance(psi)
     worth, weight = _worth_of_model(z, influence.angles, model, own_shape=own_shape)
     covariance = (worth[:, None, None] * expected + nu * measured) / (worth + nu)[:, None, None]
-    return Mixture(covariance, np.minimum(worth, model_freedom) + nu, weight)
+    # A spectrum that is not flat adds no degrees of freedom: it is estimated itself, from noise that may be no such.
+    return Mixture(covariance, nu + (worth if model.flat >= 0.5 else np.zeros_like(worth)), weight)
 
 
 def residual_covariance(
@@ -123,29 +124,24 @@ class _Stationary:
     def __init__(self, z: Float, angle: Float, *, own_shape: bool) -> None:
         count, nu = z.shape
         square = np.sum(cosine_transform(z) ** 2, axis=1)
-        self._starts = band_starts(angle)
-        self._number = nu * np.diff(np.append(self._starts, count)).astype(np.float64)
+        starts = band_starts(angle)
+        width = np.diff(np.append(starts, count))
+        number = nu * width.astype(np.float64)
         if own_shape:  # the mean is not there
-            self._number[0] = max(self._number[0] - nu, 1.0)
-        self._power = np.maximum(band_sums(square, self._starts) / self._number, np.finfo(np.float64).tiny)
-        total = self._number.sum()
-        mean = float(self._number @ self._power / total)
-        gain = 0.5 * (total * np.log(mean) - self._number @ np.log(self._power))
-        cost = 0.5 * (len(self._number) - 1) * np.log(total)
+            number[0] = max(number[0] - nu, 1.0)
+        power = np.maximum(band_sums(square, starts) / number, np.finfo(np.float64).tiny)
+        total = number.sum()
+        mean = float(number @ power / total)
+        gain = 0.5 * (total * np.log(mean) - number @ np.log(power))
+        cost = 0.5 * (len(number) - 1) * np.log(total)
         self.flat = float(1.0 / (1.0 + np.exp(np.clip(gain - cost, -700.0, 700.0))))
-        bands = np.repeat(self._power, np.diff(np.append(self._starts, count)))
-        self.power = self.flat * mean + (1.0 - self.flat) * bands
+        self.power = self.flat * mean + (1.0 - self.flat) * np.repeat(power, width)
 
-    def covariance(self, psi: Float, influence: Influence) -> tuple[Float, float]:
-        """Covariance (P, P) under noise of this spectrum, and its degrees of freedom."""
+    def covariance(self, psi: Float) -> Float:
+        """Covariance (P, P) under noise of this spectrum."""
         series = cosine_transform(psi)
         weighted = self.power[:, None, None] * series
-        covariance = np.tensordot(weighted, series, axes=((0, 2), (0, 2)))
-        if self.flat > 0.5:
-            return covariance, np.inf
-        part = np.stack([np.tensordot(s, s, axes=((0, 2), (0, 2))) for s in np.split(series, self._starts[1:])])
-        share = influence.size(part) * self._power
-        return covariance, float(share.sum() ** 2 / np.sum(share**2 / self._number))
+        return np.asarray(np.tensordot(weighted, series, axes=((0, 2), (0, 2))))
 
 
 def _worth_of_model(z: Float, angle: Float, model: _Stationary, *, own_shape: bool) -> tuple[Float, Float]:
