@@ -159,6 +159,20 @@ def test_a_mean_error_is_less_than_the_root_of_the_mean_square() -> None:
     assert by_mean.marker_noise == pytest.approx(by_rms.marker_noise, rel=0.005)
 
 
+def test_markers_without_a_residual_in_some_frames_still_tell_it() -> None:
+    """A system writes 0 where it has none to tell; the median is of all frames."""
+    frames = np.tile(poses(1, (0.0, 0.0)), (100, 1))
+    some, all_of = np.full(100, 4e-4), np.full(100, 4e-4)
+    some[::7] = 0.0
+    given = {"marker_offsets": square_cluster(4)}
+    found, wanted = (
+        pose_noise(body(frames, marker_residual=one, **given), RATE_HZ, Settings()) for one in (some, all_of)
+    )
+    assert found is not None
+    assert wanted is not None
+    assert found.marker_noise == pytest.approx(wanted.marker_noise)
+
+
 def test_what_is_no_error_is_left_out_of_the_column() -> None:
     frames = np.tile(poses(1, (0.0, 0.0)), (9, 1))
     column = np.array([1e-4, 2e-4, 3e-4, -1.0, 1.0, 5.0, np.nan, 2e-4, 2e-4])

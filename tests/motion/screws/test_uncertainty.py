@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -17,8 +18,9 @@ from elbowscrew.errors import AnalysisError, SettingError, UsageError
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry import pose_from_points
 from elbowscrew.geometry.arrays import Float
+from elbowscrew.model import PoseNoise
 from elbowscrew.motion.screws.pose_noise import covariance_from_markers, pose_noise
-from elbowscrew.motion.screws.uncertainty import errors_from_covariance
+from elbowscrew.motion.screws.uncertainty import errors_from_covariance, least_angle
 from elbowscrew.simulate import SimulatedTrial
 
 
@@ -181,6 +183,29 @@ def test_the_least_angle_can_be_a_precision() -> None:
     assert settings_from(options={"axis_sd": "0.1rad"}).axis_sd_deg == pytest.approx(np.degrees(0.1))
     with pytest.raises(UsageError, match="2deg"):
         settings_from(options={"axis_sd": "2 furlongs"})
+
+
+def test_from_the_least_angle_on_axes_in_random_directions_are_known_that_well() -> None:
+    """An error e tilts a unit axis n by |e - (n.e) n| / (2 sin(theta/2)); frame and reference both have one."""
+    rng = np.random.default_rng(3)
+    root = rng.normal(size=(2, 6, 6))
+    proximal, distal = (
+        PoseNoise(covariance=1e-6 * half @ half.T, source="made up", marker_noise=None) for half in root
+    )
+    turn = Rotation.from_rotvec([0.4, -1.0, 0.3])
+    motion: Any = SimpleNamespace(reference=dq.dual_quat_from_pose(turn.as_quat(scalar_first=True), [0.1, 0.2, 0.3]))
+    back = turn.inv().as_matrix()
+    for still, S in (
+        (True, distal.covariance[:3, :3]),
+        (False, distal.covariance[:3, :3] + back @ proximal.covariance[:3, :3] @ back.T),
+    ):
+        n = rng.normal(size=(200_000, 3))
+        n /= np.linalg.norm(n, axis=1, keepdims=True)
+        found = least_angle(0.02, motion, None if still else proximal, distal)
+        across = np.trace(S) - np.einsum("ni,ij,nj->n", n, S, n)
+        variance = 2.0 * across / (2.0 * np.sin(0.5 * found)) ** 2
+        assert np.sqrt(variance.mean()) == pytest.approx(0.02, rel=0.005)
+    assert least_angle(1e-6, motion, proximal, distal) == pytest.approx(np.pi)
 
 
 def test_without_noise_there_are_no_errors_and_no_precision_to_ask_for() -> None:

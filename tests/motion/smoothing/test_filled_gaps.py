@@ -80,6 +80,7 @@ def test_a_top_that_is_filled_over_is_told_with_its_size() -> None:
     size = float(message.split("up to ")[1].split()[0])
     assert 90.0 - angle[155] <= size <= 2.5 * (90.0 - angle[155])
     assert "frames 156 to 204" in message
+    assert "and by over 1 deg in 1 of 1 filled gaps" in message
     assert not told(angle, lost, 0.1)  # nothing is filled
     slow = 45.0 * (1.0 - np.cos(2.0 * np.pi * np.arange(961) / 240.0))
     assert not told(slow, slice(118, 123), 0.6)  # nothing goes far within five frames
