@@ -270,6 +270,12 @@ def test_a_foot_by_another_law_is_right_or_in_doubt(law: str) -> None:
     assert np.quantile(np.abs(found.error), 0.95) < 0.1
 
 
+def test_the_stated_uncertainty_covers_harmonic_movements() -> None:
+    found = coverage(120, first=700, law=LAWS["harmonic"])
+    inside = (np.abs(found.error) <= 1.96 * found.sd)[:, [0, 2]]
+    assert 0.90 <= inside.mean() <= 0.985
+
+
 def test_robots_begin_at_once() -> None:
     motion = Motion().hold(1.0)
     for _ in range(3):

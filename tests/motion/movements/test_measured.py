@@ -207,3 +207,30 @@ def test_what_the_standard_deviation_tells_is_no_warning() -> None:
         doubted = replace(cuts, cycles=replace(cycles, start_sd_s=sd))
         words = " ".join(warning.message for warning in cut_warnings(doubted, Settings()))
         assert ("start of cycle" in words and REASONS["law"] in words) == told
+
+
+@pytest.mark.parametrize("small", [0.12, 0.2, 0.3])
+def test_small_strokes_between_large_ones_are_told(small: float) -> None:
+    """Tops of 90 and a fifth of that in turn: the small ones are no cycles, which had no word."""
+    time, tops = np.arange(150) / 150.0, [90.0, small * 90.0] * 4
+    angle = np.concatenate([0.5 * top * (1.0 - np.cos(2.0 * np.pi * time)) for top in tops])
+    angle += np.random.default_rng(2).normal(0.0, 0.1, angle.size)
+    elapsed = np.arange(angle.size) / 100.0
+    cuts = cut(np.radians(angle), elapsed, 100.0)
+    assert cuts.cycles.start_s.size == 4
+    (message,) = (one.message for one in cut_warnings(cuts, Settings()) if one.code == "small-strokes")
+    assert message.startswith("4 strokes out and back")
+    assert np.degrees(cuts.small) == pytest.approx(small * 90.0, abs=1.5)
+    advised = float(message.split("--cycle-swing ")[1].split()[0])
+    counted = cut(np.radians(angle), elapsed, 100.0, least_swing=np.radians(advised))
+    assert counted.cycles.start_s.size == 8
+    assert not counted.small.size
+
+
+def test_hesitations_are_no_small_strokes() -> None:
+    """On the way, at the top, and tremor at rest."""
+    time = np.arange(3000) / 100.0
+    angle = 45.0 * (1.0 - np.cos(2.0 * np.pi * time / 5.0)) + 6.0 * np.sin(2.0 * np.pi * time / 1.25)
+    assert not cut(np.radians(angle), time, 100.0).small.size
+    for trial in TRIALS:
+        assert not cuts_of(simulate_trial(**trial).recording).small.size

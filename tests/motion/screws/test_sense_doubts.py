@@ -48,8 +48,8 @@ def test_nothing_is_told_of_a_hinge() -> None:
 def test_no_sense_is_told_with_its_ratio_unless_somebody_decided(chosen: str) -> None:
     one = sense(signed=False, ratio=0.4567)
     found = told(one, chosen)
-    assert set(found) == ({"unsigned"} if chosen == "auto" else set())
-    if found:
+    assert set(found) == {"auto": {"unsigned"}, "yes": {"sense-forced"}, "no": set()}[chosen]
+    if chosen == "auto":
         message = found["unsigned"]
         assert message.startswith(
             "no axis dominates the motion (the ratio of the second direction to the first is 0.457;"
@@ -68,7 +68,16 @@ def test_a_ratio_near_the_limit_is_told_with_the_answer_found(signed: bool, rati
     assert "--signed" in message
     assert "--reference" in message
     assert ("unsigned" in found) == (not signed)
-    assert told(sense(signed=signed, ratio=ratio), "yes") == {}
+    assert set(told(sense(signed=signed, ratio=ratio), "yes")) == (
+        {"sense-forced"} if ratio > DOMINANT_RATIO else set()
+    )
+
+
+def test_a_sense_that_the_motion_does_not_support_is_told() -> None:
+    message = told(sense(signed=True, ratio=0.74), "yes")["sense-forced"]
+    assert message.startswith("no axis dominates the motion (the ratio of the second direction to the first is 0.740;")
+    assert "only because --signed yes asks for it" in message
+    assert not told(sense(signed=True, ratio=0.1), "yes")
 
 
 def test_a_tie_is_told_whoever_decided() -> None:

@@ -125,6 +125,8 @@ class Cuts:
         Standard deviation of the rotation's white noise, radians.
     least_swing, excursion : float
         Least swing between turns, and the largest angle less the smallest, radians.
+    small : ndarray, shape (S,)
+        Heights of small strokes out and back between cycles that count as hesitations, radians.
     hidden_s : ndarray, shape (G, 2)
         Begin and end of stretches without a pose in which the joint may turn back unseen.
     """
@@ -135,6 +137,7 @@ class Cuts:
     noise: float
     least_swing: float
     excursion: float
+    small: Float
     hidden_s: Float
 
     def rows(self, seconds: Float, elapsed: Float) -> Float:

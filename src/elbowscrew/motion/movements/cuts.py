@@ -76,6 +76,7 @@ def cut(
             noise=np.nan,
             least_swing=np.nan,
             excursion=np.nan,
+            small=np.empty(0),
             hidden_s=np.empty((0, 2)),
         )
     even = _even(twist, elapsed, rate_hz, known)
@@ -96,6 +97,7 @@ def cut(
         noise=swings.noise,
         least_swing=swings.least,
         excursion=float(np.ptp(swings.smooth)),
+        small=swings.small_rad,
         hidden_s=hidden,
     )
 

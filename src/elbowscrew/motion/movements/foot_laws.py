@@ -33,6 +33,9 @@ _TIP_SHARE: Final = 0.005
 # How likely the laws are before the shape is seen, and by how much of itself a true ratio may be off.
 _RAMPS: Final = np.linspace(0.0, 0.34, 18)
 _PRIOR: Final = np.concatenate([[0.72, 0.10, 0.10, 0.02], np.full(17, 0.03 / 17), [0.03]])
+# A mean coverage of 95 % hides that movements of a law that is rarely looked for are covered less: in the spread the
+# harmonic one, whose foot lies farthest from that by minimum jerk, has three times its weight.
+_SPREAD_WEIGHT: Final = np.concatenate([[1.0, 1.0, 3.0], np.ones(_PRIOR.size - 3)])
 _GENTLE: Final = 3
 # A flank may follow none of the laws: then any ratio in a wide range is as likely, and its foot lies between theirs.
 _ANY_RATIO: Final = 8.0
@@ -197,7 +200,7 @@ def by_shape(kappa: Float, shapes: Shapes, alike: Bool) -> Distances:
     -----
     Each law is weighed by its prior and by how well it explains the ratio, a normal likelihood; ratios of like flanks
     are drawn together where they do not differ. The distance is the weighted median of those of the laws,
-    and its variance that of the mixture about it.
+    and its variance that of the mixture about it, in which the harmonic law counts three times.
     """
     value, law_var = kappa.copy(), (LAW_SD * kappa) ** 2
     in_doubt = np.zeros(kappa.size, dtype=np.bool_)
@@ -221,7 +224,9 @@ def by_shape(kappa: Float, shapes: Shapes, alike: Bool) -> Distances:
     order = np.argsort(beside, axis=1)
     below = np.cumsum(np.take_along_axis(weight, order, axis=1), axis=1) < 0.5
     scale = np.take_along_axis(beside, np.take_along_axis(order, below.sum(axis=1)[:, None], axis=1), axis=1)[:, 0]
-    spread = (weight * ((beside - scale[:, None]) ** 2 + (own_sd * beside) ** 2)).sum(axis=1)
+    wide = weight * _SPREAD_WEIGHT
+    wide /= wide.sum(axis=1, keepdims=True)
+    spread = (wide * ((beside - scale[:, None]) ** 2 + (own_sd * beside) ** 2)).sum(axis=1)
     value[alike] *= scale[alike]
     law_var[alike] = (spread * kappa**2)[alike]
     in_doubt[alike] = (spread > (_IN_DOUBT * scale) ** 2)[alike]

@@ -80,7 +80,7 @@ def _all_doubted(cuts: Cuts, code: str) -> Cuts:
 def cut_warnings(cuts: Cuts, settings: Settings) -> tuple[QualityWarning, ...]:
     """Say which boundaries are uncertain and why, and where a stated swing leaves no cycle; nothing if nothing is."""
     hidden = () if settings.cycles is not None else _hidden(cuts)
-    return _doubts(cuts) + hidden + _no_such_swing(cuts, settings)
+    return _doubts(cuts) + hidden + _small_strokes(cuts, settings) + _no_such_swing(cuts, settings)
 
 
 def _hidden(cuts: Cuts) -> tuple[QualityWarning, ...]:
@@ -92,6 +92,19 @@ def _hidden(cuts: Cuts) -> tuple[QualityWarning, ...]:
         "and those beside them may be parts of two; --cycles gives the times"
     )
     return (QualityWarning(code="turns-in-gaps", message=message, count=len(cuts.hidden_s)),)
+
+
+def _small_strokes(cuts: Cuts, settings: Settings) -> tuple[QualityWarning, ...]:
+    """Tell of strokes that are no cycles only because those beside them are much larger."""
+    if not cuts.small.size or settings.cycles is not None or settings.no_cycles:
+        return ()
+    degrees = np.degrees(cuts.small)
+    several = "1 stroke" if degrees.size == 1 else f"{degrees.size} strokes"
+    message = (
+        f"{several} out and back of {degrees.min():.2g} to {degrees.max():.2g} deg count as hesitations beside the "
+        f"larger ones, and not as cycles; --cycle-swing {0.7 * degrees.min():.2g} counts them"
+    )
+    return (QualityWarning(code="small-strokes", message=message, count=int(degrees.size)),)
 
 
 def _no_such_swing(cuts: Cuts, settings: Settings) -> tuple[QualityWarning, ...]:

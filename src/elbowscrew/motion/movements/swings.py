@@ -64,6 +64,8 @@ class Swings(NamedTuple):
         Why turning points are in doubt, by their samples.
     close_removed : ndarray of int64
         Turning points that the local rule took out by little.
+    small_rad : ndarray, shape (S,)
+        Heights of strokes out and back between lows that the motion comes back to, which the local rule took out.
     fast_rad : float
         Peak to peak of what the filter took out and a 12 Hz one would keep, the third largest, radians.
     """
@@ -80,6 +82,7 @@ class Swings(NamedTuple):
     reversals: Index
     doubtful: dict[int, str]
     close_removed: Index
+    small_rad: Float
     fast_rad: float
 
     @property
@@ -135,6 +138,7 @@ def swings_of(twist: Float, rate_hz: float, noise: float | None = None, least_sw
         reversals=kept,
         doubtful=doubtful,
         close_removed=close,
+        small_rad=_small_strokes(every, kept, smooth),
         fast_rad=_left_out(level, smooth, rate_hz, cutoff_hz),
     )
 
@@ -216,6 +220,26 @@ def _left_out(level: Float, smooth: Float, rate_hz: float, cutoff_hz: float) -> 
 def fast_content(swings: Swings, rise: float) -> bool:
     """Whether the filter left out motion that matters beside a rise (rad) of the cycles."""
     return swings.fast_rad > _FAST_SHARE * rise
+
+
+def _small_strokes(every: Index, kept: Index, smooth: Float) -> Float:
+    """Heights of tops that are not kept, between lows no higher than the kept low beside them, shape (S,).
+
+    So low is within a tenth of the kept swing there.
+    """
+    values, stays = smooth[every], np.isin(every, kept)
+    if stays.all() or kept.size < 3:
+        return np.empty(0)
+    inner = np.arange(1, every.size - 1)
+    tops = inner[~stays[inner] & (values[inner] > values[inner - 1]) & (values[inner] > values[inner + 1])]
+    levels = smooth[kept]
+    is_low = np.append(levels[0] < levels[1], levels[1:] < levels[:-1])
+    lows = np.flatnonzero(is_low)
+    nearest = lows[np.abs(kept[lows] - every[tops][:, None]).argmin(axis=1)]
+    swing = np.abs(levels[np.where(nearest + 1 < kept.size, nearest + 1, nearest - 1)] - levels[nearest])
+    base = np.maximum(values[tops - 1], values[tops + 1])
+    from_low: Float = (values[tops] - levels[nearest])[base - levels[nearest] <= _RANGE_SHARE * swing]
+    return from_low
 
 
 def _prominences(values: Float) -> tuple[Float, Float]:

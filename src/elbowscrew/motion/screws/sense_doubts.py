@@ -17,7 +17,7 @@ def sense_warnings(sense: Sense, frame: NDArray[np.int64], chosen: SignedChoice)
     sense : Sense
     frame : ndarray of int64, shape (N,)
     chosen : {"auto", "yes", "no"}
-        The setting: what somebody has decided is not doubted.
+        The setting: what somebody has decided is not doubted, but told where the motion does not support it.
     """
     found = []
     ratio = f"the ratio of the second direction to the first is {sense.ratio:.3f}"
@@ -28,6 +28,13 @@ def sense_warnings(sense: Sense, frame: NDArray[np.int64], chosen: SignedChoice)
             "takes the leading direction as the axis"
         )
         found.append(QualityWarning(code="unsigned", message=message))
+    if chosen == "yes" and sense.ratio > DOMINANT_RATIO:
+        message = (
+            f"no axis dominates the motion ({ratio}; one axis leaves {DOMINANT_RATIO:.2f} at most), and theta has a "
+            "sense only because --signed yes asks for it: its sign is that about the leading direction, and may change "
+            "where the axis passes across that"
+        )
+        found.append(QualityWarning(code="sense-forced", message=message))
     if chosen == "auto" and sense.doubtful:
         answer = "has a sense" if sense.signed else "has none"
         message = (
