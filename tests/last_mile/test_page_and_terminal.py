@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
+import pytest
 from recomputed import distal_points
 from told_results import Told
 
@@ -157,6 +158,11 @@ def test_table_of_the_joints_axis(told: Told) -> None:
 def test_tables_of_the_joints_type(told: Told) -> None:
     kind, two = told.joint["joint_type"], told.joint["two_axes"]
     assert f"Reason: {kind['reason']}." in told.page.texts
+    left = {"hinge": "a hinge leaves ", "two_axes": "two axes leave ", "ball": "a ball joint leaves "}
+    if kind["reason"].startswith(left.get(kind["type"], "a rigid joint leaves ")):
+        (chosen,) = [one for one in kind["candidates"] if one["type"] == kind["type"]]
+        said = [float(one) for one in numbers(kind["reason"])[:2]]
+        assert said == pytest.approx([chosen["residual_deg"], chosen["residual_mm"]], rel=0.05)
     if kind["candidates"]:
         assert [row[1:] for row in rows_after(told, "Type tried")][: len(kind["candidates"])] == [
             [

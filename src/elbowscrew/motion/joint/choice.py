@@ -288,15 +288,12 @@ def _best(contest: _Contest) -> Choice:
 def _unless_too_far(contest: _Contest, name: Fitted, gain: float, *, doubt: str | None = None) -> Choice:
     """Take a type, approximate where something speaks against it, unless it leaves more than a joint may."""
     tried = contest[name]
+    words, leave = JOINT_TYPE_WORDS[name], "leave" if name == "two_axes" else "leaves"
+    left_mm = 1000.0 * tried.fit.residual_translation
     if tried.too_far:
         contest.try_all()
-        return _none_fits(
-            contest,
-            f"{JOINT_TYPE_WORDS[name]} would be preferred, but leaves {1000.0 * tried.fit.residual_translation:.0f} mm",
-        )
-    left = f"{JOINT_TYPE_WORDS[name]} leaves {np.degrees(tried.fit.residual_rotation):.2g} deg and " + (
-        f"{1000.0 * tried.fit.residual_translation:.2g} mm RMS"
-    )
+        return _none_fits(contest, f"{words} would be preferred, but {leave} {left_mm:.0f} mm")
+    left = f"{words} {leave} {np.degrees(tried.fit.residual_rotation):.2g} deg and {left_mm:.2g} mm RMS"
     if doubt is None and gain >= _NEED_LARGE:
         doubt = (
             f"a richer type leaves {gain:.1f} times less variance, which is within what skin and imperfect joints do"
