@@ -1,24 +1,47 @@
 """How often the intervals of a hinge hold the truth, under every kind of marker noise.
 
-    python benchmarks/intervals.py [--quick] [--rms] [TRIALS]
+    python benchmarks/intervals.py [--quick] [--rms] [--prepared] [TRIALS]
 
 Prints a table in Markdown: share of trials whose 95 % interval holds the true line, direction and place in the proximal
 and in the distal body; mean radius over the 95th percentile of the error; and how often a pitch is told.
-As in `analyze` of a file with markers; with ``--rms`` they tell no more than their RMS in each frame.
+As in `analyze` of a file with markers; with ``--rms`` they tell no more than their RMS in each frame. With
+``--prepared`` recordings of markers are analyzed instead: as they are, with gaps, filtered, resampled, robustly.
 """
 
 from __future__ import annotations
 
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "support"))
 
-from cluster_noise import Hinge, Noise, coverage, skin, smooth_skin, turning, turning_with_flexion, wander, white
+from cluster_noise import (
+    Held,
+    Hinge,
+    Noise,
+    coverage,
+    line_errors,
+    recording_of,
+    skin,
+    smooth_skin,
+    turning,
+    turning_with_flexion,
+    wander,
+    white,
+)
+from trials import LINE
 
+from elbowscrew import Settings
+from elbowscrew.geometry import dual_quaternion as dq
+from elbowscrew.geometry import pose_from_points, quaternion
+from elbowscrew.motion.axes.measured import measured_mean_axis
 from elbowscrew.motion.joint.interval import SkinMotion
+from elbowscrew.motion.joint.lines import line_pose
+from elbowscrew.motion.joint.measured import measured_joint_axis
+from elbowscrew.motion.screws.measurement import measure
 
 HINGES = (
     Hinge(top_deg=140.0),
@@ -39,6 +62,9 @@ def main() -> None:
     words = [word for word in sys.argv[1:] if not word.startswith("--")]
     quick = "--quick" in sys.argv
     trials = int(words[0]) if words else 20 if quick else 300
+    if "--prepared" in sys.argv:
+        prepared(trials)
+        return
     print("| top deg | cycles | markers | proximal | noise | direction | place | sharpness | pitch |")
     print("| --- | --- | --- | --- | --- | --- | --- | --- | --- |")
     for number, hinge in enumerate(HINGES[:3] if quick else HINGES):
@@ -52,6 +78,54 @@ def main() -> None:
                 f"| {sharp[0::2].max():.2f}, {sharp[1::2].max():.2f} | {found.spurious_pitch:.3f} |",
                 flush=True,
             )
+
+
+PREPARED: dict[str, dict[str, Any]] = {
+    "as it is": {},
+    "a fifth lost, in gaps": {},
+    "low-pass 6 Hz": {"lowpass_hz": 6.0},
+    "resampled to 50 Hz": {"resample_hz": 50.0},
+    "robust": {"robust": True},
+}
+
+
+def prepared(trials: int) -> None:
+    """Print the shares that hold the line in the proximal body, of a hinge of 60 deg in one cycle."""
+    print("| noise | analyzed | direction | place | sharpness |\n| --- | --- | --- | --- | --- |")
+    hinge = Hinge(top_deg=60.0)
+    noises = {name: noise for name, (noise, stated) in kinds(hinge).items() if not stated}
+    for name, noise in noises.items():
+        rng = np.random.default_rng(77)
+        error: dict[str, list[tuple[float, float]]] = {how: [] for how in PREPARED}
+        radius: dict[str, list[tuple[float, float]]] = {how: [] for how in PREPARED}
+        for _ in range(trials):
+            off, lost = noise(hinge, rng), np.zeros(hinge.frames, dtype=np.bool_)
+            for first in range(20, hinge.frames - 20, 40):
+                lost[first : first + int(rng.integers(4, 16))] = True
+            for how, chosen in PREPARED.items():
+                seen = recording_of(hinge, off, lost if "gaps" in how else None)
+                settings = Settings(
+                    proximal_markers=("A*",),
+                    distal_markers=("F*",),
+                    joint_type="hinge",
+                    express_in="proximal",
+                    **chosen,
+                )
+                measured = measure(seen, settings)
+                found = measured_joint_axis(measured, measured_mean_axis(measured), settings).hinge
+                assert found is not None
+                assert measured.proximal is not None
+                assert measured.proximal.marker_offsets is not None
+                # A body that is made of markers has axes of its own.
+                shape = pose_from_points(measured.proximal.marker_offsets, hinge.shapes[0])
+                direction = quaternion.rotate(shape[:4], found.line.direction_proximal)
+                pose = line_pose(direction, dq.transform_points(shape, found.line.point_proximal))
+                error[how].append(line_errors(pose, LINE))
+                radius[how].append((found.axis_cone, found.point_radius))
+        for how in PREPARED:
+            told = Held(np.array(error[how]), np.array(radius[how]))
+            held, sharp = told.held, told.sharpness
+            print(f"| {name} | {how} | {held[0]:.3f} | {held[1]:.3f} | {sharp[0]:.2f}, {sharp[1]:.2f} |", flush=True)
 
 
 def kinds(hinge: Hinge) -> dict[str, tuple[Noise, tuple[SkinMotion, ...]]]:

@@ -7,13 +7,15 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
+from poses import random_poses
 from scipy.signal import butter, sosfiltfilt
 from trials import ARM, FOREARM, LINE, START, joint_poses
 
+from elbowscrew import Recording
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry import nonrigid_coordinates, pose_from_points
-from elbowscrew.geometry.arrays import Float
-from elbowscrew.model import PoseNoise
+from elbowscrew.geometry.arrays import Bool, Float
+from elbowscrew.model import Marker, PoseNoise
 from elbowscrew.motion.joint.influence import Influence, influence_of_fit
 from elbowscrew.motion.joint.interval import SURE, ClusterMotion, JointInterval, SkinMotion, joint_interval
 from elbowscrew.motion.joint.joint_fit import LineFit, fit_joint
@@ -76,6 +78,20 @@ def seen(hinge: Hinge, noise: tuple[Float, Float]) -> Seen:
         told.append(PoseNoise(covariance=covariance, source="known", marker_noise=None))
         joint = dq.multiply(joint, own) if segment == "distal" else dq.multiply(dq.conjugate(own), joint)
     return Seen(joint, tuple(clusters), (None, told[0]) if hinge.still else (told[0], told[1]))
+
+
+def recording_of(hinge: Hinge, noise: tuple[Float, Float], lost: Bool | None = None) -> Recording:
+    """Markers alone, the proximal cluster anywhere in the laboratory, the distal one not seen in some frames (F,)."""
+    joint = joint_poses(hinge.angle, np.zeros(hinge.frames))
+    arm = random_poses((), 5)
+    markers = []
+    for letter, pose, shape, off in zip("AF", (arm, dq.multiply(arm, joint)), hinge.shapes, noise, strict=True):
+        places = dq.transform_points(np.broadcast_to(pose, (hinge.frames, 8))[:, None, :], shape + off)
+        if letter == "F" and lost is not None:
+            places = np.where(lost[:, None, None], np.nan, places)
+        markers += [Marker(name=f"{letter}{k}", position=places[:, k]) for k in range(len(shape))]
+    time_s = np.arange(hinge.frames) / 100.0
+    return Recording(bodies=(), frame=np.arange(hinge.frames), time_s=time_s, rate_hz=100.0, markers=tuple(markers))
 
 
 def fitted(case: Seen, *, screw: bool = False, robust: bool = False) -> tuple[LineFit, Influence]:

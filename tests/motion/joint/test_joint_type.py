@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Literal
 
 import moving_joints as mj
 import numpy as np
@@ -197,6 +198,16 @@ def test_each_type_is_told(name: str, noise_known: bool) -> None:
     seen, covariance = mj.noisy(exact.poses, rng, ROTATION_DEG, PLACE)
     choice = choose_type(Poses.of(seen, covariance), noise_known=noise_known)
     assert (choice.type, choice.status) == (name, "determined")
+
+
+@pytest.mark.parametrize("one", ["hinge", "screw_hinge"])
+@pytest.mark.parametrize("noise_known", [True, False])
+def test_a_single_axis_is_told_as_it_was_found_to_be(one: Literal["hinge", "screw_hinge"], noise_known: bool) -> None:
+    """By the joint's axis, whose interval knows of the markers."""
+    rng = np.random.default_rng(16)
+    for pitch in (0.0, 0.01):
+        seen, covariance = mj.noisy(mj.hinge(200, 80.0, rng, pitch=pitch).poses, rng, ROTATION_DEG, PLACE)
+        assert identify_joint(seen, covariance, seen[0], noise_known=noise_known, one=one).type == one
 
 
 def test_a_stated_type_is_taken_whatever_the_motion() -> None:

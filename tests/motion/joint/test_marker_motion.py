@@ -6,29 +6,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from cluster_noise import Hinge, Noise, fitted, interval_of, seen, skin, white, with_rms_alone
+from cluster_noise import Hinge, Noise, fitted, interval_of, recording_of, seen, skin, white, with_rms_alone
 from oracles import rodrigues
-from poses import random_poses
-from trials import joint_poses
 
 from elbowscrew import Recording, Settings, analyze
-from elbowscrew.geometry import dual_quaternion as dq
-from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import FittedJoint, Marker
 
 CHOICE = Settings(proximal_markers=("A*",), distal_markers=("F*",), joint_type="hinge", express_in="proximal")
-
-
-def recording_of(hinge: Hinge, noise: tuple[Float, Float]) -> Recording:
-    """Markers alone, the proximal cluster anywhere in the laboratory."""
-    joint = joint_poses(hinge.angle, np.zeros(hinge.frames))
-    arm = random_poses((), 5)
-    markers = []
-    for letter, pose, shape, off in zip("AF", (arm, dq.multiply(arm, joint)), hinge.shapes, noise, strict=True):
-        places = dq.transform_points(np.broadcast_to(pose, (hinge.frames, 8))[:, None, :], shape + off)
-        markers += [Marker(name=f"{letter}{k}", position=places[:, k]) for k in range(len(shape))]
-    time_s = np.arange(hinge.frames) / 100.0
-    return Recording(bodies=(), frame=np.arange(hinge.frames), time_s=time_s, rate_hz=100.0, markers=tuple(markers))
 
 
 def hinge_of(recording: Recording, settings: Settings = CHOICE) -> FittedJoint:
