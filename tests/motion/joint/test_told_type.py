@@ -11,9 +11,13 @@ from trials import joint_poses
 
 from elbowscrew import Settings, analyze, read_recording, simulate_trial
 from elbowscrew.cli.render import analysis_table
+from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.motion.joint.typed import identify_joint
+from elbowscrew.plots.joint_type import joint_text
+from elbowscrew.report.joint_words import joint_sentences
 from elbowscrew.results.joint_summary import joint_summary
 from elbowscrew.results.summary import summary_from_analysis
+from elbowscrew.results.trial_views import view_of_analysis
 
 
 def degrees_off(found: list[float], truth: tuple[float, float, float]) -> float:
@@ -78,6 +82,42 @@ def test_a_hinge_keeps_its_axis_and_no_richer_type_is_tried() -> None:
     assert told["two_axes"] is None
     assert told["ball"] is None
     assert (found["decided_by"], found["interval_method"]) != (None, None)
+
+
+def test_how_undetermined_axes_stand_to_each_other_is_left_open(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    recording = simulate_trial(joint_type="hinge", proximal="moving", frames=200, inversion=95, seed=3).recording
+    analysis = analyze(recording, Settings(joint_type="two_axes"))
+    told, summary = joint_summary(analysis), summary_from_analysis(analysis)
+    axes = told["two_axes"]
+    assert axes is not None
+    assert not (axes["axis1"]["determined"] and axes["axis2"]["determined"])
+    between = {name: value for name, value in axes.items() if name not in ("axis1", "axis2")}
+    assert between == dict.fromkeys(between)
+    analysis_table(summary, tmp_path)
+    assert "how they stand to each other is undetermined" in " ".join(capsys.readouterr().out.split())
+    assert "How the axes stand to each other is undetermined." in joint_sentences(
+        view_of_analysis(analysis, summary, told)
+    )
+    assert joint_text(analysis) == "Joint: two axes (as stated)"
+
+
+def test_parallel_axes_may_turn_against_each_other() -> None:
+    """As links of a chain do; both are seen by where their lines are."""
+    rng = np.random.default_rng(3)
+    time = np.linspace(0.0, 2.0 * np.pi, 200)
+    first = np.radians(60.0) * 0.5 * (1.0 - np.cos(time))
+    second = -np.radians(40.0) * 0.5 * (1.0 - np.cos(time - 0.7))
+    up = np.array([0.0, 0.0, 1.0])
+    lines = mj.turned(first, mj.line(up, np.zeros(3))), mj.turned(second, mj.line(up, np.array([0.25, 0.0, 0.0])))
+    seen, covariance = mj.noisy(dq.multiply(dq.multiply(*lines), mj.rest_pose(rng)), rng, 0.1, 2e-4)
+    found = identify_joint(seen, covariance, seen[0], noise_known=True)
+    assert (found.type, found.status) == ("two_axes", "determined")
+    assert found.two_axes is not None
+    assert [line.determined for line in found.two_axes.lines] == [True, True]
+    assert found.two_axes.offset is not None
+    assert found.two_axes.offset.value == pytest.approx(0.25, abs=3.0 * found.two_axes.offset.sd)
 
 
 def test_a_knee_that_screws_home_is_a_hinge_that_wanders(real_data: Path) -> None:
