@@ -15,9 +15,9 @@ sys.path.insert(0, str(Path(__file__).parent.parent / "tests" / "support"))
 from drawn_trials import KINDS, drawn_trial
 from ink import faults_of
 
-from elbowscrew.plots.registry import figure_function, has_figure
+from elbowscrew.plots.registry import FIGURES
 from elbowscrew.plots.style import publication_style, settle
-from elbowscrew.view.figure_names import FIGURE_ENTRIES
+from elbowscrew.view.figure_names import FIGURE_ENTRIES, has_figure
 
 WIDTHS_MM = (60.0, 70.0, 85.0, 120.0, 170.0, 180.0)
 
@@ -37,7 +37,7 @@ def main() -> int:
         for name in (name for name in asked.figures if has_figure(name, view)):
             for width in asked.widths:
                 with publication_style():
-                    figure = figure_function(name)(view, width_mm=width)
+                    figure = FIGURES[name](view, width_mm=width)
                     settle(figure)
                     faults = faults_of(figure)
                     if asked.pictures is not None:

@@ -16,7 +16,7 @@ from elbowscrew.choices import BLEND_NAMES, CLOSED_LAWS, KEYFRAME_SOURCES, KNOT_
 from elbowscrew.cli.app import app
 from elbowscrew.study_columns import FAILURE_COLUMNS, study_header
 from elbowscrew.tables import COMPARISON_COLUMNS, INTERPOLATION_COLUMNS, KEYFRAME_COLUMNS, SCREW_COLUMNS
-from elbowscrew.view.figure_names import SAVED_FIGURES
+from elbowscrew.view.figure_names import FIGURE_ENTRIES
 
 LINK = re.compile(r"!?\[[^\]]*\]\(([^)#]*)(?:#([^)]+))?\)")
 HEADING = re.compile(r"^#+ (.+)$", re.M)
@@ -129,7 +129,7 @@ def test_the_readmes_pictures_are_figures_of_a_result(root: Path) -> None:
     readme = (root / "README.md").read_text(encoding="utf-8")
     pictures = re.findall(r"!\[[^\]]+\]\(docs/images/(\w+)\.png\)", readme)
     assert len(pictures) == 2
-    assert set(pictures) <= set(SAVED_FIGURES)
+    assert set(pictures) <= set(FIGURE_ENTRIES)
     for name in pictures:
         assert (root / "docs" / "images" / f"{name}.png").read_bytes().startswith(b"\x89PNG")
 

@@ -47,7 +47,30 @@ AngleUnit = Literal["deg", "rad"]
 LengthUnit = Literal["mm", "m"]
 FileUnit = Literal["m", "cm", "mm"]
 RotationType = Literal["quaternion", "XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX"]
-FigureFormat = Literal["png", "svg", "pdf", "none"]
+FigureFormat = Literal["png", "svg", "pdf", "tiff", "eps", "none"]
+FigureName = Literal[
+    "theta",
+    "euler_parameters",
+    "joint",
+    "slide",
+    "error",
+    "anatomy",
+    "velocity",
+    "instantaneous_axes",
+    "cycles",
+    "quality",
+    "axis",
+    "joint_axis",
+    "joint_angles",
+    "axis_path",
+    "fig7",
+    "fig8",
+    "fig9",
+    "fig10",
+]
+"""Figures of a trial; their functions stand in `elbowscrew.view.figure_names`."""
+FigureChoice = Literal[FigureName, "all"]
+"""Figures of a trial, and all that it has anything for."""
 ExportName = Literal["parquet", "mat", "sto"]
 
 CLOSED_LAWS: Final[tuple[ClosedLaw, ...]] = get_args(ClosedLaw)

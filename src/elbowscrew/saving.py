@@ -26,7 +26,7 @@ from elbowscrew.results.summary_reading import JOINT, SUMMARY
 from elbowscrew.results.trial_views import view_of_analysis
 from elbowscrew.results.writing import write_table, write_tables
 from elbowscrew.settings import Settings
-from elbowscrew.view.figure_names import SAVED_FIGURES
+from elbowscrew.view.figure_names import caption_file, chosen_figures
 from elbowscrew.view.trial_view import TrialView
 
 if TYPE_CHECKING:
@@ -50,6 +50,15 @@ def analyze_file(
     except ElbowscrewError as error:
         msg = f"{path}: {error}"
         raise type(error)(msg) from error
+
+
+def check_output(settings: Settings) -> None:
+    """Raise `UsageError` if what is to be written needs a library or a font that is not installed."""
+    check_exports(settings.export)
+    if settings.font is not None:
+        from elbowscrew.plots.style import known_font
+
+        known_font(settings.font)
 
 
 def save_analysis(
@@ -76,7 +85,7 @@ def save_analysis(
         Where to; it is made.
     force : bool
         Replace an earlier result.
-    figure_formats : sequence of {"png", "svg", "pdf"}, optional
+    figure_formats : sequence of {"png", "svg", "pdf", "tiff", "eps"}, optional
         Those of the analysis' settings by default; may be empty.
     exports : sequence of {"parquet", "mat", "sto"}, optional
         Formats of other programs to write the tables in, too; those of the analysis' settings by default.
@@ -125,9 +134,10 @@ def write_result(
     with result_folder(target, force=force) as staged:
         write_tables(staged, analysis)
         _write_json(staged / JOINT, joint)
-        view = view_of_analysis(analysis, found, joint)
+        figures = chosen_figures(analysis.settings.figures)
+        view = view_of_analysis(analysis, found, joint, figures if formats else ())
         if formats:
-            _write_figures(staged, view, formats)
+            _write_figures(staged, view, figures, formats)
         write_exports(staged, analysis, found, others)
         _write_json(staged / SUMMARY, found)
         if report:
@@ -150,10 +160,10 @@ def _write_json(path: Path, content: Mapping[str, object]) -> None:
     write_new(path, text.encode("utf-8", "replace"))
 
 
-def _write_figures(staged: Path, view: TrialView, formats: Sequence[str]) -> None:
+def _write_figures(staged: Path, view: TrialView, figures: Sequence[str], formats: Sequence[str]) -> None:
     from elbowscrew.report.figure_files import figure_files
 
-    _write_all(staged / "figures", figure_files(view, SAVED_FIGURES, formats))
+    _write_all(staged / "figures", figure_files(view, figures, formats))
 
 
 def _write_all(folder: Path, files: Mapping[str, bytes]) -> None:
@@ -306,7 +316,7 @@ def save_comparison(
         Where to; it is made.
     force : bool
         Replace an earlier comparison.
-    figure_formats : sequence of {"png", "svg", "pdf"}, optional
+    figure_formats : sequence of {"png", "svg", "pdf", "tiff", "eps"}, optional
         Those of the settings by default; may be empty.
 
     Returns
@@ -356,7 +366,9 @@ def write_comparison(
         _write_json(staged / "compare.json", summary)
         if formats:
             from elbowscrew.plots.comparison import comparison_figure
+            from elbowscrew.report.captions import comparison_caption
             from elbowscrew.report.figure_files import files_of
 
-            _write_all(staged / "figures", files_of({"compare": lambda: comparison_figure(comparison)}, formats))
+            drawn = files_of({"compare": lambda: comparison_figure(comparison)}, formats, settings.font)
+            _write_all(staged / "figures", drawn | {caption_file("compare"): comparison_caption(comparison).encode()})
     return summary

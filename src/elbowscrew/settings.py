@@ -20,6 +20,7 @@ from elbowscrew.choices import (
     AngleUnit,
     BlendName,
     ExportName,
+    FigureChoice,
     FigureFormat,
     FileUnit,
     JointName,
@@ -173,6 +174,13 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
     angle_unit: AngleUnit = setting("deg", "Unit of angles in tables and figures.", OUTPUT)
     length_unit: LengthUnit = setting("mm", "Unit of lengths in tables and figures.", OUTPUT)
     figure_format: tuple[FigureFormat, ...] = setting(("png",), "Formats of the figures.", OUTPUT, min_length=1)
+    figures: tuple[FigureChoice, ...] | None = setting(
+        None, "Figures to draw, or all.", OUTPUT, metavar="NAMES",
+        shown="theta, euler_parameters, joint, slide, error, anatomy", min_length=1,
+    )  # fmt: skip
+    font: str | None = setting(
+        None, "Font of the figures: the name of an installed family.", OUTPUT, metavar="NAME", shown="DejaVu Sans"
+    )
     export: tuple[ExportName, ...] = setting((), "Also write the tables in these formats.", OUTPUT, shown="none")
     units: FileUnit | None = setting(None, "Unit of length, if the file states none.", BODIES)
     rotation: RotationType | None = setting(None, "Rotation type, if the file states none.", BODIES)

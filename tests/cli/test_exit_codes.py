@@ -46,8 +46,9 @@ def test_a_good_trial_ends_with_0_and_a_whole_result(take: Path, capsys: pytest.
     folder = take.parent / "take_elbowscrew"
     names = sorted(str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file())
     assert names == ["SHA256SUMS", "cycles.csv",
-                     "figures/axis.png", "figures/error.png", "figures/euler_parameters.png",
-                     "figures/joint.png", "figures/joint_angles.png", "figures/joint_axis.png", "figures/theta.png",
+                     "figures/error.caption.txt", "figures/error.png", "figures/euler_parameters.caption.txt",
+                     "figures/euler_parameters.png", "figures/joint.caption.txt", "figures/joint.png",
+                     "figures/slide.caption.txt", "figures/slide.png", "figures/theta.caption.txt", "figures/theta.png",
                      "instantaneous.csv", "interpolation.csv", "joint.json", "joint_angles.csv", "keyframes.csv",
                      "repetitions.csv", "report.html", "screw.csv", "summary.json"]  # fmt: skip
     assert sorted(path.name for path in take.parent.iterdir()) == ["take.csv", "take_elbowscrew"]
@@ -74,7 +75,7 @@ def test_quiet_and_several_figure_formats(take: Path, capsys: pytest.CaptureFixt
     code, out, _ = run(capsys, "analyze", take, "-q", "--figure-format", "svg", "--figure-format", "pdf", "-o", "r")
     assert (code, out) == (0, "")
     kinds = {path.suffix for path in (take.parent / "r" / "figures").iterdir()}
-    assert kinds == {".svg", ".pdf"}
+    assert kinds == {".svg", ".pdf", ".txt"}
 
 
 def test_results_do_not_depend_on_when_they_are_made(take: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -37,8 +37,11 @@ def test_figures_go_where_they_are_asked_for(
     asked = ["report", str(batch), "--figures", "fig7,overlay", "--width", "single"]
     assert main([*asked, "--figure-format", "svg", "-o", "figs"]) == 0
     assert sorted(path.name for path in Path("figs").iterdir()) == [
+        "overlay.caption.txt",
         "overlay.svg",
+        "trial0_fig7.caption.txt",
         "trial0_fig7.svg",
+        "trial1_fig7.caption.txt",
         "trial1_fig7.svg",
     ]
     assert main([*asked, "--figure-format", "svg", "-o", "figs"]) == 6

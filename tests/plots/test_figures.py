@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from drawn_trials import elbow_landmarks
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.colors import to_rgba
@@ -125,7 +126,8 @@ def test_places_of_axes_that_are_one_line_are_at_the_mean() -> None:
 def test_every_axes_of_every_figure_has_labels_with_units(name: str, express_in: Any) -> None:
     wander = {"joint_type": "hinge", "wander_deg": 12.0} if name == "axis_path" else {}
     recording = simulate_trial(frames=80, inversion=40, gaps=1, **wander).recording  # type: ignore[arg-type]
-    figure = plots.FIGURES[name](analyze(recording, Settings(express_in=express_in)))
+    landmarks = elbow_landmarks() if name == "anatomy" else None
+    figure = plots.FIGURES[name](analyze(recording, Settings(express_in=express_in), landmarks=landmarks))
     figure.draw_without_rendering()
     labels = [ax.get_ylabel() for ax in figure.axes if ax.get_ylabel()] + [
         ax.get_xlabel() for ax in figure.axes if ax.get_xlabel()

@@ -11,9 +11,13 @@ from drawn_trials import KINDS, drawn_trial
 from ink import faults_of
 from matplotlib.figure import Figure
 
-from elbowscrew.plots.registry import figure_function, has_figure
+from elbowscrew import compare, simulate_trial
+from elbowscrew.motion.interpolation.keyframe_sources import ComparisonPlan
+from elbowscrew.plots.comparison import comparison_figure
+from elbowscrew.plots.overlay import mean_curve, overlay_figure
+from elbowscrew.plots.registry import FIGURES
 from elbowscrew.plots.style import letter, new_figure, publication_style, settle
-from elbowscrew.view.figure_names import FIGURE_ENTRIES
+from elbowscrew.view.figure_names import FIGURE_ENTRIES, has_figure
 
 WIDTHS_MM = (70.0, 85.0, 120.0, 170.0, 180.0)
 NAMES = tuple(FIGURE_ENTRIES)
@@ -32,10 +36,21 @@ def test_nothing_is_cut_off_or_drawn_over(name: str) -> None:
     found = {}
     for width, kind in widths_and_kinds(name):
         with publication_style():
-            figure = figure_function(name)(drawn_trial(kind), width_mm=width)
+            figure = FIGURES[name](drawn_trial(kind), width_mm=width)
             settle(figure)
             found[width, kind] = faults_of(figure)
     assert not {at: faults for at, faults in found.items() if faults}
+
+
+def test_nor_are_trials_and_models_beside_each_other() -> None:
+    curves = [mean_curve(drawn_trial(kind)) for kind in ("short", "multi-cycle", "two axes")]
+    plan = ComparisonPlan(laws=("linear", "cycloidal"), counts=(2, 3), data=("raw", "decimated"))
+    compared = compare(simulate_trial(frames=120, inversion=55).recording, plan=plan)
+    with publication_style():
+        figures = [overlay_figure([one for one in curves if one], width_mm=width) for width in (60.0, 170.0)]
+        for figure in (*figures, comparison_figure(compared)):
+            settle(figure)
+            assert faults_of(figure) == []
 
 
 def drawn(figure: Figure) -> str:
@@ -63,3 +78,5 @@ def test_what_is_wrong_is_seen() -> None:
         assert "legend over line 'line'" in drawn(figure)
         figure.legend(["line"], loc="lower left")
         assert "legend over an axes" in drawn(figure)
+        ax.axhspan(0.1, 0.2, color=(1.0, 0.0, 0.0, 0.5))
+        assert "is transparent" in drawn(figure)

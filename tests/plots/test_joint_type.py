@@ -16,8 +16,8 @@ from elbowscrew.geometry.quaternion import rotate
 from elbowscrew.model.joint_type import Measure
 from elbowscrew.plots import joint_angles
 from elbowscrew.plots import joint_type as drawing
-from elbowscrew.plots.registry import has_figure
 from elbowscrew.results.trial_views import view_of
+from elbowscrew.view.figure_names import has_figure
 from elbowscrew.view.joint_space import carried, joint_in_body
 
 SHORT: dict[str, Any] = {"frames": 120, "inversion": 60, "proximal": "moving", "seed": 4}
@@ -150,8 +150,8 @@ def test_angles_over_time_and_against_each_other(elbow: Analysis) -> None:
     drawn = labels(first)
     for k in range(2):
         assert drawn[f"Angle {k + 1}"] == pytest.approx(np.degrees(found.angle[:, k]))
-    assert labels(rotation)["residual"] == pytest.approx(np.degrees(found.residual_rotation))
-    assert labels(translation)["residual"] == pytest.approx(1000.0 * found.residual_translation)
+    assert labels(rotation)["of each frame"] == pytest.approx(np.degrees(found.residual_rotation))
+    assert labels(translation)["of each frame"] == pytest.approx(1000.0 * found.residual_translation)
     line = together.get_lines()[0]
     assert np.asarray(line.get_xdata()) == pytest.approx(np.degrees(found.angle[:, 0]))
     assert np.asarray(line.get_ydata()) == pytest.approx(np.degrees(found.angle[:, 1]))

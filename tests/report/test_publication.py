@@ -9,19 +9,20 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from drawn_trials import drawn_trial
 from finished_results import flexion_only
 from matplotlib.figure import Figure
 from PIL import Image
 
-from elbowscrew import analyze, plots, save_analysis, simulate_trial
+from elbowscrew import analyze, save_analysis, simulate_trial
 from elbowscrew.errors import OutputError, SettingError, UsageError
 from elbowscrew.plots.overlay import PERCENT, MeanCurve, mean_curve, plot_overlay
-from elbowscrew.plots.registry import figure_function
+from elbowscrew.plots.registry import FIGURES
 from elbowscrew.report.figure_files import figure_files
 from elbowscrew.report.names import figure_names, width_mm
 from elbowscrew.report.publication import save_publication_figures
 from elbowscrew.results.trial_views import view_of_result
-from elbowscrew.view.figure_names import FIGURE_CHOICES
+from elbowscrew.view.figure_names import FIGURE_CHOICES, USUAL_FIGURES
 
 POINTS_PER_MM = 72.0 / 25.4
 SINGLES = tuple(name for name in FIGURE_CHOICES if name != "overlay")
@@ -39,7 +40,7 @@ def wandering(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_figures_have_the_width_asked_for_and_carry_their_fonts(
     result: Path, wandering: Path, name: str, width: float
 ) -> None:
-    trial = view_of_result(wandering if name == "axis_path" else result)
+    trial = drawn_trial("two axes") if name == "anatomy" else view_of_result(wandering, [name])
     files = figure_files(trial, [name], ["pdf", "svg", "png"], width)
     pdf = files[f"{name}.pdf"]
     box = re.search(rb"/MediaBox \[ ?0 0 ([\d.]+) ([\d.]+) ?\]", pdf)
@@ -58,23 +59,25 @@ def test_figures_have_the_width_asked_for_and_carry_their_fonts(
 def test_figures_of_the_result_folder_are_made_again_to_the_byte(tmp_path: Path) -> None:
     analysis = analyze(simulate_trial(frames=100, inversion=50, seed=3).recording)
     folder = save_analysis(analysis, tmp_path / "r", figure_formats=("png", "svg"), report=False)
-    again = figure_files(view_of_result(folder), tuple(plots.FIGURES), ("png", "svg"))
+    again = figure_files(view_of_result(folder), USUAL_FIGURES, ("png", "svg"))
     assert again == {path.name: path.read_bytes() for path in (folder / "figures").iterdir()}
-    assert len(again) == 14
+    assert len(again) == 3 * 5
 
 
 def test_figures_are_the_same_with_one_core_and_with_more(result: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    trial = view_of_result(result)
+    trial = view_of_result(result, SINGLES)
     monkeypatch.setenv("OMP_NUM_THREADS", "1")
     alone = figure_files(trial, SINGLES, ("png",))
     monkeypatch.delenv("OMP_NUM_THREADS")
     assert figure_files(trial, SINGLES, ("png",)) == alone
-    assert set(alone) == {f"{name}.png" for name in SINGLES if name != "axis_path"}
+    assert set(alone) == {
+        f"{name}.{kind}" for name in SINGLES if name not in ("axis_path", "anatomy") for kind in ("png", "caption.txt")
+    }
 
 
 def test_the_papers_figures_show_measured_and_modeled_at_one_scale(result: Path) -> None:
     trial = view_of_result(result)
-    drawn = {name: figure_function(name)(trial).axes[0] for name in ("fig7", "fig8", "fig9", "fig10")}
+    drawn = {name: FIGURES[name](trial).axes[0] for name in ("fig7", "fig8", "fig9", "fig10")}
     lines = {name: [np.asarray(line.get_ydata()) for line in ax.get_lines()] for name, ax in drawn.items()}
     assert lines["fig7"][0] == pytest.approx(np.degrees(trial.angle), nan_ok=True)
     assert lines["fig8"][0] == pytest.approx(np.degrees(trial.modeled_angle), nan_ok=True)
@@ -117,10 +120,9 @@ def test_figures_of_several_results_have_names_of_their_own(result: Path, tmp_pa
     made = save_publication_figures(places, out, ["fig7", "overlay"], ["svg"], width_mm=85.0)
     assert made.left_out == ()
     assert {path.name for path in made.files} == {
-        "Trial_1_fig7.svg",
-        "trial_1~2_fig7.svg",
-        "trial_fig7.svg",
-        "overlay.svg",
+        f"{name}.{kind}"
+        for name in ("Trial_1_fig7", "trial_1~2_fig7", "trial_fig7", "overlay")
+        for kind in ("svg", "caption.txt")
     }
     assert {path.parent for path in made.files} == {out}
     before = (out / "overlay.svg").read_bytes()
@@ -142,12 +144,15 @@ def test_an_overlay_leaves_out_what_has_no_cycle_and_says_so(result: Path, tmp_p
     second = shutil.copytree(result, tmp_path / "second")
     made = save_publication_figures([result, flexion, second], tmp_path, ["overlay"], ["svg"], width_mm=85.0)
     assert made.left_out == (flexion,)
-    assert made.files == (tmp_path / "overlay.svg",)
+    assert made.files == (tmp_path / "overlay.svg", tmp_path / "overlay.caption.txt")
 
 
 def test_names_and_widths() -> None:
     assert figure_names(["theta, fig7", "theta"]) == ("theta", "fig7")
     assert (width_mm("single"), width_mm("double"), width_mm("90"), width_mm("120.5mm")) == (85.0, 170.0, 90.0, 120.5)
+    assert (width_mm("one-and-half"), width_mm("springer-single"), width_mm("elsevier-double")) == (120.0, 84.0, 190.0)
+    assert figure_names(["all"]) == SINGLES
+    assert figure_names(["overlay,all"]) == (*SINGLES, "overlay")
     for bad in ("wide", "10", "nan", "1e9", "-85"):
         with pytest.raises(UsageError, match="--width"):
             width_mm(bad)

@@ -11,8 +11,9 @@ from typing import get_args
 import pytest
 
 from elbowscrew import Settings, plots
+from elbowscrew.choices import FigureName
 from elbowscrew.errors import OutputError
-from elbowscrew.plots.registry import figure_function
+from elbowscrew.plots.registry import FIGURES
 from elbowscrew.results.exporting import EXPORTS
 from elbowscrew.results.result_files import RESULT_FILES
 from elbowscrew.results.staging import result_folder, write_files
@@ -170,14 +171,16 @@ def test_the_current_folder_is_no_result_folder(tmp_path: Path, monkeypatch: pyt
 
 def test_a_result_may_hold_every_saved_figure_and_export() -> None:
     drawn = {name.removeprefix("figures/") for name in RESULT_FILES if name.startswith("figures/")}
-    assert drawn == {f"{name}.{kind}" for name in plots.FIGURES for kind in ("png", "svg", "pdf")}
+    kinds = ("png", "svg", "pdf", "tiff", "eps", "caption.txt")
+    assert drawn == {f"{name}.{kind}" for name in plots.FIGURES for kind in kinds}
+    assert set(FIGURE_ENTRIES) == set(get_args(FigureName))
     assert {"screw.csv", "screw.parquet", "trial.mat", "joint_angle.sto"} <= set(RESULT_FILES)
     assert set(EXPORTS) == set(get_args(get_args(Settings.model_fields["export"].annotation)[0]))
 
 
 @pytest.mark.parametrize("name", FIGURE_ENTRIES)
 def test_every_figure_entry_names_a_function(name: str) -> None:
-    assert callable(figure_function(name))
+    assert callable(FIGURES[name])
 
 
 def test_files_are_replaced_on_request_only_and_only_ours(tmp_path: Path) -> None:

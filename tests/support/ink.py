@@ -1,4 +1,4 @@
-"""What is wrong with the look of a figure: ink at the edge, texts over each other, legends over what they explain."""
+"""What is wrong with a figure's look: ink at the edge, text over text, legends over what they explain, transparency."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import Collection
+from matplotlib.colors import to_rgba_array
 from matplotlib.figure import Figure
 from matplotlib.legend import Legend
 from matplotlib.lines import Line2D
@@ -40,7 +41,16 @@ def faults_of(figure: Figure) -> list[str]:
             found.append(f"{_named(one)} over {_named(other)}")
     for legend in _legends(figure):
         found += _under(legend, figure)
-    return found
+    return found + [f"{artist} is transparent" for artist in figure.findobj() if _is_transparent(artist)]
+
+
+def _is_transparent(artist: Any) -> bool:
+    """Whether it lets through what is behind it, as EPS cannot; what is not drawn at all is not meant."""
+    if artist.get_alpha() not in (None, 0, 1):
+        return True
+    colors = [getattr(artist, name)() for name in ("get_facecolor", "get_edgecolor") if hasattr(artist, name)]
+    opacity = np.concatenate([np.atleast_2d(to_rgba_array(color))[:, 3] for color in colors] or [np.ones(1)])
+    return bool(((opacity > 0.0) & (opacity < 1.0)).any())
 
 
 def _inked_sides(pixels: NDArray[np.uint8]) -> Iterator[str]:
@@ -122,9 +132,17 @@ def _under(legend: Legend, figure: Figure) -> Iterator[str]:
         elif isinstance(ax, Axes3D) and legend.axes is not ax and _shared(box, _ink_box(ax)):
             yield "legend over a space"
         else:
+            if not isinstance(ax, Axes3D) and not _within(box, ax.bbox):
+                yield f"legend over the edge of {ax.get_ylabel()!r}"
             for kind, points in _drawn(ax):
                 if _crosses(points, box):
                     yield f"legend over {kind} of {ax.get_ylabel()!r}"
+
+
+def _within(inner: Any, outer: Any) -> bool:
+    return bool(
+        inner.x0 >= outer.x0 and inner.x1 <= outer.x1 + 1.0 and inner.y0 >= outer.y0 and inner.y1 <= outer.y1 + 1.0
+    )
 
 
 def _ink_box(ax: Axes) -> Bbox:

@@ -51,14 +51,13 @@ def analyze(
     from elbowscrew.cli import render
     from elbowscrew.configuring import settings_from
     from elbowscrew.reading.landmarks import read_landmarks
-    from elbowscrew.results.exporting import check_exports
     from elbowscrew.results.staging import check_result_folder
-    from elbowscrew.saving import analyze_file, write_result
+    from elbowscrew.saving import analyze_file, check_output, write_result
 
     settings = settings_from(config, given)
     target = output if output is not None else Path(f"{trial.stem}_elbowscrew")
     check_result_folder(target, force=force)  # before the work, not after it
-    check_exports(settings.export)
+    check_output(settings)
     analysis = analyze_file(
         trial,
         settings,

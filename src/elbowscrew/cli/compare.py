@@ -16,7 +16,7 @@ _MODELS = "Model"
 
 @settings_options(
     "joint", "proximal", "distal", "proximal-markers", "distal-markers", "units", "rotation", "rate", "columns",
-    "lowpass", "inversion", "phases", "tolerance", "radius", "figure-format",
+    "lowpass", "inversion", "phases", "tolerance", "radius", "figure-format", "font",
     defaults={"lowpass": "by residual analysis, 6 at most", "tolerance": "2mm"},
 )  # fmt: skip
 def compare(
@@ -118,7 +118,7 @@ def compare(
     from elbowscrew.results.recording_summary import warnings_summary
     from elbowscrew.results.result_files import COMPARISON
     from elbowscrew.results.staging import check_result_folder
-    from elbowscrew.saving import write_comparison
+    from elbowscrew.saving import check_output, write_comparison
 
     settings = settings_from(config, given)
     plan = options.comparison_plan(
@@ -127,6 +127,7 @@ def compare(
     )
     target = output if output is not None else Path(f"{trial.resolve().name.removesuffix(trial.suffix)}_compare")
     check_result_folder(target, force=force, kind=COMPARISON)  # before the work, not after it
+    check_output(settings)
     if trial.is_dir():
         from elbowscrew.comparing import compare_trials
 

@@ -9,7 +9,8 @@ import typer
 
 from elbowscrew.choices import DRAWN_FORMATS
 from elbowscrew.cli import options
-from elbowscrew.view.figure_names import FIGURE_CHOICES, FIGURE_ENTRIES, OVERLAY
+from elbowscrew.report.names import WIDTHS_MM
+from elbowscrew.view.figure_names import ALL, FIGURE_CHOICES, FIGURE_ENTRIES, OVERLAY
 
 _PAGES, _FIGURES = "Pages", "Figures for publication"
 
@@ -28,14 +29,15 @@ def report(
         typer.Option(
             metavar="NAMES",
             rich_help_panel=_FIGURES,
-            help=f"Write these figures in place of pages, with commas: {', '.join(FIGURE_ENTRIES)} (the paper's), "
-            f"{OVERLAY} (all trials, mean and deviation).",
+            help=f"Write these figures in place of pages, with commas: {', '.join(FIGURE_ENTRIES)} (the last four "
+            "the paper's), "
+            f"{OVERLAY} (all trials, mean and deviation); {ALL}.",
         ),
     ] = None,
     figure_format: Annotated[
         list[str] | None,
         typer.Option(
-            metavar="png,svg,pdf",
+            metavar="png,svg,pdf,tiff,eps",
             rich_help_panel=_FIGURES,
             help="Separate with commas, or repeat the option.",
             show_default="pdf",
@@ -46,7 +48,7 @@ def report(
         typer.Option(
             metavar="WIDTH",
             rich_help_panel=_FIGURES,
-            help="One column (single, 85 mm), two (double, 170 mm), or millimeters.",
+            help=f"Millimeters, or a name: {', '.join(WIDTHS_MM)}.",
         ),
     ] = "double",
     output: Annotated[
@@ -58,6 +60,15 @@ def report(
             rich_help_panel=_FIGURES,
             help="Folder of the figures.",
             show_default="elbowscrew_figures in the current folder",
+        ),
+    ] = None,
+    font: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME",
+            rich_help_panel=_FIGURES,
+            help="Font: the name of an installed family.",
+            show_default="that of the analysis",
         ),
     ] = None,
     force: Annotated[
@@ -75,7 +86,7 @@ def report(
     from elbowscrew.report.names import figure_names, width_mm
 
     if not figures:
-        given = {"--figure-format": figure_format, "--output": output, "--force": force or None}
+        given = {"--figure-format": figure_format, "--output": output, "--font": font, "--force": force or None}
         idle = [name for name, value in given.items() if value is not None]
         if idle or width != "double":
             msg = f"{', '.join(idle or ['--width'])}: belongs to --figures; name some of {', '.join(FIGURE_CHOICES)}"
@@ -89,10 +100,15 @@ def report(
         formats = list(options.parts("figure-format", figure_format) or ("pdf",))
         strange = [one for one in formats if one not in DRAWN_FORMATS]
         if strange:
-            msg = f"--figure-format {', '.join(strange)}: expected png, svg or pdf, as --figures asks for figures"
+            msg = (
+                f"--figure-format {', '.join(strange)}: expected {', '.join(DRAWN_FORMATS)}, as --figures asks for "
+                "figures"
+            )
             raise UsageError(msg)
         folder = output if output is not None else Path("elbowscrew_figures")
-        published = save_publication_figures(results_in(results), folder, names, formats, width_mm=wide, force=force)
+        published = save_publication_figures(
+            results_in(results), folder, names, formats, width_mm=wide, font=font, force=force
+        )
         written = published.files
         for path in published.left_out:
             name = one_line(str(path))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any, Final, NamedTuple, cast
 
 import numpy as np
@@ -44,6 +45,32 @@ def color_scale(view: TrialView) -> ScalarMappable:
     """Return the color scale of the angle, for axes and a color bar."""
     angle = angle_in(view.angle[view.axis_known], view.settings.angle_unit)
     return ScalarMappable(Normalize(float(angle.min()), float(angle.max())), style.COLORMAP)
+
+
+def with_instantaneous_axes(view: TrialView) -> TrialView:
+    """Give the view with the instantaneous axes in place of the finite ones, and with the mean of theirs.
+
+    The mean line is the one from which they are tilted, and which they pass, the least by the sum of squares; an axis
+    counts by the square of its angular velocity, as it is known the better the faster the joint turns.
+    """
+    table = view.extra["instantaneous"]
+    direction, point = table["axis_direction"], table["axis_point"]
+    known = np.isfinite(direction).all(axis=1)
+    n, p = direction[known], point[known]
+    weight = table["angular_velocity"][known] ** 2
+    mean = np.linalg.eigh((weight * n.T) @ n)[1][:, 2]
+    mean = mean if float(mean @ view.mean_direction) >= 0.0 else -mean
+    across = np.eye(3) - n[:, :, None] * n[:, None, :]
+    normal = np.einsum("k,kij->ij", weight, across)
+    # Along the mean nothing tells where: the point nearest the origin.
+    center = np.linalg.lstsq(normal, np.einsum("k,kij,kj->i", weight, across, p), rcond=1e-9)[0]
+    return replace(
+        view,
+        axis_direction=direction,
+        axis_point=point,
+        mean_direction=mean,
+        mean_point=center - (center @ mean) * mean,
+    )
 
 
 def plot_axes_in_space(ax: Axes3D, analysis: Analysis | TrialView) -> Axes3D:

@@ -30,8 +30,9 @@ _BETWEEN_TWO: Final = {
 _LEGEND_ROOM: Final = 0.45
 _MARKERS: Final = ("o", "s", "^", "D", "v", "P", "X", "*", "h")
 _DASHES: Final = ("-", (0, (5, 2)), (0, (1, 1.5)), (0, (5, 1.5, 1, 1.5)), (0, (2, 2)))
-# Okabe and Ito, apart in grey by lightness as well; markers and dashes tell them apart without either.
-_COLORS: Final = ("#000000", "#D55E00", "#0072B2", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#666666", "#882255")
+# A method has its color in every panel, the joint's own angles that of the joint's axis; what is no method is grey.
+_COLORS: Final = (style.BLUE, "#56B4E9", "#6A3D9A", "#A6611A", "#8F8F00", style.AXES[0]["color"])
+_GREYS: Final = (style.BLACK, "#555555", "#808080", "#A6A6A6")
 
 
 class _Errors(NamedTuple):
@@ -130,7 +131,14 @@ def plot_laws(ax: Axes, errors: _Errors, unit: LengthUnit) -> Axes:
                 best = int(np.argmin(mine.value))
                 label = f"{count} keyframes" if row == 0 else None
                 spread = None if np.isnan(mine.spread[best]) else mine.spread[best]
-                ax.errorbar(mine.value[best], row, xerr=spread, label=label, capsize=2.0, **series_look(k, line=False))
+                ax.errorbar(
+                    mine.value[best],
+                    row,
+                    xerr=spread,
+                    label=label,
+                    capsize=2.0,
+                    **series_look(k, line=False, grey=True),
+                )
     ax.set_yticks(range(len(laws)), laws)
     ax.invert_yaxis()
     ax.set_xscale("log")
@@ -140,14 +148,15 @@ def plot_laws(ax: Axes, errors: _Errors, unit: LengthUnit) -> Axes:
     ax.set_xlabel(f"RMS displacement ({unit})")
     ax.set_title("each law, best method", loc="center", fontweight="normal")
     ax.grid(axis="y", linewidth=0.4, color="#DDDDDD")
-    ax.legend(loc="best", title="in each phase", title_fontsize=7.5, frameon=True, edgecolor="none", framealpha=0.9)
+    ax.legend(loc="best", title="in each phase", title_fontsize=7.5, frameon=True, edgecolor="none")
     return ax
 
 
 def plot_keyframe_sources(ax: Axes, errors: _Errors, unit: LengthUnit) -> Axes:
     """Draw the error over the number of keyframes, taken from the recording as it is, filtered, and thinned."""
     for k, name in enumerate(dict.fromkeys(sorted(errors.data.tolist(), key=_source_order))):
-        _curve(ax, errors.where(errors.data == name), k, f"{name} frame" if name.startswith("every") else name)
+        label = f"{name} frame" if name.startswith("every") else name
+        _curve(ax, errors.where(errors.data == name), k, label, grey=True)
     ax.set_title("keyframes from, best model", loc="center", fontweight="normal")
     return _over_count(ax, unit)
 
@@ -156,10 +165,14 @@ def plot_selections(ax: Axes, trials: Sequence[dict[str, Selection]], unit: Leng
     """Draw the largest error over the number of keyframes, where these are chosen best."""
     drawn: set[str] = set()
     for selections in trials:
-        for k, (method, selection) in enumerate(selections.items()):
+        for method, selection in selections.items():
             label = None if method in drawn else f"{METHOD_LABELS[method]}, constant speed between"
             drawn.add(method)
-            look = {**series_look(k, line=True), "linewidth": 1.0 if len(trials) > 1 else 1.3, "markersize": 3.0}
+            look = {
+                **series_look(list(METHOD_LABELS).index(method), line=True),
+                "linewidth": 1.0 if len(trials) > 1 else 1.3,
+                "markersize": 3.0,
+            }
             ax.plot(selection.count, length_in(selection.largest, unit), label=label, **look)
     if trials and trials[0]:
         tolerance = float(length_in(np.array(next(iter(trials[0].values())).tolerance), unit))
@@ -171,9 +184,10 @@ def plot_selections(ax: Axes, trials: Sequence[dict[str, Selection]], unit: Leng
             xytext=(3.0, 2.0),
             textcoords="offset points",
         )
-        ax.legend(loc="upper right")
+        ax.legend(loc="upper right", handlelength=1.7, handletextpad=0.5)
     ax.set_yscale("log")
     plain_ticks(ax.yaxis)
+    _leave_room(ax, *ax.get_ylim())
     ax.xaxis.set_major_locator(MaxNLocator(integer=True))
     ax.set_xlabel("Keyframes in all, chosen best (–)")
     ax.set_ylabel(f"Largest RMS displacement ({unit})")
@@ -187,17 +201,18 @@ def _source_order(name: str) -> tuple[int, int]:
     return (0 if name == "raw" else 1), 0
 
 
-def _curve(ax: Axes, errors: _Errors, k: int, label: str) -> None:
+def _curve(ax: Axes, errors: _Errors, k: int, label: str, *, grey: bool = False) -> None:
     if errors.value.size:
         counts, value, spread = errors.best_by_count()
         yerr = None if np.isnan(spread).all() else np.nan_to_num(spread)
-        ax.errorbar(counts, value, yerr=yerr, label=label, capsize=2.0, **series_look(k, line=True))
+        ax.errorbar(counts, value, yerr=yerr, label=label, capsize=2.0, **series_look(k, line=True, grey=grey))
 
 
-def series_look(k: int, *, line: bool) -> dict[str, Any]:
+def series_look(k: int, *, line: bool, grey: bool = False) -> dict[str, Any]:
     """Look of the k-th of several series: color, marker and dashes, each of which alone tells them apart."""
+    colors = _GREYS if grey else _COLORS
     return {
-        "color": _COLORS[k % len(_COLORS)],
+        "color": colors[k % len(colors)],
         "marker": _MARKERS[k % len(_MARKERS)],
         "markersize": 4.5,
         "markerfacecolor": "white",
@@ -213,7 +228,7 @@ def _over_count(ax: Axes, unit: LengthUnit) -> Axes:
     ax.set_xlabel("Keyframes in each phase (–)")
     ax.set_ylabel(f"RMS displacement ({unit})")
     _leave_room(ax, *ax.get_ylim())
-    ax.legend(loc="upper right", ncols=2, columnspacing=1.2, handlelength=2.2)
+    ax.legend(loc="upper right", ncols=2, columnspacing=0.8, handlelength=1.7, handletextpad=0.5)
     return ax
 
 

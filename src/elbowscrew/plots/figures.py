@@ -11,6 +11,7 @@ from mpl_toolkits.mplot3d.axes3d import Axes3D
 from elbowscrew.model import Analysis
 from elbowscrew.plots import axis, joint, series, style
 from elbowscrew.results.trial_views import view_of
+from elbowscrew.view.long_trials import shown_part
 from elbowscrew.view.trial_view import TrialView
 
 WIDTH_MM: Final = 170.0
@@ -30,23 +31,30 @@ class MakeFigure(Protocol):
 def theta_figure(analysis: Analysis | TrialView, *, width_mm: float = WIDTH_MM) -> Figure:
     """Make the figure of measured and modeled angle over time with keyframes."""
     view = view_of(analysis)
+    shown, stretch = shown_part(view)
     figure = style.new_figure(width_mm, 62.0 if width_mm < NARROW_MM else 76.0)
-    ax = series.plot_theta(figure.add_subplot(), view)
-    style.legend(figure, ax)
+    panels = series.overview_grid(figure, view, stretch, 1)
+    series.plot_theta(panels[-1], shown)
+    if stretch is not None:
+        style.letter(*panels)
+    style.legend(figure, *panels)
     return figure
 
 
 def euler_parameters_figure(analysis: Analysis | TrialView, *, width_mm: float = WIDTH_MM) -> Figure:
     """Make the figure of measured and modeled e0..e3 over time."""
     view = view_of(analysis)
-    narrow = width_mm < NARROW_MM
-    figure = style.new_figure(width_mm, 140.0 if narrow else 100.0)
-    panels = figure.subplots(4 if narrow else 2, 1 if narrow else 2, sharex=True).ravel()
-    for component, ax in enumerate(panels):
-        series.plot_euler_parameter(ax, view, component)
-    for ax in panels[: 3 if narrow else 2]:
+    shown, stretch = shown_part(view)
+    columns = 1 if width_mm < NARROW_MM else 2
+    figure = style.new_figure(width_mm, 140.0 if columns == 1 else 100.0)
+    panels = series.overview_grid(figure, view, stretch, 4 // columns, columns=columns)
+    for component, ax in enumerate(panels[-4:]):
+        series.plot_euler_parameter(ax, shown, component)
+    for ax in panels[-4:-columns]:
         ax.set_xlabel("")
-    style.legend(figure, panels[0])
+    if stretch is not None:
+        style.letter(*panels)
+    style.legend(figure, *panels)
     return figure
 
 
@@ -73,6 +81,11 @@ def axis_figure(analysis: Analysis | TrialView, *, width_mm: float = WIDTH_MM) -
     style.letter(space, directions, positions)
     style.legend(figure, space, below=True)
     return figure
+
+
+def instantaneous_axes_figure(analysis: Analysis | TrialView, *, width_mm: float = WIDTH_MM) -> Figure:
+    """Make the figure of the instantaneous axes: in space, and their directions and positions about their mean."""
+    return axis_figure(axis.with_instantaneous_axes(view_of(analysis)), width_mm=width_mm)
 
 
 def joint_axis_figure(analysis: Analysis | TrialView, *, width_mm: float = WIDTH_MM) -> Figure:

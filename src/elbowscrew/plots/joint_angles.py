@@ -13,11 +13,12 @@ from elbowscrew.model.joint_type import JointAngles
 from elbowscrew.motion.difference import piercing
 from elbowscrew.plots import style
 from elbowscrew.plots.figures import NARROW_MM, WIDTH_MM
-from elbowscrew.plots.series import band, line, mark_tracking, over_time
+from elbowscrew.plots.series import band, line, mark_tracking, over_time, overview_grid, span_line
 from elbowscrew.quantities import angle_in, length_in
 from elbowscrew.results.trial_views import view_of
 from elbowscrew.view.decimation import drawn_rows
 from elbowscrew.view.joint_space import ANGLE_NAMES
+from elbowscrew.view.long_trials import shown_part
 from elbowscrew.view.scene import directions_across
 from elbowscrew.view.trial_view import TrialView
 
@@ -25,22 +26,22 @@ from elbowscrew.view.trial_view import TrialView
 def joint_angles_figure(analysis: Analysis | TrialView, *, width_mm: float = WIDTH_MM) -> Figure:
     """Make the figure of the joint's own angles over time, of two against each other, and of what is left."""
     view, angles = _with_angles(analysis)
+    shown, stretch = shown_part(view)
     both = angles.angle.shape[1] == 2
     if width_mm < NARROW_MM:
-        heights = [58.0, 36.0, 42.0, *([0.8 * width_mm] if both else [])]
-        figure = style.new_figure(width_mm, sum(heights))
-        grid = figure.add_gridspec(len(heights), 1, height_ratios=heights)
-        cells = [grid[k, 0] for k in range(len(heights))]
+        figure = style.new_figure(width_mm, 135.0 + 0.8 * width_mm * both)
+        grid = figure.add_gridspec(1 + both, 1, height_ratios=[135.0, 0.8 * width_mm][: 1 + both])
+        cells = [grid[k, 0] for k in range(1 + both)]
     else:
         figure = style.new_figure(width_mm, 110.0)
-        grid = figure.add_gridspec(3, 2 if both else 1, width_ratios=[1.5, 1.0] if both else None)
-        cells = [*(grid[k, 0] for k in range(3)), *([grid[:2, 1]] if both else [])]
-    panels = [figure.add_subplot(cell) for cell in cells]
-    plot_joint_angles(panels[0], view).set_xlabel("")
-    plot_residual_rotation(panels[1], view).set_xlabel("")
-    plot_residual_translation(panels[2], view)
+        grid = figure.add_gridspec(3, 2, width_ratios=[1.5, 1.0]) if both else figure.add_gridspec(1, 1)
+        cells = [grid[:, 0], grid[:2, 1]] if both else [grid[0, 0]]
+    panels = overview_grid(figure, view, stretch, 3, cells[0], first=1.5)
+    plot_joint_angles(panels[-3], shown).set_xlabel("")
+    plot_residual_rotation(panels[-2], shown).set_xlabel("")
+    plot_residual_translation(panels[-1], shown)
     if both:
-        plot_angles_together(panels[3], view)
+        panels.append(plot_angles_together(figure.add_subplot(cells[1]), shown))
     style.letter(*panels)
     style.legend(figure, *panels)
     return figure
@@ -84,7 +85,7 @@ def plot_residual_translation(ax: Axes, analysis: Analysis | TrialView) -> Axes:
 
 
 def _plot_residual(ax: Axes, view: TrialView, values: Float, name: str) -> Axes:
-    line(ax, view.time_s, values, label="residual", **{**style.MEASURED, "linewidth": 0.6})
+    span_line(ax, view, values, label="of each frame")
     mark_tracking(ax, view)
     ax.set_ylabel(name.replace(" ", "\n", 1))
     ax.set_ylim(0.0, 1.08 * _largest(values))
@@ -104,7 +105,7 @@ def plot_angles_together(ax: Axes, analysis: Analysis | TrialView) -> Axes:
     first, second = angle_in(angles.angle[rows], unit).T
     ax.plot(first, second, color="#000000", linewidth=0.9)
     start = np.flatnonzero(np.isfinite(first) & np.isfinite(second))[:1]
-    ax.plot(first[start], second[start], marker="D", color=style.BLACK, markersize=4.0, linestyle="none", label="start")
+    ax.plot(first[start], second[start], label="start", **style.START)
     names = ANGLE_NAMES[2]
     ax.set_xlabel(f"{names[0]} ({unit})")
     ax.set_ylabel(f"{names[1]} ({unit})")

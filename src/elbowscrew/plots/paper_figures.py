@@ -15,6 +15,7 @@ from elbowscrew.plots import series, style
 from elbowscrew.plots.figures import WIDTH_MM, MakeFigure
 from elbowscrew.quantities import angle_in
 from elbowscrew.results.trial_views import view_of
+from elbowscrew.view.long_trials import shown_part
 from elbowscrew.view.trial_view import TrialView
 
 _DASHES: Final[tuple[Any, ...]] = ("-", (0, (5, 2)), (0, (1, 1.2)), (0, (6, 2, 1, 2)))
@@ -22,9 +23,11 @@ _DASHES: Final[tuple[Any, ...]] = ("-", (0, (5, 2)), (0, (1, 1.2)), (0, (6, 2, 1
 
 
 def _angle_figure(analysis: Analysis | TrialView, *, width_mm: float = WIDTH_MM, modeled: bool) -> Figure:
-    view = view_of(analysis)
+    whole = view_of(analysis)
+    view, stretch = shown_part(whole)
     figure = style.new_figure(width_mm, 0.32 * width_mm + 26.0)
-    ax = figure.add_subplot()
+    panels = series.overview_grid(figure, whole, stretch, 1)
+    ax = panels[-1]
     unit, time_s = view.settings.angle_unit, view.time_s
     rows = view.keyframes.row
     angle = angle_in(view.modeled_angle if modeled else view.angle, unit)
@@ -36,14 +39,16 @@ def _angle_figure(analysis: Analysis | TrialView, *, width_mm: float = WIDTH_MM,
     ax.set_ylabel(f"Angle θ ({unit})")
     _alike(ax, angle_in(view.angle, unit), angle_in(view.modeled_angle, unit))
     series.over_time(ax, time_s)
-    style.legend(figure, ax)
+    style.legend(figure, *panels)
     return figure
 
 
 def _euler_figure(analysis: Analysis | TrialView, *, width_mm: float = WIDTH_MM, modeled: bool) -> Figure:
-    view = view_of(analysis)
+    whole = view_of(analysis)
+    view, stretch = shown_part(whole)
     figure = style.new_figure(width_mm, 0.32 * width_mm + 26.0)
-    ax = figure.add_subplot()
+    panels = series.overview_grid(figure, whole, stretch, 1)
+    ax = panels[-1]
     time_s = view.time_s
     shown = view.modeled_euler_parameters if modeled else view.euler_parameters
     look = style.MODELED if modeled else style.MEASURED
@@ -55,7 +60,7 @@ def _euler_figure(analysis: Analysis | TrialView, *, width_mm: float = WIDTH_MM,
     ax.set_ylabel("Modeled $e_k$ (–)" if modeled else "Measured $e_k$ (–)")
     _alike(ax, view.euler_parameters, view.modeled_euler_parameters)
     series.over_time(ax, time_s)
-    style.legend(figure, ax)
+    style.legend(figure, *panels)
     return figure
 
 

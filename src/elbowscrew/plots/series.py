@@ -7,6 +7,8 @@ from typing import Any, Final
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
+from matplotlib.figure import Figure
+from matplotlib.gridspec import SubplotSpec
 
 from elbowscrew.choices import METHOD_LABELS
 from elbowscrew.geometry.arrays import Float
@@ -18,8 +20,10 @@ from elbowscrew.quantities import angle_in, length_in
 from elbowscrew.results.trial_views import view_of
 from elbowscrew.view.bands import is_seen
 from elbowscrew.view.decimation import drawn_band, drawn_rows
+from elbowscrew.view.long_trials import Stretch, envelope, stretch_of
 from elbowscrew.view.trial_view import TrialView
 
+OVERVIEW_MM: Final = 24.0
 _PIECE: Final = 500
 
 
@@ -71,6 +75,75 @@ def plot_rms_displacement(ax: Axes, analysis: Analysis | TrialView) -> Axes:
     return _plot_error(ax, view, values, "RMS displacement", unit)
 
 
+def overview_grid(
+    figure: Figure,
+    view: TrialView,
+    stretch: Stretch | None,
+    rows: int,
+    cell: SubplotSpec | None = None,
+    *,
+    columns: int = 1,
+    first: float = 1.0,
+) -> list[Axes]:
+    """Make panels over time; above those of a long trial's stretch one of the whole trial.
+
+    Parameters
+    ----------
+    figure : Figure
+        It grows where there is one panel more.
+    view : TrialView
+        The whole trial.
+    stretch : Stretch or None
+        What the other panels show of it.
+    rows, columns : int
+        How many they are.
+    cell : SubplotSpec, optional
+        Where they stand; the whole figure by default.
+    first : float
+        Height of the first row against the others.
+
+    Returns
+    -------
+    list of Axes
+        The overview, if there is one, and the panels, row by row.
+    """  # fmt: skip
+    above = stretch is not None
+    if above:
+        width, height = figure.get_size_inches()
+        figure.set_size_inches(width, height + OVERVIEW_MM / style.MM_PER_INCH)
+    ratios = [*([0.5] if above else []), first, *[1.0] * (rows - 1)]
+    shape: dict[str, Any] = {"nrows": len(ratios), "ncols": columns, "height_ratios": ratios}
+    grid = figure.add_gridspec(**shape) if cell is None else cell.subgridspec(**shape)
+    panels = [figure.add_subplot(grid[0, :])] if above else []
+    panels += [figure.add_subplot(grid[above + row, column]) for row in range(rows) for column in range(columns)]
+    if stretch is not None:
+        plot_overview(panels[0], view, stretch)
+    return panels
+
+
+def plot_overview(ax: Axes, view: TrialView, stretch: Stretch) -> Axes:
+    """Draw what the angle spans all through a long trial, and where the stretch is that is drawn in full."""
+    unit = view.settings.angle_unit
+    found = envelope(view, angle_in(view.angle, unit))
+    ax.fill_between(found.time_s, found.low, found.high, label="range of each part", **style.SPREAD)
+    ends = view.time_s[[stretch.first, stretch.end - 1]]
+    ax.axvspan(*ends, facecolor="white", edgecolor=style.BLACK, linewidth=1.0, zorder=2, label="part drawn in full")
+    rows = drawn_rows(angle_in(view.angle[stretch.first : stretch.end], unit)) + stretch.first
+    ax.plot(view.time_s[rows], angle_in(view.angle[rows], unit), **{**style.MEASURED, "linewidth": 0.6})
+    ax.set_ylabel(f"θ ({unit})")
+    return over_time(ax, view.time_s)
+
+
+def span_line(ax: Axes, view: TrialView, values: Float, *, label: str) -> Axes:
+    """Draw a series that jumps from frame to frame; of a long trial the range and the median of each part."""
+    if stretch_of(view) is None:
+        return line(ax, view.time_s, values, label=label, **{**style.MEASURED, "linewidth": 0.6})
+    found = envelope(view, values)
+    ax.fill_between(found.time_s, found.low, found.high, label="range of each part", **style.SPREAD)
+    ax.plot(found.time_s, found.middle, label="median of each part", **style.MEASURED)
+    return ax
+
+
 def mark_tracking(ax: Axes, view: TrialView) -> Axes:
     """Shade the frames without a measured pose: plain where they stay empty, hatched where they were filled in."""
     half = 0.5 / view.rate_hz
@@ -100,13 +173,14 @@ def _shade(ax: Axes, start: Float, end: Float, **look: Any) -> None:
 
 def _plot_error(ax: Axes, view: TrialView, values: Float, name: str, unit: str) -> Axes:
     time_s = view.time_s
-    line(ax, time_s, values, label="model against measurement", **style.MEASURED)
+    span_line(ax, view, values, label="model against measurement")
     if np.isfinite(values).any():
         level = float(np.sqrt(np.nanmean(values**2)))
         ax.axhline(level, **style.LEVEL)
         ax.set_title(f"RMS {level:.3g} {unit}", loc="right", fontweight="normal")
-    rows = view.keyframes.row
-    ax.plot(time_s[rows], values[rows], label="keyframes", **style.KEYFRAME)
+    if stretch_of(view) is None:
+        rows = view.keyframes.row
+        ax.plot(time_s[rows], values[rows], label="keyframes", **style.KEYFRAME)
     mark_tracking(ax, view)
     ax.set_ylabel(f"{name} ({unit})")
     ax.set_ylim(bottom=min(0.0, ax.get_ylim()[0]))
@@ -145,4 +219,4 @@ def over_time(ax: Axes, time_s: Float) -> Axes:
 
 def _model_label(view: TrialView) -> str:
     method = METHOD_LABELS.get(view.settings.model_method, view.settings.model_method)
-    return f"{method} through {view.keyframes.row.size} poses"
+    return f"{method} through {len(view.summary['interpolation']['keyframes'])} poses"

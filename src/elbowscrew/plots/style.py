@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from contextlib import AbstractContextManager
+from difflib import get_close_matches
 from itertools import pairwise
 from typing import Any, Final, cast
 
@@ -12,10 +13,12 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
-from matplotlib.font_manager import FontProperties
+from matplotlib.font_manager import FontProperties, fontManager
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.ticker import FixedLocator, MaxNLocator
 from matplotlib.transforms import Bbox
+
+from elbowscrew.errors import UsageError, shown
 
 # One color means one thing in all figures. From the palettes of Okabe and Ito and of Tol; line styles, markers and
 # lightness tell the lines apart in grey as well. No transparency, which EPS does not have.
@@ -43,6 +46,7 @@ PROXIMAL: Final[dict[str, Any]] = {
 }  # fmt: skip
 DISTAL: Final[dict[str, Any]] = {**PROXIMAL, "marker": "o", "markerfacecolor": "white", "markersize": 3.6}
 """Markers of the two bodies; the origin of each has the same look, larger."""
+START: Final[dict[str, Any]] = {"color": BLACK, "marker": "D", "markersize": 4.0, "linestyle": "none"}
 MOVING: Final[dict[str, Any]] = {"color": "#E6F0FA", "linewidth": 0.0, "zorder": -1}
 LOST: Final[dict[str, Any]] = {"color": "#F3D3CB", "linewidth": 0.0, "zorder": 0}
 FILLED: Final[dict[str, Any]] = {
@@ -61,8 +65,6 @@ _TEXT: Final = 7.5
 _SETTLED: Final = 4  # layouts at most
 _LEAST_AIR: Final = 2.0  # pixels
 _RC: Final[dict[Any, Any]] = {
-    "font.family": "sans-serif",
-    "font.sans-serif": ["DejaVu Sans"],
     "font.size": 8.0,
     "axes.labelsize": 8.0,
     "axes.titlesize": 8.0,
@@ -80,6 +82,10 @@ _RC: Final[dict[Any, Any]] = {
     "hatch.linewidth": 0.5,
     "legend.fontsize": _TEXT,
     "legend.frameon": False,
+    "legend.framealpha": 1.0,
+    "axes3d.xaxis.panecolor": "#F6F6F6",
+    "axes3d.yaxis.panecolor": "#F0F0F0",
+    "axes3d.zaxis.panecolor": "#F3F3F3",
     "legend.handlelength": 2.2,
     "legend.columnspacing": 1.4,
     "savefig.dpi": "figure",
@@ -92,9 +98,33 @@ _RC: Final[dict[Any, Any]] = {
 _DEFAULTS: Final[dict[Any, Any]] = {key: value for key, value in mpl.rcParamsDefault.items() if key != "backend"}
 
 
-def publication_style() -> AbstractContextManager[None]:
-    """Matplotlib settings of the figures, all of them and none of the user's, for a ``with`` block."""
-    return mpl.rc_context({**_DEFAULTS, **_RC})
+def publication_style(font: str | None = None) -> AbstractContextManager[None]:
+    """Matplotlib settings of the figures, all of them and none of the user's, for a ``with`` block.
+
+    Raises
+    ------
+    UsageError
+        If no family of that name is installed.
+    """
+    families = [] if font is None else [known_font(font)]
+    return mpl.rc_context({**_DEFAULTS, **_RC, "font.family": [*families, "DejaVu Sans"]})
+
+
+def known_font(name: str) -> str:
+    """Give a family by the name it has, whatever the case; what it lacks is taken from DejaVu Sans.
+
+    Raises
+    ------
+    UsageError
+        If none of that name is installed.
+    """
+    known = sorted({entry.name for entry in fontManager.ttflist})
+    found = next((one for one in known if one.casefold() == name.strip().casefold()), None)
+    if found is None:
+        near = get_close_matches(name, known, 3, 0.5) or known[:5]
+        msg = f"--font {shown(name)}: no such font is installed; there are, for example, {', '.join(near)}"
+        raise UsageError(msg)
+    return found
 
 
 def new_figure(width_mm: float, height_mm: float) -> Figure:

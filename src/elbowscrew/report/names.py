@@ -6,13 +6,24 @@ from collections.abc import Sequence
 from typing import Final
 
 from elbowscrew.errors import UsageError
-from elbowscrew.view.figure_names import FIGURE_CHOICES
+from elbowscrew.view.figure_names import ALL, FIGURE_CHOICES, FIGURE_ENTRIES, OVERLAY
 
-SINGLE_MM: Final = 85.0
-DOUBLE_MM: Final = 170.0
-"""Widths that fit one and two columns of all common journals, whose columns are 84 to 90 and 170 to 190 mm."""
+WIDTHS_MM: Final = {
+    "single": 85.0,
+    "one-and-half": 120.0,
+    "double": 170.0,
+    "elsevier-single": 90.0,
+    "elsevier-one-and-half": 140.0,
+    "elsevier-double": 190.0,
+    "springer-single": 84.0,
+    "springer-double": 174.0,
+    "ieee-single": 88.9,
+    "ieee-double": 181.9,
+    "plos-single": 132.0,
+    "plos-double": 190.5,
+}
+"""Widths of figures by name; the first three fit the columns of all common journals."""
 
-_WIDTHS: Final = {"single": SINGLE_MM, "double": DOUBLE_MM}
 _LEAST_MM, _MOST_MM = 60.0, 400.0
 
 
@@ -25,11 +36,13 @@ def figure_names(given: Sequence[str]) -> tuple[str, ...]:
         If one is not known.
     """
     names = tuple(dict.fromkeys(name.strip() for text in given for name in text.split(",") if name.strip()))
-    unknown = [name for name in names if name not in FIGURE_CHOICES]
+    unknown = [name for name in names if name not in (*FIGURE_CHOICES, ALL)]
     if unknown or not names:
-        msg = f"--figures: expected some of {', '.join(FIGURE_CHOICES)}, found {', '.join(unknown) or 'none'}"
+        msg = f"--figures: expected {ALL} or some of {', '.join(FIGURE_CHOICES)}, found {', '.join(unknown) or 'none'}"
         raise UsageError(msg)
-    return names
+    if ALL not in names:
+        return names
+    return (*FIGURE_ENTRIES, *([OVERLAY] if OVERLAY in names else []))
 
 
 def width_mm(text: str) -> float:
@@ -41,10 +54,11 @@ def width_mm(text: str) -> float:
         If it is neither a word nor a number of millimeters that a figure fits into.
     """
     try:
-        width = _WIDTHS[text] if text in _WIDTHS else float(text.strip().removesuffix("mm"))
+        width = WIDTHS_MM[text] if text in WIDTHS_MM else float(text.strip().removesuffix("mm"))
     except ValueError:
         width = float("nan")
     if not _LEAST_MM <= width <= _MOST_MM:
-        msg = f"--width: expected single, double or millimeters from {_LEAST_MM:g} to {_MOST_MM:g}, found {text!r}"
+        named = ", ".join(WIDTHS_MM)
+        msg = f"--width: expected {named} or millimeters from {_LEAST_MM:g} to {_MOST_MM:g}, found {text!r}"
         raise UsageError(msg)
     return width

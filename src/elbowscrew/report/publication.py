@@ -10,10 +10,11 @@ from pathlib import Path
 from typing import Final, NamedTuple
 
 from elbowscrew.errors import SettingError
+from elbowscrew.report.captions import overlay_caption
 from elbowscrew.report.figure_files import figure_files, files_of
 from elbowscrew.results.staging import settle, write_files
 from elbowscrew.results.trial_views import view_of_result
-from elbowscrew.view.figure_names import OVERLAY
+from elbowscrew.view.figure_names import FIGURE_ENTRIES, OVERLAY, caption_file
 
 _LONGEST_NAME: Final = 80
 
@@ -32,6 +33,7 @@ def save_publication_figures(
     formats: Sequence[str],
     *,
     width_mm: float,
+    font: str | None = None,
     force: bool = False,
 ) -> Published:
     """Write figures of results, all of them or none.
@@ -44,9 +46,11 @@ def save_publication_figures(
         Where to; it is made.
     names : sequence of str
         Of the figures of a trial, and ``overlay`` for one of all of them.
-    formats : sequence of {"png", "svg", "pdf"}
+    formats : sequence of {"png", "svg", "pdf", "tiff", "eps"}
     width_mm : float
         Width on paper.
+    font : str, optional
+        Family of the letters; that of each trial's settings by default.
     force : bool
         Replace files of these names.
 
@@ -66,13 +70,13 @@ def save_publication_figures(
     from elbowscrew.plots.overlay import LEAST_TRIALS, mean_curve, overlay_figure
 
     contents: dict[str, bytes] = {}
-    single = [name for name in names if name != OVERLAY]
+    single = [name for name in FIGURE_ENTRIES if name in names]
     prefixes = _prefixes(results)
     curves, left_out, units = [], [], set()
     for result, prefix in zip(results, prefixes, strict=True):
         settle(result)
-        trial = view_of_result(result)
-        for name, content in figure_files(trial, single, formats, width_mm).items():
+        trial = view_of_result(result, single)
+        for name, content in figure_files(trial, single, formats, width_mm, font).items():
             contents[f"{prefix}{name}"] = content
         if OVERLAY in names:
             curve = mean_curve(trial)
@@ -89,8 +93,9 @@ def save_publication_figures(
             )
             raise SettingError(msg)
         unit = units.pop() if len(units) == 1 else "deg"
-        drawn = files_of({OVERLAY: partial(overlay_figure, curves, width_mm=width_mm, unit=unit)}, formats)
-        contents |= drawn
+        drawn = files_of({OVERLAY: partial(overlay_figure, curves, width_mm=width_mm, unit=unit)}, formats, font)
+        cycles = sum(curve.cycles for curve in curves)
+        contents |= drawn | {caption_file(OVERLAY): overlay_caption(len(curves), cycles, unit).encode()}
     write_files(folder, contents, replaceable=("",) if force else None)
     return Published(tuple(folder / name for name in contents), tuple(left_out))
 

@@ -13,6 +13,7 @@ from elbowscrew.choices import JOINT_TYPE_WORDS
 from elbowscrew.geometry._blocks import evenly_thinned
 from elbowscrew.joints import Joint
 from elbowscrew.model.joint_summary_types import EstimateSummary, JointSummary
+from elbowscrew.report.captions import caption_of
 from elbowscrew.report.joint_words import joint_sentences
 from elbowscrew.report.methods import citations_of, methods_of
 from elbowscrew.report.pages import MARK, UNSHOWABLE, render, unshowable
@@ -33,6 +34,7 @@ from elbowscrew.results.summary import settings_summary
 from elbowscrew.results.summary_reading import SUMMARY
 from elbowscrew.results.trial_views import view_of_proved
 from elbowscrew.settings import SETTINGS, Settings
+from elbowscrew.view.figure_names import FIGURE_ENTRIES, caption_file
 from elbowscrew.view.trial_view import TrialView
 
 _FRAMES_TOLD: Final = 24
@@ -125,6 +127,11 @@ def trial_page(trial: TrialView, folder: Path) -> str:
         "other_units": (trial.settings.angle_unit, trial.settings.length_unit) != ("deg", "mm"),
         "methods": methods_of(trial),
         "citations": citations_of(trial),
+        "captions": [
+            (name, caption_of(name, trial))
+            for name in FIGURE_ENTRIES
+            if (folder / "figures" / caption_file(name)).is_file()
+        ],
         "files": [(name, text) for name, text in _FILES if (folder / name).is_file()],
     }
     return render("trial.html", styles=("page.css",), script="trial.js", data=scene_of(trial), content=content)

@@ -13,10 +13,16 @@ from elbowscrew.disk.temporary import is_temporary
 from elbowscrew.opening import read_text
 from elbowscrew.results.exporting import EXPORTS
 from elbowscrew.tables import TABLES
-from elbowscrew.view.figure_names import SAVED_FIGURES
+from elbowscrew.view.figure_names import FIGURE_ENTRIES, caption_file
 
 SUMS: Final = "SHA256SUMS"
 """The file that has the digests of all others."""
+
+
+def _figure_files(name: str) -> tuple[str, ...]:
+    """A figure in all formats, and its caption."""
+    return (*(f"{name}.{kind}" for kind in DRAWN_FORMATS), caption_file(name))
+
 
 _TABLE_ENDINGS: Final = (".csv", *(export.file for export in EXPORTS.values() if export.file.startswith(".")))
 RESULT_FILES: Final = (
@@ -25,7 +31,7 @@ RESULT_FILES: Final = (
     *(f"{name}{ending}" for name in TABLES for ending in _TABLE_ENDINGS),
     *(export.file for export in EXPORTS.values() if not export.file.startswith(".")),
     "report.html",
-    *(f"figures/{name}.{kind}" for name in SAVED_FIGURES for kind in DRAWN_FORMATS),
+    *(f"figures/{file}" for name in FIGURE_ENTRIES for file in _figure_files(name)),
     SUMS,
 )
 """All that a result folder may hold."""
@@ -40,7 +46,7 @@ class ResultKind(NamedTuple):
 
 ANALYSIS: Final = ResultKind(RESULT_FILES, "summary.json")
 COMPARISON: Final = ResultKind(
-    ("compare.csv", "compare.json", *(f"figures/compare.{kind}" for kind in DRAWN_FORMATS), SUMS), "compare.json"
+    ("compare.csv", "compare.json", *(f"figures/{file}" for file in _figure_files("compare")), SUMS), "compare.json"
 )
 
 _STRAYS: Final = frozenset({".ds_store", "thumbs.db", "desktop.ini"})

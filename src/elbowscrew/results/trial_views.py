@@ -5,6 +5,7 @@ Both go the same way, from the numbers as the files of a result have them, so th
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import fields
 from pathlib import Path
 from typing import Any, Final, NamedTuple
@@ -29,16 +30,28 @@ from elbowscrew.results.summary import summary_from_analysis
 from elbowscrew.results.summary_reading import SUMMARY, read_joint_summary, read_summary, settings_in
 from elbowscrew.results.table_reading import Attributes, as_read, read_attributes, read_columns
 from elbowscrew.settings import Settings
+from elbowscrew.view.figure_names import FIGURE_ENTRIES
 from elbowscrew.view.trial_view import TrialView
 
 _SCREW: Final = (
-    "frame", "time_s", "valid", "filled", "angle", "angle_sd", "slide", "axis_direction", "axis_point", "axis_cone",
-    "point_radius", "euler_parameters", "translation",
+    "frame", "time_s", "valid", "filled", "angle", "angle_sd", "slide", "slide_sd", "axis_direction", "axis_point",
+    "axis_cone", "point_radius", "euler_parameters", "translation",
 )  # fmt: skip
 _MODEL: Final = ("phase", "angle", "euler_parameters", "angle_error", "rms_displacement")
 _ANGLES: Final = tuple(field.name for field in fields(JointAngles))
 _PATH: Final = tuple(field.name for field in fields(AxisPath))
 _REPETITIONS: Final = tuple(field.name for field in fields(Repetitions))
+_EXTRA: Final[dict[str, tuple[str, tuple[tables.Column, ...], tuple[str, ...]]]] = {
+    "anatomy": ("anatomy", tables.ANATOMY_COLUMNS, ("flexion", "carrying_angle", "pronation")),
+    "instantaneous": (
+        "instantaneous",
+        tables.INSTANTANEOUS_COLUMNS,
+        ("angular_velocity", "slide_velocity", "axis_direction", "axis_point"),
+    ),
+    "cycles": ("cycles", tables.CYCLE_COLUMNS, ("cycle", "percent", "angle")),
+    "losses": ("screw", tables.SCREW_COLUMNS, ("proximal_loss", "distal_loss")),
+}
+"""Table, columns and attributes of what only some figures show."""
 UNREADABLE: Final = (KeyError, TypeError, ValueError, IndexError, AttributeError, ArithmeticError)
 """What a result that somebody edited raises where its numbers do not go together."""
 
@@ -52,16 +65,18 @@ def view_of(trial: Analysis | TrialView) -> TrialView:
     """Give what is shown of an analysis; a view is given back as it is."""
     if isinstance(trial, TrialView):
         return trial
-    return view_of_analysis(trial, summary_from_analysis(trial), joint_summary(trial))
+    return view_of_analysis(trial, summary_from_analysis(trial), joint_summary(trial), tuple(FIGURE_ENTRIES))
 
 
-def view_of_result(folder: Path) -> TrialView:
+def view_of_result(folder: Path, figures: Collection[str] = ()) -> TrialView:
     """Read what is shown of a result, without analyzing anything again.
 
     Parameters
     ----------
     folder : Path
         As `elbowscrew.save_analysis` wrote it, in whatever units.
+    figures : collection of str
+        What is to be drawn of it: some figures need more tables than others.
 
     Returns
     -------
@@ -72,10 +87,10 @@ def view_of_result(folder: Path) -> TrialView:
     ResultError
         If the folder holds no finished result, or one that is damaged or was edited.
     """
-    return view_of_proved(proof_of(folder))
+    return view_of_proved(proof_of(folder), figures)
 
 
-def view_of_proved(proof: Proof) -> TrialView:
+def view_of_proved(proof: Proof, figures: Collection[str] = ()) -> TrialView:
     """Do what `view_of_result` does, with digests that have been read."""
     folder = proof.folder
     proof.check_numbers()
@@ -96,6 +111,11 @@ def view_of_proved(proof: Proof) -> TrialView:
             curve=None if curve is None else read_columns(curve, tables.CURVE_COLUMNS, *units),
             angles=None if angles is None else read_attributes(angles, _angle_table(joint), _ANGLES, *units),
             path=None if path is None else read_attributes(path, tables.AXIS_PATH_COLUMNS, _PATH, *units),
+            extra={
+                name: read_attributes(proof.file(f"{table}.csv"), columns, names, *units)
+                for name, (table, columns, names) in _extra_of(figures).items()
+                if proof.has(f"{table}.csv")
+            },
         )
         return _view(summary, joint, settings, read)
     except UNREADABLE as error:
@@ -106,7 +126,14 @@ def view_of_proved(proof: Proof) -> TrialView:
         raise ResultError(" ".join(msg.split())) from error
 
 
-def view_of_analysis(analysis: Analysis, summary: Summary, joint: JointSummary) -> TrialView:
+def _extra_of(figures: Collection[str]) -> dict[str, tuple[str, tuple[tables.Column, ...], tuple[str, ...]]]:
+    wanted = {entry.table for name, entry in FIGURE_ENTRIES.items() if name in figures}
+    return {name: how for name, how in _EXTRA.items() if name in wanted}
+
+
+def view_of_analysis(
+    analysis: Analysis, summary: Summary, joint: JointSummary, figures: Collection[str] = ()
+) -> TrialView:
     """Give what `view_of_result` reads of the folder that an analysis is written to, to the last digit.
 
     Parameters
@@ -114,6 +141,8 @@ def view_of_analysis(analysis: Analysis, summary: Summary, joint: JointSummary) 
     analysis : Analysis
     summary : Summary
     joint : JointSummary
+    figures : collection of str
+        What is to be drawn of it.
     """
     units = analysis.settings.angle_unit, analysis.settings.length_unit
     angles, path = analysis.joint_angles, analysis.joint_axis.path
@@ -122,6 +151,12 @@ def view_of_analysis(analysis: Analysis, summary: Summary, joint: JointSummary) 
         table = analysis.repeatability.table
         values = as_read(analysis.repeatability, [column.attribute for column in table], *units)
         curve = {column.name: values[column.attribute] for column in table}
+    several = {
+        "anatomy": analysis.anatomy,
+        "instantaneous": analysis.instantaneous,
+        "cycles": analysis.cycle_curves if analysis.repetitions.number.size else None,
+        "losses": analysis.screw,
+    }
     written = _Tables(
         screw=as_read(analysis.screw, _SCREW, *units),
         model=as_read(analysis.interpolated, _MODEL, *units),
@@ -129,6 +164,11 @@ def view_of_analysis(analysis: Analysis, summary: Summary, joint: JointSummary) 
         curve=curve,
         angles=None if angles is None else as_read(angles, _ANGLES, *units),
         path=None if path is None else as_read(path, _PATH, *units),
+        extra={
+            name: as_read(found, names, *units)
+            for name, (_, _, names) in _extra_of(figures).items()
+            if (found := several[name]) is not None
+        },
     )
     resolved = {"method": analysis.settings.model_method, "law": analysis.settings.model_law}
     return _view(summary, joint, analysis.settings.model_copy(update=resolved), written)
@@ -143,6 +183,7 @@ class _Tables(NamedTuple):
     curve: dict[str, NDArray[Any]] | None
     angles: Attributes | None
     path: Attributes | None
+    extra: dict[str, Attributes]
 
 
 def _view(summary: Summary, joint: JointSummary, settings: Settings, read: _Tables) -> TrialView:
@@ -169,6 +210,7 @@ def _view(summary: Summary, joint: JointSummary, settings: Settings, read: _Tabl
         angle=screw["angle"],
         angle_sd=screw["angle_sd"],
         slide=screw["slide"],
+        slide_sd=screw["slide_sd"],
         axis_direction=screw["axis_direction"],
         axis_point=screw["axis_point"],
         axis_cone=screw["axis_cone"],
@@ -191,6 +233,7 @@ def _view(summary: Summary, joint: JointSummary, settings: Settings, read: _Tabl
         confidence95=None if fit is None else _region(fit["axis_cone95_deg"], fit["point_radius95_mm"]),
         joint_angles=None if read.angles is None else JointAngles(**read.angles),
         axis_path=None if read.path is None else AxisPath(**read.path),
+        extra=read.extra,
     )
 
 

@@ -17,11 +17,11 @@ from elbowscrew.model import Landmarks
 from elbowscrew.model.summary_types import Summary
 from elbowscrew.reading.landmarks import read_landmarks
 from elbowscrew.report.study_page import not_shown, write_study_page
-from elbowscrew.results.exporting import check_exports
 from elbowscrew.results.proof import proof_of
 from elbowscrew.results.result_files import is_summary
 from elbowscrew.results.staging import replace_file
 from elbowscrew.results.summary_reading import SUMMARY, read_summary
+from elbowscrew.saving import check_output
 from elbowscrew.study.executors import OpenExecutor
 from elbowscrew.study.folder import batch_folder
 from elbowscrew.study.naming import result_names
@@ -136,7 +136,7 @@ def run_study(
     """
     folder = straight(folder)
     common = settings_from(config, options)
-    check_exports(common.export)
+    check_output(common)
     tasks = _tasks(trials, folder, config, dict(options or {}), landmarks)
     with batch_folder(folder):
         standings = [standing_of(task) for task in tasks]
@@ -221,7 +221,7 @@ def _tasks(
         chosen = trial.landmarks or landmarks
         try:
             settings = settings_from(config, {**options, **trial.settings})
-            check_exports(settings.export)
+            check_output(settings)
             if chosen is not None and chosen not in read:
                 read[chosen] = read_landmarks(chosen)
         except UsageError as error:

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Final, NamedTuple
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+if TYPE_CHECKING:
+    from elbowscrew.view.trial_view import TrialView
 
 
 class FigureEntry(NamedTuple):
@@ -12,35 +16,67 @@ class FigureEntry(NamedTuple):
     ----------
     home : str
         Module and name of the function that makes it, inside `elbowscrew.plots`.
-    saved : bool
-        Whether it is part of every result, as ``figures/<name>``; else it is made on request.
+    usual : bool
+        Whether it is drawn of every result that has what it shows; else it is made on request.
     needs : str
         What a result must have for it, as a field of `elbowscrew.view.trial_view.TrialView`; empty if it needs nothing.
+    table : str
+        Which table it needs beside those that every view has, by its name in `TrialView.extra`.
     """
 
     home: str
-    saved: bool
+    usual: bool
     needs: str = ""
+    table: str = ""
 
 
-FIGURE_ENTRIES: Final = {
-    "theta": FigureEntry("figures.theta_figure", saved=True),
-    "euler_parameters": FigureEntry("figures.euler_parameters_figure", saved=True),
-    "axis": FigureEntry("figures.axis_figure", saved=True),
-    "joint_axis": FigureEntry("figures.joint_axis_figure", saved=True),
-    "joint": FigureEntry("joint_type.joint_figure", saved=True),
-    "joint_angles": FigureEntry("joint_angles.joint_angles_figure", saved=True, needs="joint_angles"),
-    "axis_path": FigureEntry("joint_angles.axis_path_figure", saved=True, needs="axis_path"),
-    "error": FigureEntry("figures.error_figure", saved=True),
-    "fig7": FigureEntry("paper_figures.figure_7", saved=False),
-    "fig8": FigureEntry("paper_figures.figure_8", saved=False),
-    "fig9": FigureEntry("paper_figures.figure_9", saved=False),
-    "fig10": FigureEntry("paper_figures.figure_10", saved=False),
+FIGURE_ENTRIES: Final[dict[str, FigureEntry]] = {
+    "theta": FigureEntry("figures.theta_figure", usual=True),
+    "euler_parameters": FigureEntry("figures.euler_parameters_figure", usual=True),
+    "joint": FigureEntry("joint_type.joint_figure", usual=True),
+    "slide": FigureEntry("kinematics.slide_figure", usual=True),
+    "error": FigureEntry("figures.error_figure", usual=True),
+    "anatomy": FigureEntry("anatomy.anatomy_figure", usual=True, needs="has_landmarks", table="anatomy"),
+    "velocity": FigureEntry("kinematics.velocity_figure", usual=False, needs="has_velocity", table="instantaneous"),
+    "instantaneous_axes": FigureEntry(
+        "figures.instantaneous_axes_figure", usual=False, needs="has_velocity", table="instantaneous"
+    ),
+    "cycles": FigureEntry("cycles.cycles_figure", usual=False, needs="has_cycles", table="cycles"),
+    "quality": FigureEntry("quality.quality_figure", usual=False, table="losses"),
+    "axis": FigureEntry("figures.axis_figure", usual=False),
+    "joint_axis": FigureEntry("figures.joint_axis_figure", usual=False),
+    "joint_angles": FigureEntry("joint_angles.joint_angles_figure", usual=False, needs="joint_angles"),
+    "axis_path": FigureEntry("joint_angles.axis_path_figure", usual=False, needs="axis_path"),
+    "fig7": FigureEntry("paper_figures.figure_7", usual=False),
+    "fig8": FigureEntry("paper_figures.figure_8", usual=False),
+    "fig9": FigureEntry("paper_figures.figure_9", usual=False),
+    "fig10": FigureEntry("paper_figures.figure_10", usual=False),
 }
-"""A new figure of a trial is one function in `elbowscrew.plots` and one entry here."""
+"""A new figure of a trial is one function in `elbowscrew.plots`, its caption, its name and one entry here."""
 
-SAVED_FIGURES: Final = tuple(name for name, entry in FIGURE_ENTRIES.items() if entry.saved)
+USUAL_FIGURES: Final = tuple(name for name, entry in FIGURE_ENTRIES.items() if entry.usual)
 OVERLAY: Final = "overlay"
 """The one figure of several trials."""
+ALL: Final = "all"
+"""All figures of a trial that has what they show."""
 
 FIGURE_CHOICES: Final = (*FIGURE_ENTRIES, OVERLAY)
+
+
+def chosen_figures(names: Sequence[str] | None) -> tuple[str, ...]:
+    """Give the figures of a trial that are asked for: the usual ones if none are, and every one for ``all``."""
+    if names is None:
+        return USUAL_FIGURES
+    return tuple(name for name in FIGURE_ENTRIES if name in names or ALL in names)
+
+
+def has_figure(name: str, view: TrialView) -> bool:
+    """Tell whether a trial has what a figure shows."""
+    needs = FIGURE_ENTRIES[name].needs
+    found = getattr(view, needs) if needs else True
+    return found is not None and found is not False
+
+
+def caption_file(name: str) -> str:
+    """Give the name of the file that a figure's caption is in."""
+    return f"{name}.caption.txt"

@@ -46,7 +46,7 @@ class TrialView(ArrayRecord):
     reference, proximal_in_lab : ndarray, shape (8,)
         Poses at the reference, unit dual quaternions: the distal body in the proximal one, and the latter in the
         laboratory.
-    frame, time_s, valid, filled, angle, angle_sd, slide, axis_direction, axis_point, axis_cone, point_radius,
+    frame, time_s, valid, filled, angle, angle_sd, slide, slide_sd, axis_direction, axis_point, axis_cone, point_radius,
     euler_parameters, translation : ndarray, shape (N,) and (N, k)
         The measured motion, as in `ScrewMotion`.
     modeled_angle, modeled_euler_parameters, angle_error, rms_displacement : ndarray, shape (N,) and (N, 4)
@@ -72,6 +72,9 @@ class TrialView(ArrayRecord):
     confidence95 : tuple of float, or None
         Half-angle (rad) and radius (m) that hold the joint's axis with 95 %, NaN where they are not known; None where
         the motion has no single axis.
+    extra : mapping of str to mapping of str to ndarray
+        Attributes of tables that only some figures show, by `elbowscrew.view.figure_names.FigureEntry.table`: those
+        that were asked for.
     """
 
     summary: Summary
@@ -92,6 +95,7 @@ class TrialView(ArrayRecord):
     angle: Float
     angle_sd: Float
     slide: Float
+    slide_sd: Float
     axis_direction: Float
     axis_point: Float
     axis_cone: Float
@@ -114,9 +118,31 @@ class TrialView(ArrayRecord):
     confidence95: tuple[float, float] | None
     joint_angles: JointAngles | None
     axis_path: AxisPath | None
+    extra: Mapping[str, Mapping[str, NDArray[Any]]]
 
     @property
     def axis_known(self) -> Bool:
         """Frames whose rotation is large enough for an axis, shape (N,)."""
         known: Bool = np.logical_and.reduce(np.isfinite(self.axis_direction), axis=1)
         return known
+
+    @property
+    def has_landmarks(self) -> bool:
+        """Whether there are anatomical angles."""
+        return self.summary["landmarks"] is not None
+
+    @property
+    def has_cycles(self) -> bool:
+        """Whether the movement is repeated, or done once out and back."""
+        return self.repetitions.number.size > 0
+
+    @property
+    def has_velocity(self) -> bool:
+        """Whether any frame has an instantaneous axis."""
+        return all(warning["code"] != "no-instantaneous-axis" for warning in self.summary["warnings"])
+
+
+def fitted_pitch_mm(view: TrialView) -> float | None:
+    """Millimeters that the joint slides per radian, where it is a screw-hinge; None where it is none."""
+    fit = view.joint_summary["screw_hinge"]
+    return None if fit is None or view.joint_summary["preferred"] != "screw_hinge" else fit["pitch_mm_per_rad"]

@@ -214,7 +214,7 @@ def test_the_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: py
     out = capsys.readouterr().out
     assert "Fewest, sclerp" in out
     names = sorted(path.relative_to("t0_compare").as_posix() for path in Path("t0_compare").rglob("*.*"))
-    assert names == ["compare.csv", "compare.json", "figures/compare.png"]
+    assert names == ["compare.csv", "compare.json", "figures/compare.caption.txt", "figures/compare.png"]
     assert main(["compare", "study/t0.csv", *few]) == 6
     assert "give --force" in capsys.readouterr().err
     assert main(["compare", "study/t0.csv", *few, "--force", "--json", "--figure-format", "none"]) == 0

@@ -1,0 +1,153 @@
+"""How the joint slides and how fast it moves: slide against angle, velocities over time."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
+from matplotlib.figure import Figure
+
+from elbowscrew.geometry.arrays import Bool, Float
+from elbowscrew.geometry.sensitivity import NORMAL_95
+from elbowscrew.model import Analysis
+from elbowscrew.plots import style
+from elbowscrew.plots.figures import NARROW_MM, WIDTH_MM
+from elbowscrew.plots.series import line, mark_tracking, over_time, overview_grid
+from elbowscrew.quantities import angle_in, length_in
+from elbowscrew.results.trial_views import view_of
+from elbowscrew.view.bands import is_seen
+from elbowscrew.view.decimation import drawn_rows
+from elbowscrew.view.long_trials import shown_part, stretch_of
+from elbowscrew.view.trial_view import TrialView, fitted_pitch_mm
+
+_BINS: Final = 60
+_LEAST_IN_BIN: Final = 10
+
+
+def slide_figure(analysis: Analysis | TrialView, *, width_mm: float = WIDTH_MM) -> Figure:
+    """Make the figure of the slide along the axis against the angle about it."""
+    view = view_of(analysis)
+    figure = style.new_figure(width_mm, 62.0 if width_mm < NARROW_MM else 76.0)
+    ax = figure.add_subplot()
+    if stretch_of(view) is None:
+        plot_slide(ax, view)
+    else:
+        plot_slide_span(ax, view)
+    style.legend(figure, ax)
+    return figure
+
+
+def plot_slide(ax: Axes, analysis: Analysis | TrialView) -> Axes:
+    """Draw the slide along each frame's axis against the angle, with its 95 % interval."""
+    view = view_of(analysis)
+    angle = angle_in(view.angle, view.settings.angle_unit)
+    slide = length_in(view.slide, view.settings.length_unit)
+    reach = length_in(NORMAL_95 * view.slide_sd, view.settings.length_unit)
+    rows = drawn_rows(angle, slide, keep_gaps=True)
+    if is_seen(slide, reach):
+        ax.add_collection(_ribbon(angle[rows], slide[rows], reach[rows]))
+    ax.plot(angle[rows], slide[rows], label="measured", **{**style.MEASURED, "linewidth": 0.7})
+    return _with_slope(ax, view)
+
+
+def _with_slope(ax: Axes, view: TrialView) -> Axes:
+    pitch_mm = fitted_pitch_mm(view)
+    if pitch_mm is not None and np.isfinite(view.slide).any():
+        ends = np.array([np.nanmin(view.angle), np.nanmax(view.angle)])
+        # The noise of the reference shifts all slides alike.
+        shift = float(np.nanmedian(view.slide - 1e-3 * pitch_mm * view.angle))
+        along = length_in(1e-3 * pitch_mm * ends + shift, view.settings.length_unit)
+        ax.plot(
+            angle_in(ends, view.settings.angle_unit),
+            along,
+            label="slope of the screw-hinge",
+            linewidth=1.2,
+            **style.AXES[0],
+        )
+    ax.set_xlabel(f"Angle θ ({view.settings.angle_unit})")
+    ax.set_ylabel(f"Slide along the axis ({view.settings.length_unit})")
+    return ax
+
+
+def _ribbon(x: Float, y: Float, reach: Float) -> PolyCollection:
+    """A band about a curve that may turn back: a piece between each two of its points."""
+    low, high = np.column_stack([x, y - reach]), np.column_stack([x, y + reach])
+    corners = np.stack([low[:-1], low[1:], high[1:], high[:-1]], axis=1)
+    known = np.isfinite(corners).all(axis=(1, 2))
+    look = {**style.BAND, "edgecolor": style.ORANGE}
+    return PolyCollection(list(corners[known]), label="95 % interval", **look)
+
+
+def plot_slide_span(ax: Axes, analysis: Analysis | TrialView) -> Axes:
+    """Draw of a long trial what 90 % of the frames keep within at each angle, and the medians out and back."""
+    view = view_of(analysis)
+    angle_unit, unit = view.settings.angle_unit, view.settings.length_unit
+    with np.errstate(invalid="ignore"):
+        way = np.sign(np.gradient(view.angle))
+    for mask, label, look in (
+        (np.ones(way.size, dtype=bool), "90 % of the frames", None),
+        (way > 0.0, "median, angle rising", style.MEASURED),
+        (way < 0.0, "median, angle falling", {**style.MEASURED, "linestyle": (0, (5, 2))}),
+    ):
+        angle, spans = _spans(view, mask)
+        low, middle, high = length_in(spans, unit).T
+        if look is None:
+            ax.fill_between(angle_in(angle, angle_unit), low, high, label=label, **style.SPREAD)
+        else:
+            ax.plot(angle_in(angle, angle_unit), middle, label=label, **look)
+    return _with_slope(ax, view)
+
+
+def _spans(view: TrialView, mask: Bool) -> tuple[Float, Float]:
+    """Angles (K,), and of the slides of frames near each 5 %, 50 % and 95 %, shape (K, 3)."""
+    known = np.isfinite(view.slide) & np.isfinite(view.angle)
+    reach = np.percentile(view.angle[known], [0.0, 100.0]) if known.any() else np.array([0.0, 1.0])
+    edges = np.linspace(reach[0], reach[1], _BINS + 1)
+    angle, slide = view.angle[known & mask], view.slide[known & mask]
+    of_bin = np.clip(np.digitize(angle, edges) - 1, 0, edges.size - 2)
+    parts = [slide[of_bin == k] for k in range(edges.size - 1)]
+    nothing = [np.nan] * 3
+    spans = [np.percentile(part, [5.0, 50.0, 95.0]) if part.size >= _LEAST_IN_BIN else nothing for part in parts]
+    return 0.5 * (edges[:-1] + edges[1:]), np.array(spans)
+
+
+def velocity_figure(analysis: Analysis | TrialView, *, width_mm: float = WIDTH_MM) -> Figure:
+    """Make the figure of angular velocity and slide velocity over time."""
+    view = view_of(analysis)
+    shown, stretch = shown_part(view)
+    figure = style.new_figure(width_mm, 92.0)
+    panels = overview_grid(figure, view, stretch, 2)
+    plot_angular_velocity(panels[-2], shown).set_xlabel("")
+    plot_slide_velocity(panels[-1], shown)
+    style.letter(*panels)
+    style.legend(figure, *panels)
+    return figure
+
+
+def plot_angular_velocity(ax: Axes, analysis: Analysis | TrialView) -> Axes:
+    """Draw the angular velocity about the instantaneous axis over time."""
+    view = view_of(analysis)
+    unit = view.settings.angle_unit
+    return _plot_velocity(ax, view, angle_in(_of(view, "angular_velocity"), unit), f"Angular velocity ({unit}/s)")
+
+
+def plot_slide_velocity(ax: Axes, analysis: Analysis | TrialView) -> Axes:
+    """Draw the velocity along the instantaneous axis over time."""
+    view = view_of(analysis)
+    unit = view.settings.length_unit
+    return _plot_velocity(ax, view, length_in(_of(view, "slide_velocity"), unit), f"Slide velocity ({unit}/s)")
+
+
+def _of(view: TrialView, name: str) -> Float:
+    found: Float = view.extra["instantaneous"][name]
+    return found
+
+
+def _plot_velocity(ax: Axes, view: TrialView, values: Float, name: str) -> Axes:
+    line(ax, view.time_s, values, label="measured, filtered", **style.MEASURED)
+    ax.axhline(0.0, **style.LEVEL)
+    mark_tracking(ax, view)
+    ax.set_ylabel(name)
+    return over_time(ax, view.time_s)
