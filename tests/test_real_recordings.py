@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
@@ -268,6 +269,28 @@ def gimbal_markers(path: Path) -> tuple[list[str], Float]:
     return head, np.array(positions)
 
 
+def plain_table_of(stripped: Path, folder: Path) -> Recording:
+    head, positions = gimbal_markers(stripped)
+    lines = [",".join(["frame,time_s", *(f"marker{k}_{axis}_m" for k in range(positions.shape[1]) for axis in "xyz")])]
+    for k, row in enumerate(positions.reshape(len(positions), -1).tolist()):
+        lines.append(",".join([head[k], *("" if value != value else repr(value) for value in row)]))
+    path = folder / "gimbal.csv"
+    path.write_text("\n".join(lines) + "\n")
+    return read_recording(path, markers="*")
+
+
+def named_columns_of(stripped: Path, folder: Path) -> Recording:
+    """In these two files the first eight markers keep their places."""
+    said = ["[clock]", 'frame = "#1"', 'time = "#2"']
+    for k in range(8):
+        columns = [f"#{5 + 4 * k + axis}" for axis in range(3)]
+        said += [f"[markers.marker{k}]", f"position = {columns}", 'unit = "m"']
+    path = folder / "columns.toml"
+    path.write_text("\n".join(said) + "\n")
+    return read_recording(stripped, columns=path, markers="*")
+
+
+@pytest.mark.parametrize("way", [plain_table_of, named_columns_of])
 @pytest.mark.parametrize(
     ("name", "proximal", "distal", "top", "mean_deg", "largest_deg", "slide_mm"),
     [
@@ -275,26 +298,21 @@ def gimbal_markers(path: Path) -> tuple[list[str], Float]:
         ("Abduction", (4, 5, 7), (0, 1, 2), 24.0, 2.9, 4.5, (-3.3, 0.6)),
     ],
 )
-def test_gimbal_by_way_of_a_plain_table(
+def test_gimbals_whose_files_lost_their_headers(
     real_data: Path, tmp_path: Path, name: str, proximal: tuple[int, ...], distal: tuple[int, ...], top: float,
-    mean_deg: float, largest_deg: float, slide_mm: tuple[float, float],
+    mean_deg: float, largest_deg: float, slide_mm: tuple[float, float], way: Callable[[Path, Path], Recording],
 ) -> None:  # fmt: skip
-    """The recipe of docs/plain-table.md; the figures are of angles above 15 deg.
+    """The two recipes of docs/plain-table.md; the figures are of angles above 15 deg.
 
     The index gives Abduction's slide along the line of the axis markers, -0.6 to 3.3 mm; here the angle is positive.
     """
-    head, positions = gimbal_markers(real_data / "real" / f"tt2011_gimbal_{name}_stripped.csv")
-    lines = [",".join(["frame,time_s", *(f"marker{k}_{axis}_m" for k in range(positions.shape[1]) for axis in "xyz")])]
-    for k, row in enumerate(positions.reshape(len(positions), -1).tolist()):
-        lines.append(",".join([head[k], *("" if value != value else repr(value) for value in row)]))
-    path = tmp_path / "gimbal.csv"
-    path.write_text("\n".join(lines) + "\n")
+    recording = way(real_data / "real" / f"tt2011_gimbal_{name}_stripped.csv", tmp_path)
     settings = Settings(
         proximal_markers=tuple(f"marker{k}" for k in proximal),
         distal_markers=tuple(f"marker{k}" for k in distal),
         min_angle_deg=15,
     )
-    analysis = analyze(read_recording(path, markers=settings.markers), settings)
+    analysis = analyze(recording, settings)
     assert np.degrees(np.nanmax(analysis.screw.angle)) == pytest.approx(top, abs=0.06)
     deviation = np.degrees(analysis.mean_axis.deviation)
     assert np.nanmean(deviation) == pytest.approx(mean_deg, abs=0.05)

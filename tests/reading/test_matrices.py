@@ -188,3 +188,39 @@ def test_a_manifest_names_both_files_and_a_changed_one_is_analyzed_again(
     assert main(line) == 0
     done.append(json.loads(capsys.readouterr().out)["analyzed"])
     assert done == [1, 0, 1]
+
+
+@pytest.mark.parametrize("mark", [",", " "])
+def test_a_column_of_frame_numbers_is_the_clock(tmp_path: Path, mark: str) -> None:
+    rows = [f"{10 + 2 * k},{row}".replace(",", mark) for k, row in enumerate(both()[1])]
+    recording = read_recording(write(tmp_path / "ulna.tra", rows), **STATED)
+    assert recording.frame.tolist() == list(range(10, 130, 2))
+    assert np.diff(recording.time_s) == pytest.approx(0.02)
+    assert recording.rate_hz == pytest.approx(100.0)
+    rows[3] = rows[3].replace("16", "16.5", 1)
+    with pytest.raises(RecordingError, match=r"ulna\.tra:4: expected a whole frame number"):
+        read_recording(write(tmp_path / "ulna.tra", rows), **STATED)
+
+
+def test_a_unit_that_cannot_be_is_asked_back(tmp_path: Path) -> None:
+    first, second = (write(tmp_path / name, rows) for name, rows in zip(("a.tra", "b.tra"), both(), strict=True))
+    with pytest.raises(SettingError, match=r"--units m puts what is in the file .* m from the origin: is .*mm"):
+        read_recording(first, distal_path=second, units="m", rate_hz=100.0)
+    meters = [write(tmp_path / f"{path.stem}_m.tra", metric(path)) for path in (first, second)]
+    doubted = read_recording(meters[0], distal_path=meters[1], units="mm", rate_hz=100.0)
+    assert [warning.code for warning in doubted.warnings] == ["units-doubtful"]
+    assert "is its unit m" in doubted.warnings[0].message
+    assert read_recording(meters[0], distal_path=meters[1], units="m", rate_hz=100.0).warnings == ()
+
+
+def metric(path: Path) -> list[str]:
+    """Rows of a file in millimeters, in meters."""
+    cells = np.loadtxt(path, delimiter=",")
+    cells[:, [3, 7, 11]] /= 1000.0
+    return [",".join(f"{x:.9f}" for x in row) for row in cells]
+
+
+def test_six_numbers_a_row_are_not_guessed(tmp_path: Path) -> None:
+    path = write(tmp_path / "t.tra", ["1.5,2,3,10,20,30"] * 5)
+    with pytest.raises(RecordingError, match=r"Autoscoper.*--columns"):
+        read_recording(path)

@@ -1,7 +1,8 @@
 """Tables of 4 x 4 matrices without a header, as biplane X-ray gives them: a row a frame, 16 numbers a body.
 
 Each matrix is body to laboratory, row by row (the last four numbers are 0, 0, 0, 1) or column by column (every fourth
-is). There is no clock and no unit. Blanks, "nan" and zeros are lost frames.
+is). There is no unit, and no clock but for a first column of frame numbers, if there is one. Blanks, "nan" and zeros
+are lost frames.
 """
 
 from __future__ import annotations
@@ -15,9 +16,9 @@ from elbowscrew.errors import Missing, MissingStatementError, RecordingError
 from elbowscrew.geometry.arrays import Bool, Float
 from elbowscrew.model import QualityWarning, Recording, Source
 from elbowscrew.quantities import METERS
-from elbowscrew.reading.builders import BodyBuilder
+from elbowscrew.reading.builders import ArrayBuilder, BodyBuilder
 from elbowscrew.reading.cells import parse_number, read_blocks
-from elbowscrew.reading.clock import cut_warnings
+from elbowscrew.reading.clock import check_frames, counted_rate, cut_warnings, frames_and_times
 from elbowscrew.reading.options import ASK_FOR_UNITS, ReadOptions
 from elbowscrew.reading.source import TextSource
 
@@ -31,13 +32,13 @@ def recognizes(cells: list[str]) -> bool:
     """Tell by 16 numbers a body that end, or of which every fourth ends, as a pose's matrix does, or are blank."""
     while cells and not cells[-1]:
         cells = cells[:-1]
-    if not cells or len(cells) % _CELLS:
-        return False
     try:
         numbers = np.array([parse_number(cell, nan_word=True) for cell in cells])
     except ValueError:
         return False
-    matrices = _matrices(numbers[None])
+    if len(numbers) < _CELLS or len(numbers) % _CELLS > 1 or (len(numbers) % _CELLS and numbers[0] % 1.0 != 0.0):
+        return False
+    matrices = _matrices(numbers[len(numbers) % _CELLS :][None])
     return bool((_lost(matrices) | _ends_so(matrices) | _ends_so(_turned(matrices))).all())
 
 
@@ -48,8 +49,11 @@ def read(source: TextSource, options: ReadOptions) -> Recording:
     by_columns = _by_columns(source, width)
     bodies = width // _CELLS
     builders = [BodyBuilder(name) for name in _names(source, bodies)]
-    rows = 0
-    for block in _blocks(source, width):
+    frames, rows = ArrayBuilder(dtype=np.int64), 0
+    for frame, block in _blocks(source, width):
+        ticks = frames_and_times(frame, None, range(rows, rows + len(block)), rate)
+        check_frames(source, rows, ticks)
+        frames.append(ticks[:, 0].astype(np.int64))
         matrices = _matrices(block)
         if by_columns:
             matrices = _turned(matrices)
@@ -57,12 +61,12 @@ def read(source: TextSource, options: ReadOptions) -> Recording:
         for k, builder in enumerate(builders):
             builder.append_matrices(matrices[:, k, :3, :3], scale * matrices[:, k, :3, 3])
         rows += len(block)
-    frame = np.arange(rows, dtype=np.int64)
+    numbers = frames.finish()
     return Recording(
         bodies=tuple(builder.finish() for builder in builders),
-        frame=frame,
-        time_s=frame / rate,
-        rate_hz=rate,
+        frame=numbers,
+        time_s=numbers / rate,
+        rate_hz=rate if width % _CELLS == 0 else counted_rate(source.path, numbers, numbers / rate),
         source=Source(
             path=str(source.path),
             sha256=source.sha256,
@@ -96,8 +100,11 @@ def _width(source: TextSource) -> int:
     return len(cells)
 
 
-def _blocks(source: TextSource, width: int) -> Iterator[Float]:
-    return read_blocks(source, 0, range(width), width, nan_word=True, blank_rows=True)
+def _blocks(source: TextSource, width: int) -> Iterator[tuple[Float | None, Float]]:
+    """Yield the frame numbers of many rows, None where rows are the clock, and their matrices' cells."""
+    numbered = width % _CELLS == 1
+    for block in read_blocks(source, 0, range(width), width, nan_word=True, blank_rows=not numbered):
+        yield (block[:, 0], block[:, 1:]) if numbered else (None, block)
 
 
 def _names(source: TextSource, bodies: int) -> list[str]:
@@ -134,7 +141,7 @@ def _by_columns(source: TextSource, width: int) -> bool:
         If all can be either, which are different rotations: no position is other than 0.
     """
     differs = False
-    for block in _blocks(source, width):
+    for _, block in _blocks(source, width):
         matrices = _matrices(block)
         known = ~_lost(matrices)
         rows, columns = _ends_so(matrices), _ends_so(_turned(matrices))

@@ -28,9 +28,11 @@ from elbowscrew.reading.cells import parse_number
 from elbowscrew.reading.clock import is_rate
 from elbowscrew.reading.joining import joined
 from elbowscrew.reading.options import ReadOptions
+from elbowscrew.reading.scale import with_scale_checked
 from elbowscrew.reading.source import TextSource, first_bytes, open_source
 
 _HEAD_BYTES: Final = 16
+_POSE_NUMBERS: Final = 6
 _UNITS: Final = frozenset({"units"})
 _MARKERS: Final = frozenset({"markers"})
 _RATE: Final = frozenset({"rate_hz"})
@@ -193,8 +195,10 @@ def read_recording(
         columns=_column_file(columns),
         alone=distal_path is None,
     )
-    proximal = _read(Path(path), options)
-    return proximal if distal_path is None else joined(proximal, _read(Path(distal_path), options))
+    recording = _read(Path(path), options)
+    if distal_path is not None:
+        recording = joined(recording, _read(Path(distal_path), options))
+    return recording if units is None else with_scale_checked(recording, units)
 
 
 def _column_file(given: str | os.PathLike[str] | ColumnFile | None) -> ColumnFile | None:
@@ -223,7 +227,7 @@ def _read(file: Path, options: ReadOptions) -> Recording:
         if entry.recognizes(cells):
             _check_options(file, entry.name, options, entry.accepts)
             return entry.read(source, options)
-    raise RecordingError(_refusal(source, cells[0]))
+    raise RecordingError(_refusal(source, cells))
 
 
 def _check_options(path: Path, name: str, options: ReadOptions, accepted: frozenset[str]) -> None:
@@ -235,18 +239,20 @@ def _check_options(path: Path, name: str, options: ReadOptions, accepted: frozen
         raise SettingError(msg)
 
 
-def _refusal(source: TextSource, first_cell: str) -> str:
+def _refusal(source: TextSource, cells: list[str]) -> str:
     try:
-        parse_number(first_cell)
+        numbers = [parse_number(cell) for cell in cells]
     except ValueError:
         return (
             f"{source.path}:1: no format that is read: expected 'Format Version', a row tag such as 'comment', or "
-            f"'frame,time_s' in the first cells, found {first_cell[:40]!r}"
+            f"'frame,time_s' in the first cells, found {cells[0][:40]!r}; any table is read once --columns FILE.toml "
+            "says what its columns are (docs/plain-table.md)"
         )
+    angles = " (x, y, z, yaw, pitch, roll of Autoscoper?)" if len(numbers) == _POSE_NUMBERS else ""
     return (
-        f"{source.path}:1: the header is missing (the file begins with a number), so nothing says what the columns "
-        "are; export the take again with the header on, or say what they are by --columns FILE.toml "
-        "(docs/plain-table.md)"
+        f"{source.path}:1: the header is missing (the file begins with a number), so nothing says what the "
+        f"{len(numbers)} columns are{angles}; export the take again with the header on, or say what they are by "
+        "--columns FILE.toml (docs/plain-table.md)"
     )
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from contextlib import suppress
+from dataclasses import replace
 from itertools import product
 from typing import Any, Final
 
@@ -12,6 +13,7 @@ from elbowscrew.errors import Missing, MissingStatementError, NoBodiesError, Set
 from elbowscrew.geometry.quaternion import EULER_ORDERS
 from elbowscrew.model import Recording
 from elbowscrew.reading.registry import read_recording
+from elbowscrew.reading.scale import DOUBTFUL
 
 # In place of what is missing: nothing that depends on it may be told.
 _MADE_UP: Final[dict[str, tuple[Any, ...]]] = {"units": ("mm",), "rotation": EULER_ORDERS, "rate_hz": (1.0,)}
@@ -57,5 +59,7 @@ def _read(path: str | os.PathLike[str], options: dict[str, Any]) -> tuple[Record
         names = [one.setting for one in error.missing]
         for values in product(*(_MADE_UP[name] for name in names)):
             with suppress(SettingError):
-                return read_recording(path, **{**options, **dict(zip(names, values, strict=True))}), error.missing
+                recording = read_recording(path, **{**options, **dict(zip(names, values, strict=True))})
+                told = tuple(one for one in recording.warnings if one.code != DOUBTFUL)  # nobody has given that unit
+                return replace(recording, warnings=told), error.missing
         raise
