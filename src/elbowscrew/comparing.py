@@ -19,6 +19,7 @@ from elbowscrew.settings import Settings
 
 _MODEL: Final = ("data", "method", "blend", "law", "knots", "keyframes_per_phase")
 _VALUES: Final = ("rms_displacement", "max_displacement", "rms_angle_error", "max_angle_error", "ns_per_frame")
+_ANGLE: Final = _VALUES.index("rms_angle_error")
 
 
 def compare_trials(
@@ -92,9 +93,12 @@ def _over_trials(tables: list[ComparedModels]) -> ComparedOverTrials:
         keys = zip(data.tolist(), *(getattr(table, name).tolist() for name in _MODEL[1:]), strict=True)
         values = zip(*(getattr(table, name).tolist() for name in _VALUES), strict=True)
         for key, value in zip(keys, values, strict=True):
-            if np.isfinite(value[0]):
+            if np.isfinite(value[_ANGLE]):
                 gathered.setdefault(key, []).append(list(value))
-    models = sorted(gathered, key=lambda key: (float(np.mean([value[0] for value in gathered[key]])), key))
+    # Of orientations alone there is no displacement; where some trials have one, the angle is what all have.
+    located = all(np.isfinite(table.rms_displacement).any() for table in tables)
+    error = 0 if located else _ANGLE
+    models = sorted(gathered, key=lambda key: (float(np.mean([value[error] for value in gathered[key]])), key))
     columns: dict[str, NDArray[Any]] = {name: np.array([model[k] for model in models]) for k, name in enumerate(_MODEL)}
     for k, name in enumerate(_VALUES):
         series = [np.array([value[k] for value in gathered[model]]) for model in models]

@@ -81,10 +81,26 @@ def _millimeters(value: object) -> object:
         raise ValueError(msg) from error
 
 
+def _tolerance(value: object) -> object:
+    """Take a length for a number of millimeters, and an angle for text that says its degrees."""
+    is_angle = isinstance(value, str) and value.strip()[-3:] in ("deg", "rad")
+    number = _degrees(value) if is_angle else _millimeters(value)
+    low, high = TOLERANCES
+    if isinstance(number, bool) or not isinstance(number, int | float) or not low <= number <= high:
+        msg = f"should be greater than or equal to {low:g} and less than or equal to {high:g}, found {shown(value)}"
+        raise ValueError(msg)
+    return f"{float(number)!r}deg" if is_angle else float(number)
+
+
+TOLERANCES: Final = (1e-3, 1e5)
+"""Least and largest tolerance, in millimeters or degrees."""
+
 Angle = Annotated[float, BeforeValidator(_degrees)]
 """Degrees; as text also with its unit."""
 Length = Annotated[float, BeforeValidator(_millimeters)]
 """Millimeters; as text also with its unit."""
+Tolerance = Annotated[float | str, BeforeValidator(_tolerance)]
+"""A number, or an angle as text with its unit."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

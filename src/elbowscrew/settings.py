@@ -40,12 +40,12 @@ from elbowscrew.declaring import (
     MOTION,
     OUTPUT,
     Angle,
-    Length,
+    Tolerance,
     attributes,
     declared,
     setting,
 )
-from elbowscrew.errors import shown
+from elbowscrew.errors import SettingError, shown
 
 STILL: Final = "none"
 """The value of ``proximal`` that says: the file has no such body, it stands still."""
@@ -148,9 +148,9 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
     phases: Literal["movement", "whole"] = setting(
         "movement", "Phases by the movement's reversals and rests, or the whole recording.", MODEL
     )
-    tolerance_mm: Length | None = setting(
-        None, "Fewest keyframes that keep the RMS displacement below this length (2mm).", MODEL,
-        metavar="LENGTH", ge=1e-3, le=1e5,
+    tolerance_mm: Tolerance | None = setting(
+        None, "Fewest keyframes that keep the RMS displacement below this length (2mm); without positions, the model's "
+        "angle error below this angle (2deg).", MODEL, metavar="LENGTH",
     )  # fmt: skip
     method: MethodName | None = setting(
         None,
@@ -226,6 +226,22 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
     def stated_joint(self) -> StatedJoint | None:
         """The type of joint that is stated; None where it is found."""
         return next((name for name in STATED_JOINTS if name == self.joint_type), None)
+
+    def tolerance_in_si(self, *, located: bool) -> float:
+        """Tolerance in m, or in rad where positions were not measured; a number without a unit suits both.
+
+        Raises
+        ------
+        SettingError
+            If it is an angle, and positions were measured.
+        """
+        stated = self.tolerance_mm or 0.0
+        if not isinstance(stated, str):
+            return 1e-3 * stated if located else math.radians(stated)
+        if located:
+            msg = f"--tolerance {stated}: the bodies have positions, and the error is a length; give one, as in 2mm"
+            raise SettingError(msg)
+        return math.radians(float(stated.removesuffix("deg")))
 
     @property
     def model_method(self) -> MethodName:

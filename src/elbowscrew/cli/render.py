@@ -5,26 +5,20 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 from rich.console import Console, RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from elbowscrew.cli.text import emit, one_line, printable, tell
+from elbowscrew.cli.render_joint import joint_axis_text, joint_text, place_text
+from elbowscrew.cli.text import emit, one_line, printable, rounded, tell, vector_text
 
 if TYPE_CHECKING:
     from elbowscrew.model.comparison_summary_types import ComparisonSummary, ModelChoice, TrialsSummary
-    from elbowscrew.model.joint_summary_types import (
-        JointLineSummary,
-        JointTypeSummary,
-        SecondRotationSummary,
-        WanderSummary,
-    )
     from elbowscrew.model.summary_types import (
         JointWords,
         ModelSummary,
-        MotionSummary,
         QualitySummary,
         SelectionSummary,
         SpreadSummary,
@@ -73,22 +67,25 @@ def analysis_table(summary: Summary, folder: Path) -> None:
         ("Frames", _frames(trial)),
         (
             "Angle θ",
-            f"{_number(motion['theta_min_deg'])} to {_number(motion['theta_max_deg'])} deg"
+            f"{rounded(motion['theta_min_deg'])} to {rounded(motion['theta_max_deg'])} deg"
             + ("" if motion["signed"] else ", without a sense"),
         ),
         ("Inversion", _inversions(motion["inversion_frames"])),
         (
             "Slide",
-            f"median {_number(motion['slide_median_mm'])} mm ({_number(motion['slide_min_mm'])} to "
-            f"{_number(motion['slide_max_mm'])})",
+            f"median {rounded(motion['slide_median_mm'])} mm ({rounded(motion['slide_min_mm'])} to "
+            f"{rounded(motion['slide_max_mm'])})"
+            if trial["positions"]
+            else "not known, as all places: there are orientations and no positions",
         ),
         (
             "Mean axis",
-            f"direction ({_vector(motion['mean_axis']['direction'], 4)}), "
-            f"point ({_vector(motion['mean_axis']['point_mm'], 1)}) mm, in the {motion['expressed_in']} frame",
+            f"direction ({vector_text(motion['mean_axis']['direction'], 4)})"
+            + place_text(motion["mean_axis"]["point_mm"])
+            + f", in the {motion['expressed_in']} frame",
         ),
-        ("Joint", _joint(motion["joint_type"])),
-        ("Joint axis", _joint_axis(motion)),
+        ("Joint", joint_text(motion["joint_type"])),
+        ("Joint axis", joint_axis_text(motion, located=trial["positions"])),
         (
             "Dispersion",
             f"median {motion['axis_dispersion_deg']:.2f} deg by equal steps of the angle, "
@@ -102,10 +99,8 @@ def analysis_table(summary: Summary, folder: Path) -> None:
         *_fitted_peaks(model),
         (
             "Model error",
-            f"rotation {_number(model['rms_angle_error_deg'])} deg RMS, {_number(model['max_angle_error_deg'])} at "
-            f"most (frame {model['max_angle_error_frame']}); "
-            f"displacement {_number(model['rms_displacement_mm'])} mm RMS"
-            + ("" if model["points"]["from"] == "markers" else f" ({_radius(model)})"),
+            f"rotation {rounded(model['rms_angle_error_deg'])} deg RMS, {rounded(model['max_angle_error_deg'])} at "
+            f"most (frame {model['max_angle_error_frame']})" + _displacement(model),
         ),
         ("Results", str(folder)),
     ]
@@ -115,14 +110,19 @@ def analysis_table(summary: Summary, folder: Path) -> None:
 def comparison_table(summary: ComparisonSummary | TrialsSummary, folder: Path) -> None:
     """Write the best models of each number of keyframes, and the fewest keyframes within the tolerance."""
     table = Table(box=None, pad_edge=False, header_style="bold")
-    for column in ("N", "Method", "Law", "Keyframes from", "RMS, mm", "Max, mm", "ns/frame"):
+    unit = _unit_of_errors(summary)
+    for column in ("N", "Method", "Law", "Keyframes from", f"RMS, {unit}", f"Max, {unit}", "ns/frame"):
         text = column in ("Method", "Law", "Keyframes from")
         table.add_column(column, justify="left" if text else "right", no_wrap="trials" not in summary)
     models = f"{summary['models']} compared"
     if "trials" in summary:
         for mean in summary["best_by_keyframes"]:
-            rms = _mean_sd(mean["rms_displacement_mean_mm"], mean["rms_displacement_sd_mm"])
-            most = _mean_sd(mean["max_displacement_mean_mm"], mean["max_displacement_sd_mm"])
+            if unit == "mm":
+                rms = _mean_sd(mean["rms_displacement_mean_mm"], mean["rms_displacement_sd_mm"])
+                most = _mean_sd(mean["max_displacement_mean_mm"], mean["max_displacement_sd_mm"])
+            else:
+                rms = _mean_sd(mean["rms_angle_error_mean_deg"], mean["rms_angle_error_sd_deg"])
+                most = _mean_sd(mean["max_angle_error_mean_deg"], mean["max_angle_error_sd_deg"])
             table.add_row(*_model(mean), rms, most, f"{mean['ns_per_frame_mean']:.0f}")
         rows = [
             ("Models", models),
@@ -130,21 +130,32 @@ def comparison_table(summary: ComparisonSummary | TrialsSummary, folder: Path) -
         ]
     else:
         for one in summary["best_by_keyframes"]:
-            rms, most = _number(one["rms_displacement_mm"]), _number(one["max_displacement_mm"])
+            errors = one["rms_displacement_mm"], one["max_displacement_mm"]
+            errors = errors if unit == "mm" else (one["rms_angle_error_deg"], one["max_angle_error_deg"])
+            rms, most = map(rounded, errors)
             table.add_row(*_model(one), rms, most, f"{one['ns_per_frame']:.0f}")
         refused = f", {summary['refused']} of them refused" if summary["refused"] else ""
         rows = [("Models", models + refused)]
         rows += [(f"Fewest, {method}", _fewest(found)) for method, found in summary["selections"].items()]
     rows.append(("Results", str(folder)))
-    print_parts(
-        Text("RMS displacement of the distal body's points, for N keyframes in each phase", style="bold"), table
-    )
+    what = "RMS displacement of the distal body's points" if unit == "mm" else "Angle between model and measurement"
+    print_parts(Text(f"{what}, for N keyframes in each phase", style="bold"), table)
     print_rows("", rows)
+
+
+def _unit_of_errors(summary: ComparisonSummary | TrialsSummary) -> str:
+    """Models are told by their displacements; of orientations alone, or where trials are, by their angles."""
+    if "trials" in summary:
+        means = [one["rms_displacement_mean_mm"] for one in summary["best_by_keyframes"]]
+        return "mm" if all(mean is not None for mean in means) else "deg"
+    return "mm" if all(one["rms_displacement_mm"] is not None for one in summary["best_by_keyframes"]) else "deg"
 
 
 def _fewest(found: SelectionSummary) -> str:
     count = f"{found['keyframes']} keyframes of {found['frames']} frames (1 : {found['compression_ratio']:.1f})"
-    return f"{count} within {found['tolerance_mm']:g} mm: {_numbers(found['keyframe_frames'])}"
+    deg = found["tolerance_deg"]
+    limit = f"{found['tolerance_mm']:g} mm" if deg is None else f"{deg:g} deg"
+    return f"{count} within {limit}: {_numbers(found['keyframe_frames'])}"
 
 
 def _inversions(frames: Sequence[int]) -> str:
@@ -163,7 +174,7 @@ def _model(best: ModelChoice) -> tuple[str, str, str, str]:
 
 
 def _mean_sd(mean: float | None, sd: float | None) -> str:
-    return _number(mean) + ("" if sd is None else f" ± {sd:.2f}")
+    return rounded(mean) + ("" if sd is None else f" ± {sd:.2f}")
 
 
 def spread(found: SpreadSummary | None) -> str:
@@ -223,90 +234,6 @@ def _frames(trial: TrialSummary) -> str:
     return ", ".join(parts)
 
 
-def _number(value: float | None) -> str:
-    return "–" if value is None else f"{value:z.2f}"
-
-
-def _vector(values: Iterable[float], decimals: int) -> str:
-    return ", ".join(f"{value:z.{decimals}f}" for value in values)
-
-
-def _joint(found: JointTypeSummary) -> str:
-    status = {"forced": " (as stated)", None: ""}.get(found["status"], f" ({found['status']})")
-    return f"{found['type'].replace('_', '-' if 'hinge' in found['type'] else ' ')}{status}: {found['reason']}"
-
-
-def _joint_axis(motion: MotionSummary) -> str:
-    axis, numbers = motion["joint_axis"], motion["joint_numbers"]
-    if axis is None:
-        return _axes_or_center(motion)
-    model = axis["model"].replace("_", "-")
-    direction, point = _vector(axis["direction"], 4), _vector(axis["point_mm"], 1)
-    beside = _wander(numbers["wander"]) + _second_rotation(numbers["second_rotation"])
-    if axis["axis_cone95_deg"] is None:
-        return f"direction ({direction}), point ({point}) mm ({model}; undetermined: no interval can be given){beside}"
-    which = f"mean axis of a {model} whose axis wanders" if axis["is_mean"] else model
-    return (
-        f"direction ({direction}) within {axis['axis_cone95_deg']:.2g} deg, point ({point}) within "
-        f"{axis['point_radius95_mm']:.2g} mm ({which}, 95 %, for the clusters' frames, {axis['interval_method']}; "
-        f"each degree that a cluster turns on its bone with the motion turns this axis by up to "
-        f"{axis['sensitivity_deg_per_deg']:.2g} deg){beside}"
-    )
-
-
-def _wander(found: WanderSummary | None) -> str:
-    """How far the axis goes with the angle, or what would not be seen."""
-    if found is None or found["size_deg"] is None or found["unseen_deg"] is None:
-        return ""
-    if not found["significant"]:
-        return f"; the axis stays: a wander below {found['unseen_deg']:.2g} deg would not be seen"
-    return f"; it wanders by {found['size_deg']:.2g} deg and {found['size_mm']:.2g} mm over the range (axis_path.csv)"
-
-
-def _second_rotation(found: SecondRotationSummary | None) -> str:
-    if found is None or found["range_deg"] is None:
-        return ""
-    axis = found["axis"]
-    which = "its axis undetermined" if axis is None else f"about ({_vector(axis['direction'], 4)})"
-    return f"; second rotation {found['range_deg']:.2g} deg, {which}"
-
-
-def _axes_or_center(motion: MotionSummary) -> str:
-    found, axes, ball = motion["joint_type"], motion["joint_numbers"]["two_axes"], motion["joint_numbers"]["ball"]
-    if axes is not None:
-        told = f"{_one_of_two(axes['axis1'], 'proximal')}; {_one_of_two(axes['axis2'], 'distal')}"
-        if axes["angle_between_deg"] is None:
-            return f"{told}; how they stand to each other is undetermined ({_stands_on(found)})"
-        apart = f"{axes['angle_between_deg']:.1f} deg"
-        if axes["distance_mm"] is not None:
-            apart += f" and {abs(axes['distance_mm']):.1f} mm"
-        elif axes["parallel_offset_mm"] is not None:
-            apart = f"parallel, {axes['parallel_offset_mm']:.1f} mm"
-        return f"{told}; {apart} apart ({_stands_on(found)})"
-    if ball is not None:
-        within = "" if ball["radius95_mm"] is None else f" within {ball['radius95_mm']:.2g} mm"
-        return (
-            f"center ({_vector(ball['center_in_proximal_mm'], 1)}) mm in the proximal body{within} "
-            f"({_stands_on(found)})"
-        )
-    return "none"
-
-
-def _stands_on(found: JointTypeSummary) -> str:
-    return f"95 %, for the clusters' frames, {found['interval_method'] or 'not known'}"
-
-
-def _one_of_two(axis: JointLineSummary, body: Literal["proximal", "distal"]) -> str:
-    number = 1 if body == "proximal" else 2
-    direction = _vector(axis["direction_in_proximal"] if number == 1 else axis["direction_in_distal"], 4)
-    if not axis["determined"]:
-        return f"axis {number} undetermined, {axis['range_deg']:.0f} deg about it"
-    return (
-        f"axis {number} ({direction}) in the {body} body within {axis['cone95_deg']:.2g} deg, "
-        f"{axis['range_deg']:.0f} deg about it"
-    )
-
-
 def _fitted_peaks(model: ModelSummary) -> Iterable[tuple[str, str]]:
     """Tell where in each phase the velocity of a fitted law is highest, and how far that is known."""
     known = [(law["peak"], law["peak_sd"]) for law in model["phase_laws"]]
@@ -315,6 +242,13 @@ def _fitted_peaks(model: ModelSummary) -> Iterable[tuple[str, str]]:
         shown = ", ".join(f"{100.0 * peak:.1f} ± {100.0 * sd:.1f}" for peak, sd in fitted[:_PEAKS_TOLD])
         more = f" and {len(fitted) - _PEAKS_TOLD} more" if len(fitted) > _PEAKS_TOLD else ""
         yield "Highest velocity", f"at {shown}{more} % of the phases (± one standard deviation)"
+
+
+def _displacement(model: ModelSummary) -> str:
+    if model["points"]["radius_of_gyration_mm"] is None:
+        return ""
+    over = "" if model["points"]["from"] == "markers" else f" ({_radius(model)})"
+    return f"; displacement {rounded(model['rms_displacement_mm'])} mm RMS{over}"
 
 
 def _radius(model: ModelSummary) -> str:

@@ -113,6 +113,9 @@ def report(
         for path in published.left_out:
             name = one_line(str(path))
             tell(f"elbowscrew: warning: {name}: has no movement out and back, and is left out of the overlay")
+        asked_for_all = any(ALL in text.split(",") for text in figures)
+        for path, figure in () if asked_for_all else published.not_drawn:
+            tell(f"elbowscrew: warning: {one_line(str(path))}: has nothing for the figure {figure}, which is left out")
     if not quiet:
         for path in written:
             emit(f"{printable(str(path))}\n")

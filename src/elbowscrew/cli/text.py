@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+from collections.abc import Iterable
 from contextlib import suppress
 
 from elbowscrew.errors import OutputError, shortened
@@ -51,3 +52,13 @@ def printable(text: str) -> str:
 def one_line(text: str) -> str:
     """Fold white space, line ends included, to single blanks, make the rest printable, and cut it if it has no end."""
     return printable(shortened(" ".join(text.split())))
+
+
+def rounded(value: float | None) -> str:
+    """Write a number with two decimals; a dash where it is not known."""
+    return "–" if value is None else f"{value:z.2f}"
+
+
+def vector_text(values: Iterable[float], decimals: int) -> str:
+    """Write a vector's components."""
+    return ", ".join(f"{value:z.{decimals}f}" for value in values)

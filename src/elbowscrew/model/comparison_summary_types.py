@@ -11,6 +11,7 @@ from typing import Any, NotRequired, final
 from typing_extensions import TypedDict
 
 from elbowscrew.model.summary_types import (
+    LawErrorSummary,
     RecordingSummary,
     SelectionSummary,
     SourceSummary,
@@ -18,14 +19,12 @@ from elbowscrew.model.summary_types import (
 )
 
 
-class LawSummary(TypedDict):
+class LawSummary(LawErrorSummary):
     """A law of motion over one phase of the recording as it is."""
 
     law: str
     peak: float | None
     """Share of the phase at which the velocity is highest; None for the law's own."""
-    rms_displacement_mm: float | None
-    """RMS displacement from a screw motion under the law."""
 
 
 class PhaseSummary(TypedDict):

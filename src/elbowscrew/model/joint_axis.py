@@ -196,7 +196,8 @@ class JointAxis(ArrayRecord):
     single : bool
         Whether the motion has one axis at all, or is stated to have one; without, no fit is given.
     hinge, screw_hinge : FittedJoint or None
-        Maximum likelihood; the screw-hinge slides in proportion to its angle.
+        Maximum likelihood; the screw-hinge slides in proportion to its angle, and is None where positions are not
+        measured.
     weighted_mean, sara : LineEstimate
         Mean of the finite helical axes with weights ``sin^2(theta/2)`` (Woltring 1994), and the symmetrical axis of
         rotation approach (Ehrig, Taylor, Duda and Heller 2007).
@@ -229,8 +230,10 @@ class JointAxis(ArrayRecord):
     @property
     def preferred(self) -> Literal["hinge", "screw_hinge"] | None:
         """The fit to believe: the screw-hinge where its pitch is beyond what a hinge shows, else the hinge."""
-        if self.hinge is None or self.screw_hinge is None:
+        if self.hinge is None:
             return None
+        if self.screw_hinge is None:
+            return "hinge"
         if self.stated is not None:
             return self.stated
         pitched = abs(self.screw_hinge.pitch) > self.screw_hinge.pitch_sure

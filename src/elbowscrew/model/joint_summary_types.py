@@ -20,19 +20,19 @@ FitName = Literal["hinge", "screw_hinge"]
 
 
 class LineSummary(TypedDict):
-    """A line: its direction, a unit vector, and its point nearest the origin."""
+    """A line: its direction, a unit vector, and its point nearest the origin, None where that is not known."""
 
     direction: Vector
-    point_mm: Vector
+    point_mm: Vector | None
 
 
 class EstimateSummary(LineSummary):
     """An estimate of the joint's axis, in the frame the screws are expressed in and in those of the bodies."""
 
     direction_in_proximal: Vector
-    point_in_proximal_mm: Vector
+    point_in_proximal_mm: Vector | None
     direction_in_distal: Vector
-    point_in_distal_mm: Vector
+    point_in_distal_mm: Vector | None
 
 
 class FitSummary(EstimateSummary):
@@ -258,7 +258,7 @@ class NoiseSummary(TypedDict):
     marker_noise_mm: float | None
     """Standard deviation of each coordinate of each marker."""
     rotation_sd_deg: Vector
-    position_sd_mm: Vector
+    position_sd_mm: Vector | None
 
 
 class NoiseOfBodies(TypedDict):
@@ -299,10 +299,10 @@ class AnatomySummary(TypedDict):
 
 
 class PoseSummary(TypedDict):
-    """A pose: unit quaternion, scalar first, and position."""
+    """A pose: unit quaternion, scalar first, and position; the latter None where it was not measured."""
 
     quaternion: Quaternion
-    position_mm: Vector
+    position_mm: Vector | None
 
 
 class BodiesSummary(TypedDict):

@@ -49,8 +49,8 @@ class PhaseLaw(NamedTuple):
     peak : float or None
         Time of the highest velocity as a share of the phase; None where the law has no such parameter.
     rms : float
-        RMS displacement (m) between the measured motion and the ScLERP from the phase's first pose to its last under
-        this law.
+        RMS displacement (m), or of orientations alone RMS angle (rad), between the measured motion and the ScLERP from
+        the phase's first pose to its last under this law.
     peak_sd : float
         Standard deviation of a peak that was fitted, as a share of the phase; NaN of others, and where it is not known.
     """
@@ -119,6 +119,9 @@ class KeyframeSet(TableRecord):
         The joint whose angles are interpolated in place of the poses, in the frame they are expressed in.
     joint_angle : ndarray, shape (K, k), or None
         These angles, rad; of a ball the rotation vector.
+    located : bool
+        Whether positions were measured; else displacements and joint are rotations alone, and their dual parts and
+        points 0.
     """
 
     frame: NDArray[np.int64]
@@ -134,6 +137,7 @@ class KeyframeSet(TableRecord):
     law_end_s: Float
     joint: JointCoordinates | None = None
     joint_angle: Float | None = None
+    located: bool = True
 
     @property
     def table(self) -> tuple[tables.Column, ...]:
@@ -147,8 +151,8 @@ class KeyframeSet(TableRecord):
 
     @property
     def translation(self) -> Float:
-        """Shape (K, 3), meters."""
-        return pose_from_dual_quat(self.dual_quat)[1]
+        """Shape (K, 3), meters; NaN where positions were not measured."""
+        return pose_from_dual_quat(self.dual_quat)[1] if self.located else np.full((self.frame.size, 3), np.nan)
 
     @property
     def method_of_each(self) -> NDArray[np.str_]:
@@ -197,6 +201,8 @@ class KeyframeSet(TableRecord):
         axis, point = np.full((2, 3), np.nan), np.full((2, 3), np.nan)
         axis[: len(self.joint.axis)], point[: len(self.joint.point)] = self.joint.axis, self.joint.point
         quat, position = pose_from_dual_quat(self.joint.end)
+        if not self.located:
+            point, position = np.full((2, 3), np.nan), np.full(3, np.nan)
         row = np.concatenate([axis[0], point[0], axis[1], point[1], [self.joint.pitch], quat, position])
         return np.tile(row, (self.frame.size, 1))
 
@@ -231,20 +237,24 @@ class RebuiltMotion(TableRecord):
 class Selection(ArrayRecord):
     """The smallest set of measured poses between which a model stays within a tolerance, and what others reach.
 
+    Errors are RMS displacements of the body's points, m; of orientations alone they are angles, rad (`as_angle`).
+
     Attributes
     ----------
     row : ndarray of int, shape (K,)
         The chosen poses.
     tolerance : float
-        Largest RMS displacement allowed, meters.
+        Largest error allowed.
     frames : int
         Measured frames from the first to the last.
     count : ndarray of int, shape (C,)
         Numbers of keyframes, increasing.
     largest, rms : ndarray, shape (C,)
-        Largest RMS displacement over the frames (m) that the best set of so many keyframes has, and its RMS.
+        Largest error over the frames that the best set of so many keyframes has, and its RMS.
     complete : bool
         Whether all of them are the best there are; of a long recording only the last one is proved.
+    as_angle : bool
+        Whether tolerance and errors are angles.
     """
 
     row: NDArray[np.int64]
@@ -254,6 +264,7 @@ class Selection(ArrayRecord):
     largest: Float
     rms: Float
     complete: bool
+    as_angle: bool = False
 
     @property
     def compression(self) -> float:
@@ -310,6 +321,8 @@ class InterpolatedMotion(TableRecord):
 class BodyPoints(ArrayRecord):
     """The points of a body that a displacement is averaged over, in the body's frame.
 
+    Of orientations alone (`located` is False) unit vectors stand for them, whose RMS displacement is a chord.
+
     Attributes
     ----------
     centroid : ndarray, shape (3,)
@@ -317,12 +330,17 @@ class BodyPoints(ArrayRecord):
     covariance : ndarray, shape (3, 3)
         Mean of ``(x - c)(x - c)^T``, square meters.
     origin : str
-        "markers" or "radius".
+        "markers", "radius" or "orientation".
     """
 
     centroid: Float
     covariance: Float
-    origin: Literal["markers", "radius"]
+    origin: Literal["markers", "radius", "orientation"]
+
+    @property
+    def located(self) -> bool:
+        """Whether they are points at all."""
+        return self.origin != "orientation"
 
     @property
     def radius_of_gyration(self) -> float:

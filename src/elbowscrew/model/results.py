@@ -44,6 +44,8 @@ class JointMotion(ArrayRecord):
         Cut-off of the filter that both bodies went through; None if they went through none.
     dual_quat_lab_proximal : ndarray, shape (8,)
         ``A_0``, the proximal body at the reference; the identity if the file has no proximal body.
+    located : bool
+        Whether positions were measured; else all of these are rotations alone, and their dual parts 0.
     """
 
     dual_quat_proximal_distal: Float
@@ -53,6 +55,7 @@ class JointMotion(ArrayRecord):
     reference_row: int
     lowpass_hz: float | None
     dual_quat_lab_proximal: Float
+    located: bool = True
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)

@@ -142,6 +142,8 @@ class TrialSummary(RecordingSummary):
     """Frames of short gaps that were filled in."""
     missing_share: float
     """Share of the frames without a measured pose."""
+    positions: bool
+    """Whether positions were measured; else there are orientations alone, and all that needs a place is None."""
     reference_frame: int
     """The frame that displacements count from."""
     lowpass_hz: float | None
@@ -175,8 +177,8 @@ class JointAxisSummary(LineSummary):
     """Half-angle of the cone that holds the direction with 95 %."""
     point_radius95_mm: float | None
     """Radius of the circle across the axis that holds its position with 95 %."""
-    pitch_mm_per_rad: float
-    """Slide for each radian; 0 for a hinge."""
+    pitch_mm_per_rad: float | None
+    """Slide for each radian; 0 for a hinge; None where positions were not measured."""
     interval_method: str | None
     """What the interval stands on."""
     sensitivity_deg_per_deg: float | None
@@ -226,7 +228,16 @@ class MotionSummary(TypedDict):
     """None where the motion has no single axis."""
 
 
-class PhaseLawSummary(TypedDict):
+class LawErrorSummary(TypedDict):
+    """How far a law of motion is off the measured motion."""
+
+    rms_displacement_mm: float | None
+    """RMS displacement from a screw motion under the law."""
+    rms_angle_deg: float | None
+    """Where positions were not measured, the RMS angle from a rotation under the law."""
+
+
+class PhaseLawSummary(LawErrorSummary):
     """The law of motion of one phase of the model."""
 
     law: str
@@ -236,22 +247,23 @@ class PhaseLawSummary(TypedDict):
     """Its standard deviation where it was fitted; None where it was not, or is not known."""
     start_frame: int
     end_frame: int
-    rms_displacement_mm: float | None
-    """RMS displacement from a screw motion under the law."""
 
 
 class SelectionPoint(TypedDict):
-    """The least error with so many keyframes."""
+    """The least error with so many keyframes: RMS displacements, or where positions were not measured angles."""
 
     keyframes: int
-    max_rms_displacement_mm: float
-    rms_displacement_mm: float
+    max_rms_displacement_mm: float | None
+    rms_displacement_mm: float | None
+    max_angle_deg: float | None
+    rms_angle_deg: float | None
 
 
 class SelectionSummary(TypedDict):
-    """The fewest keyframes within a tolerance."""
+    """The fewest keyframes within a tolerance: a length, or where positions were not measured an angle."""
 
-    tolerance_mm: float
+    tolerance_mm: float | None
+    tolerance_deg: float | None
     frames: int
     """Frames that could be keyframes."""
     keyframes: int
@@ -265,9 +277,9 @@ class SelectionSummary(TypedDict):
 
 PointsSummary = TypedDict(
     "PointsSummary",
-    {"from": str, "centroid_mm": Vector, "radius_of_gyration_mm": float},
+    {"from": str, "centroid_mm": Vector | None, "radius_of_gyration_mm": float | None},
 )
-"""The points over which the RMS displacement is averaged, and where they are from."""
+"""The points over which the RMS displacement is averaged, and where they are from; None of orientations alone."""
 
 
 class ModelSummary(TypedDict):

@@ -6,8 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from elbowscrew.errors import SettingError
 from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat
 from elbowscrew.model import Analysis, InterpolatedMotion, Landmarks, QualityWarning, Recording
+from elbowscrew.model.without_places import without_places
 from elbowscrew.motion.anatomy.anatomy import anatomical_motion, joint_of_landmarks, proximal_lines, side_doubts
 from elbowscrew.motion.axes.measured import (
     lines_one_way,
@@ -124,6 +126,9 @@ def analyze(recording: Recording, settings: Settings | None = None, *, landmarks
         )
         warnings += (QualityWarning(code="several-repetitions", message=message),)
     anatomy = None
+    if landmarks is not None and not joint.located:
+        msg = "--landmarks: landmarks are places, and the two bodies have orientations and no positions; leave it out"
+        raise SettingError(msg)
     if landmarks is not None:
         named = wanted.distal is not None and (measured.proximal is None or wanted.proximal is not None)
         warnings += side_doubts(landmarks, measured.proximal, measured.distal, named=named)
@@ -138,7 +143,7 @@ def analyze(recording: Recording, settings: Settings | None = None, *, landmarks
         )
         warnings += doubts
     interpolated = _compared(model, measured, wanted)
-    return Analysis(
+    found = Analysis(
         recording=recording,
         settings=wanted,
         proximal=measured.proximal,
@@ -169,6 +174,7 @@ def analyze(recording: Recording, settings: Settings | None = None, *, landmarks
         quality=measured.quality,
         warnings=warnings,
     )
+    return found if joint.located else without_places(found)
 
 
 def _compared(model: JointModel, measured: Measurement, settings: Settings) -> InterpolatedMotion:

@@ -153,3 +153,22 @@ def summed_rotation(quat: Float) -> Float:
     turn = 2.0 * dual_quaternion.log(dual_quaternion.canonical(padded))[:, :3]
     total = np.concatenate([np.zeros((1, 3)), np.cumsum(np.nan_to_num(turn), axis=0)])
     return np.where(np.isfinite(quat[:, :1]), total, np.nan)
+
+
+def points_of_orientation() -> BodyPoints:
+    """What stands for a body's points where only its orientation is known: unit vectors of all directions.
+
+    Their RMS displacement is the chord of the angle between two orientations, ``2 sin(delta/2)``: what is least or
+    within a limit by the one is so by the other.
+    """
+    return BodyPoints(centroid=np.zeros(3), covariance=0.5 * np.eye(3), origin="orientation")
+
+
+def told_error(displacement: Float, points: BodyPoints) -> Float:
+    """What is told of RMS displacements: themselves (m), or of orientations the angles (rad) whose chords they are."""
+    return displacement if points.located else 2.0 * np.arcsin(np.minimum(0.5 * displacement, 1.0))
+
+
+def displacement_of_error(error: float, points: BodyPoints) -> float:
+    """RMS displacement of an error as `told_error` tells it."""
+    return error if points.located else 2.0 * float(np.sin(0.5 * min(error, np.pi)))

@@ -11,11 +11,12 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter, StrMethodFormatter
 from numpy.typing import NDArray
 
-from elbowscrew.choices import METHOD_LABELS, LengthUnit
+from elbowscrew.choices import METHOD_LABELS
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import ComparedModels, ComparedOverTrials, Comparison, Selection, TrialsComparison
 from elbowscrew.plots import style
-from elbowscrew.quantities import length_in
+from elbowscrew.quantities import angle_in, length_in
+from elbowscrew.settings import Settings
 
 _WIDTH_MM: Final = 170.0
 _BETWEEN_TWO: Final = {
@@ -45,22 +46,31 @@ class _Errors(NamedTuple):
     keyframes: NDArray[np.int64]
     value: Float
     spread: Float
+    label: str
 
     @classmethod
-    def of(cls, models: ComparedModels | ComparedOverTrials, unit: LengthUnit) -> _Errors:
-        if isinstance(models, ComparedModels):
-            value, spread = models.rms_displacement, np.full(models.rank.size, np.nan)
-        else:
-            value, spread = models.rms_displacement_mean, models.rms_displacement_sd
+    def of(cls, models: ComparedModels | ComparedOverTrials, settings: Settings) -> _Errors:
+        """RMS displacements, or of orientations alone, which have none, the angles."""
+        mean = "" if isinstance(models, ComparedModels) else "_mean"
+        value: Float = getattr(models, f"rms_displacement{mean}")
+        of_length = bool(np.isfinite(value).any())
+        kind = "rms_displacement" if of_length else "rms_angle_error"
+        value = getattr(models, f"{kind}{mean}")
+        spread = getattr(models, f"{kind}_sd") if mean else np.full(models.rank.size, np.nan)
         known = np.isfinite(value)
+        if of_length:
+            value, spread = (length_in(values[known], settings.length_unit) for values in (value, spread))
+        else:
+            value, spread = (angle_in(values[known], settings.angle_unit) for values in (value, spread))
         return cls(
             models.data[known],
             models.method[known],
             models.blend[known],
             models.law[known],
             models.keyframes_per_phase[known],
-            length_in(value[known], unit),
-            length_in(spread[known], unit),
+            value,
+            spread,
+            f"RMS displacement ({settings.length_unit})" if of_length else f"RMS angle ({settings.angle_unit})",
         )
 
     def where(self, mask: NDArray[np.bool_]) -> _Errors:
@@ -72,6 +82,7 @@ class _Errors(NamedTuple):
             self.keyframes[mask],
             self.value[mask],
             self.spread[mask],
+            self.label,
         )
 
     def best_by_count(self) -> tuple[NDArray[np.int64], Float, Float]:
@@ -84,21 +95,20 @@ class _Errors(NamedTuple):
 
 def comparison_figure(found: Comparison | TrialsComparison) -> Figure:
     """Make the figure of a comparison, of one trial or of several."""
-    unit = found.settings.length_unit
-    errors = _Errors.of(found.models, unit)
+    errors = _Errors.of(found.models, found.settings)
     figure = style.new_figure(_WIDTH_MM, 150.0)
     panels = figure.subplots(2, 2).ravel()
-    plot_methods(panels[0], errors, unit)
-    plot_laws(panels[1], errors, unit)
-    plot_keyframe_sources(panels[2], errors, unit)
+    plot_methods(panels[0], errors)
+    plot_laws(panels[1], errors)
+    plot_keyframe_sources(panels[2], errors)
     trials = [found.selections] if isinstance(found, Comparison) else [one.selections for one in found.trials]
-    plot_selections(panels[3], trials, unit)
+    plot_selections(panels[3], trials, found.settings)
     for ax, letter in zip(panels, "abcd", strict=True):
         ax.set_title(letter, loc="left")
     return figure
 
 
-def plot_methods(ax: Axes, errors: _Errors, unit: LengthUnit) -> Axes:
+def plot_methods(ax: Axes, errors: _Errors) -> Axes:
     """Draw the error over the number of keyframes in each phase, for each method under its best law, piecewise."""
     raw = _as_recorded(errors)
     piecewise = raw.where(raw.blend == "piecewise")
@@ -109,7 +119,7 @@ def plot_methods(ax: Axes, errors: _Errors, unit: LengthUnit) -> Axes:
         if name in piecewise.method:
             _curve(ax, piecewise.where(mine), k, METHOD_LABELS[name])
     ax.set_title("each method, best law", loc="center", fontweight="normal")
-    return _over_count(ax, unit)
+    return _over_count(ax, errors)
 
 
 def _as_recorded(errors: _Errors) -> _Errors:
@@ -117,7 +127,7 @@ def _as_recorded(errors: _Errors) -> _Errors:
     return errors.where(errors.data == ("raw" if "raw" in errors.data else errors.data[0]))
 
 
-def plot_laws(ax: Axes, errors: _Errors, unit: LengthUnit) -> Axes:
+def plot_laws(ax: Axes, errors: _Errors) -> Axes:
     """Draw the error of each law, for each number of keyframes in a phase, under its best method."""
     raw = _as_recorded(errors)
     counts = np.unique(raw.keyframes)
@@ -145,24 +155,35 @@ def plot_laws(ax: Axes, errors: _Errors, unit: LengthUnit) -> Axes:
     plain_ticks(ax.xaxis)
     values = raw.value[np.isin(raw.keyframes, counts[:4])]
     ax.set_xlim(left=max(ax.get_xlim()[0], 0.4 * float(values.min())))
-    ax.set_xlabel(f"RMS displacement ({unit})")
+    ax.set_xlabel(errors.label)
     ax.set_title("each law, best method", loc="center", fontweight="normal")
     ax.grid(axis="y", linewidth=0.4, color="#DDDDDD")
     ax.legend(loc="best", title="in each phase", title_fontsize=7.5, frameon=True, edgecolor="none")
     return ax
 
 
-def plot_keyframe_sources(ax: Axes, errors: _Errors, unit: LengthUnit) -> Axes:
+def plot_keyframe_sources(ax: Axes, errors: _Errors) -> Axes:
     """Draw the error over the number of keyframes, taken from the recording as it is, filtered, and thinned."""
     for k, name in enumerate(dict.fromkeys(sorted(errors.data.tolist(), key=_source_order))):
         label = f"{name} frame" if name.startswith("every") else name
         _curve(ax, errors.where(errors.data == name), k, label, grey=True)
     ax.set_title("keyframes from, best model", loc="center", fontweight="normal")
-    return _over_count(ax, unit)
+    return _over_count(ax, errors)
 
 
-def plot_selections(ax: Axes, trials: Sequence[dict[str, Selection]], unit: LengthUnit) -> Axes:
-    """Draw the largest error over the number of keyframes, where these are chosen best."""
+def plot_selections(ax: Axes, trials: Sequence[dict[str, Selection]], settings: Settings) -> Axes:
+    """Draw the largest error over the number of keyframes, where these are chosen best.
+
+    Of trials with positions and others without, those without are left out.
+    """
+    chosen = [found for selections in trials for found in selections.values()]
+    of_angles = bool(chosen) and all(found.as_angle for found in chosen)
+    trials = [{name: one for name, one in found.items() if one.as_angle == of_angles} for found in trials]
+    unit = settings.angle_unit if of_angles else settings.length_unit
+
+    def told(values: Float) -> Float:
+        return angle_in(values, settings.angle_unit) if of_angles else length_in(values, settings.length_unit)
+
     drawn: set[str] = set()
     for selections in trials:
         for method, selection in selections.items():
@@ -173,9 +194,9 @@ def plot_selections(ax: Axes, trials: Sequence[dict[str, Selection]], unit: Leng
                 "linewidth": 1.0 if len(trials) > 1 else 1.3,
                 "markersize": 3.0,
             }
-            ax.plot(selection.count, length_in(selection.largest, unit), label=label, **look)
+            ax.plot(selection.count, told(selection.largest), label=label, **look)
     if trials and trials[0]:
-        tolerance = float(length_in(np.array(next(iter(trials[0].values())).tolerance), unit))
+        tolerance = float(told(np.array(next(iter(trials[0].values())).tolerance)))
         ax.axhline(tolerance, **style.LEVEL)
         ax.annotate(
             f"tolerance {tolerance:.3g} {unit}",
@@ -190,7 +211,7 @@ def plot_selections(ax: Axes, trials: Sequence[dict[str, Selection]], unit: Leng
     _leave_room(ax, *ax.get_ylim())
     ax.xaxis.set_major_locator(MaxNLocator(integer=True))
     ax.set_xlabel("Keyframes in all, chosen best (–)")
-    ax.set_ylabel(f"Largest RMS displacement ({unit})")
+    ax.set_ylabel(f"Largest angle ({unit})" if of_angles else f"Largest RMS displacement ({unit})")
     ax.set_title("fewest keyframes", loc="center", fontweight="normal")
     return ax
 
@@ -221,12 +242,12 @@ def series_look(k: int, *, line: bool, grey: bool = False) -> dict[str, Any]:
     }
 
 
-def _over_count(ax: Axes, unit: LengthUnit) -> Axes:
+def _over_count(ax: Axes, errors: _Errors) -> Axes:
     ax.set_yscale("log")
     plain_ticks(ax.yaxis)
     ax.xaxis.set_major_locator(MaxNLocator(integer=True))
     ax.set_xlabel("Keyframes in each phase (–)")
-    ax.set_ylabel(f"RMS displacement ({unit})")
+    ax.set_ylabel(errors.label)
     _leave_room(ax, *ax.get_ylim())
     ax.legend(loc="upper right", ncols=2, columnspacing=0.8, handlelength=1.7, handletextpad=0.5)
     return ax

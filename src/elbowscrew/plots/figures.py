@@ -112,8 +112,12 @@ def joint_axis_figure(analysis: Analysis | TrialView, *, width_mm: float = WIDTH
 
 
 def error_figure(analysis: Analysis | TrialView, *, width_mm: float = WIDTH_MM) -> Figure:
-    """Make the figure of angle error and RMS displacement over time."""
+    """Make the figure of angle error and RMS displacement over time; of orientations alone there is only the former."""
     view = view_of(analysis)
+    if not view.located:
+        figure = style.new_figure(width_mm, 60.0)
+        style.legend(figure, series.plot_angle_error(figure.add_subplot(), view))
+        return figure
     figure = style.new_figure(width_mm, 92.0)
     upper, lower = figure.subplots(2, 1, sharex=True)
     series.plot_angle_error(upper, view).set_xlabel("")

@@ -24,10 +24,13 @@ from elbowscrew.view.trial_view import TrialView
 
 
 def joint_angles_figure(analysis: Analysis | TrialView, *, width_mm: float = WIDTH_MM) -> Figure:
-    """Make the figure of the joint's own angles over time, of two against each other, and of what is left."""
+    """Make the figure of the joint's own angles over time, of two against each other, and of what is left.
+
+    Of orientations alone there is no position that could be left.
+    """
     view, angles = _with_angles(analysis)
     shown, stretch = shown_part(view)
-    both = angles.angle.shape[1] == 2
+    both, in_time = angles.angle.shape[1] == 2, 3 if view.located else 2
     if width_mm < NARROW_MM:
         figure = style.new_figure(width_mm, 135.0 + 0.8 * width_mm * both)
         grid = figure.add_gridspec(1 + both, 1, height_ratios=[135.0, 0.8 * width_mm][: 1 + both])
@@ -36,10 +39,12 @@ def joint_angles_figure(analysis: Analysis | TrialView, *, width_mm: float = WID
         figure = style.new_figure(width_mm, 110.0)
         grid = figure.add_gridspec(3, 2, width_ratios=[1.5, 1.0]) if both else figure.add_gridspec(1, 1)
         cells = [grid[:, 0], grid[:2, 1]] if both else [grid[0, 0]]
-    panels = overview_grid(figure, view, stretch, 3, cells[0], first=1.5)
-    plot_joint_angles(panels[-3], shown).set_xlabel("")
-    plot_residual_rotation(panels[-2], shown).set_xlabel("")
-    plot_residual_translation(panels[-1], shown)
+    panels = overview_grid(figure, view, stretch, in_time, cells[0], first=1.5)
+    plot_joint_angles(panels[-in_time], shown).set_xlabel("")
+    plot_residual_rotation(panels[1 - in_time], shown)
+    if view.located:
+        panels[1 - in_time].set_xlabel("")
+        plot_residual_translation(panels[-1], shown)
     if both:
         panels.append(plot_angles_together(figure.add_subplot(cells[1]), shown))
     style.letter(*panels)

@@ -114,13 +114,16 @@ def _spans(view: TrialView, mask: Bool) -> tuple[Float, Float]:
 
 
 def velocity_figure(analysis: Analysis | TrialView, *, width_mm: float = WIDTH_MM) -> Figure:
-    """Make the figure of angular velocity and slide velocity over time."""
+    """Make the figure of angular velocity and slide velocity over time; of orientations alone there is no slide."""
     view = view_of(analysis)
     shown, stretch = shown_part(view)
-    figure = style.new_figure(width_mm, 92.0)
-    panels = overview_grid(figure, view, stretch, 2)
-    plot_angular_velocity(panels[-2], shown).set_xlabel("")
-    plot_slide_velocity(panels[-1], shown)
+    figure = style.new_figure(width_mm, 92.0 if view.located else 60.0)
+    count = 2 if view.located else 1
+    panels = overview_grid(figure, view, stretch, count)
+    plot_angular_velocity(panels[-count], shown)
+    if view.located:
+        panels[-count].set_xlabel("")
+        plot_slide_velocity(panels[-1], shown)
     style.letter(*panels)
     style.legend(figure, *panels)
     return figure

@@ -28,7 +28,7 @@ def _sentences(view: TrialView) -> Iterator[str]:
             f"({vector(ball['score']['center_in_distal_mm'], 1)}) mm."
         )
     yield from _beside_a_hinge(joint)
-    yield from _intervals(joint)
+    yield from _intervals(joint, located=view.located)
     if two is not None or ball is not None:
         mixed = "both axes" if two is not None else "all directions"
         yield (
@@ -44,6 +44,8 @@ def _apart(two: TwoAxesSummary) -> str:
     if two["angle_between_deg"] is None:
         return "How the axes stand to each other is undetermined."
     limits = f"({number(two['angle_between_deg_low'], 1)} to {number(two['angle_between_deg_high'], 1)})"
+    if two["distance_mm"] is None and two["parallel_offset_mm"] is None:
+        return f"The axes are {number(two['angle_between_deg'], 1)} deg {limits} apart in direction."
     if two["distance_mm"] is None:
         off = f"({number(two['parallel_offset_mm_low'], 1)} to {number(two['parallel_offset_mm_high'], 1)})"
         return f"The axes are parallel, {number(two['parallel_offset_mm'], 1)} mm {off} apart."
@@ -66,28 +68,45 @@ def _beside_a_hinge(joint: JointSummary) -> Iterator[str]:
         yield f"Beside the hinge there is a second rotation of {number(second['range_deg'])} deg; {which}."
     if wander is not None and wander["significant"]:
         yield (
-            f"The axis wanders by {number(wander['size_deg'])} deg and {number(wander['size_mm'])} mm over the range "
+            f"The axis wanders by {number(wander['size_deg'])} deg{_and_mm(wander['size_mm'])} over the range "
             "of the angle: the axis given first is its mean, and axis_path.csv has the axis against the angle."
         )
     elif wander is not None:
         yield (
-            f"The axis is not seen to wander; less than {number(wander['unseen_deg'])} deg and "
-            f"{number(wander['unseen_mm'])} mm over the range would not be seen."
+            f"The axis is not seen to wander; less than {number(wander['unseen_deg'])} deg"
+            f"{_and_mm(wander['unseen_mm'])} over the range would not be seen."
         )
 
 
-def _intervals(joint: JointSummary) -> Iterator[str]:
+def _and_mm(value: float | None) -> str:
+    return "" if value is None else f" and {number(value)} mm"
+
+
+def _intervals(joint: JointSummary, *, located: bool) -> Iterator[str]:
     method, skin, kappa = joint["joint_type"]["interval_method"], joint["skin_motion"], joint["sensitivity_deg_per_deg"]
     if method is None:
         return
-    yield (
-        f"The 95 % intervals are those of the clusters’ frames, {method}. They hold if the clusters move on the bone "
-        "no more as a whole than their markers among themselves; skin often moves more: --skin-motion states it."
-    )
+    if not located:
+        yield (
+            f"The 95 % intervals are those of the sensors’ frames, {method}. They hold if no sensor turns on its bone "
+            "with the motion, which nothing here would show; skin often does so: --skin-motion 0,DEG states it."
+        )
+    else:
+        yield (
+            f"The 95 % intervals are those of the clusters’ frames, {method}. They hold if the clusters move on the "
+            "bone no more as a whole than their markers among themselves; skin often moves more: --skin-motion states "
+            "it."
+        )
+    one = "cluster" if located else "sensor"
     if kappa is not None:
-        yield f"Each degree that a cluster turns on its bone with the motion turns it by up to {number(kappa)} deg."
-    if skin is not None:
+        yield f"Each degree that a {one} turns on its bone with the motion turns it by up to {number(kappa)} deg."
+    if skin is not None and located:
         yield (
             f"Stated and included is motion of each cluster as a whole of {number(skin['mm'])} mm and "
             f"{number(skin['deg'])} deg: its part is {number(skin['part_deg'])} deg and {number(skin['part_mm'])} mm."
+        )
+    elif skin is not None:
+        yield (
+            f"Stated and included is a turn of each sensor on its bone of {number(skin['deg'])} deg: its part is "
+            f"{number(skin['part_deg'])} deg."
         )

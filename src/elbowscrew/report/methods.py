@@ -72,10 +72,14 @@ def _sentences(trial: TrialView) -> Iterator[str]:
     }
     window = settings.reference_window
     mean = f"the mean of {window} frames from frame" if window > 1 else "frame"
+    resolved = (
+        "its finite helical (screw) axis, the rotation θ about it and the translation along it"
+        if trial.located
+        else "the direction of its axis and the rotation θ about it"
+    )
     yield (
         f"The displacement from the reference pose ({mean} {summary['trial']['reference_frame']}) was resolved into "
-        f"its finite helical (screw) axis, the rotation θ about it and the translation along it, expressed in "
-        f"{frames[settings.express_in]}."
+        f"{resolved}, expressed in {frames[settings.express_in]}."
     )
     yield (
         (
@@ -93,7 +97,7 @@ def _sentences(trial: TrialView) -> Iterator[str]:
         yield f"Axes are given for rotations of {settings.min_angle_deg:g}° and more."
     else:
         yield f"Axes are given where the standard deviation of their direction is {settings.axis_sd_deg:g}° or less."
-    yield from _noise(trial.joint_summary["noise"])
+    yield from _noise(trial.joint_summary["noise"], located=trial.located)
     yield from _joint_axis(trial)
     yield from _model(trial)
     yield f"Computations were made with elbowscrew {summary['elbowscrew']} (Pennestrì and Valentini 2010)."
@@ -101,10 +105,11 @@ def _sentences(trial: TrialView) -> Iterator[str]:
 
 def _recording(trial: TrialView, figures: TrialSummary) -> Iterator[str]:
     settings = trial.settings
+    what = "Poses of the segments" if trial.located else "Orientations of the segments, and no positions,"
     if settings.resample_hz is None:
-        yield f"Poses of the segments were recorded at {figures['rate_hz']:.6g} Hz."
+        yield f"{what} were recorded at {figures['rate_hz']:.6g} Hz."
     else:
-        yield "Poses of the segments were recorded."
+        yield f"{what} were recorded."
     if settings.proximal_markers or settings.distal_markers:
         way = {"svd": "least squares", "dual-qr": "the dual QR decomposition"}[settings.pose_method]
         yield f"Poses were found from marker positions by {way}."
@@ -131,38 +136,39 @@ def _recording(trial: TrialView, figures: TrialSummary) -> Iterator[str]:
         yield f"{missing}; no gaps were filled."
 
 
-def _noise(noise: NoiseOfBodies) -> Iterator[str]:
+def _noise(noise: NoiseOfBodies, *, located: bool) -> Iterator[str]:
     sources = sorted({body["source"] for body in (noise["proximal"], noise["distal"]) if body is not None})
     if sources:
-        yield (
-            "Standard deviations of angle, translation and axis are propagated from the noise of the poses "
-            f"({', '.join(sources)})."
-        )
+        what = "angle, translation and axis" if located else "angle and axis"
+        yield f"Standard deviations of {what} are propagated from the noise of the poses ({', '.join(sources)})."
 
 
 def _joint_axis(trial: TrialView) -> Iterator[str]:
     joint = trial.joint_summary
     preferred, fit, screw_hinge = joint["preferred"], preferred_fit(joint), joint["screw_hinge"]
-    if preferred is None or fit is None or screw_hinge is None:
+    if preferred is None or fit is None:
         share = joint["unexplained_share"]
         left = "more rotation than there is about it" if share is None else f"{100.0 * share:.2g} % of its rotation"
         yield (
             f"The motion has no single axis (a hinge leaves {left} unexplained); the mean of the helical axes, "
             "weighted by sin²(θ/2), is given (Woltring 1994)."
         )
-        yield from _other_joint(joint)
+        yield from _other_joint(joint, located=trial.located)
     else:
         robust = ", frames weighted by Tukey's biweight" if trial.settings.robust else ""
-        if screw_hinge["pitch_sd_mm_per_rad"] is None:
+        if screw_hinge is None:
+            why = "orientations tell of no slide"
+        elif screw_hinge["pitch_sd_mm_per_rad"] is None:
             why = "no error can be given for the pitch of the screw-hinge"
         else:
             exceeds = "exceeds" if preferred == "screw_hinge" else "does not exceed"
             why = f"the pitch of the screw-hinge {exceeds} what a hinge shows by chance (99.73 %)"
         if joint["joint_type"]["status"] == "forced":
             why = "stated"
+        kinds = "a hinge and as a screw-hinge" if screw_hinge is not None else "a hinge"
         yield (
-            f"The joint axis was fitted to the relative poses of {fit['frames']} frames by maximum likelihood as a "
-            f"hinge and as a screw-hinge{robust}; the {preferred.replace('_', '-')} is reported, as {why}."
+            f"The joint axis was fitted to the relative poses of {fit['frames']} frames by maximum likelihood as "
+            f"{kinds}{robust}; the {preferred.replace('_', '-')} is reported, as {why}."
         )
         wander, told = joint["wander"], joint["mean_axis"] or fit
         if joint["mean_axis"] is not None and wander is not None and wander["size_deg"] is not None:
@@ -170,7 +176,16 @@ def _joint_axis(trial: TrialView) -> Iterator[str]:
                 f"As the axis turns by {wander['size_deg']:.2g}° over the range of the angle, its mean over the "
                 "range is reported."
             )
-        if told["axis_cone95_deg"] is not None:
+        if told["axis_cone95_deg"] is not None and not trial.located:
+            yield (
+                f"Its 95 % cone, {told['axis_cone95_deg']:.2g}°, is that of the sensors' frames, "
+                f"{told['interval_method']}. It holds if no sensor turns on its bone with the motion; each degree that "
+                f"one does turns the axis by up to {fit['sensitivity_deg_per_deg']:.2g}°."
+            )
+            if trial.settings.skin_motion is not None:
+                turn = trial.settings.skin_motion[1] if len(trial.settings.skin_motion) > 1 else 0.0
+                yield f"A turn of the sensors on the bone of {turn:g}° was stated and is included."
+        elif told["axis_cone95_deg"] is not None:
             yield (
                 f"Its 95 % cone and radius, {told['axis_cone95_deg']:.2g}° and {told['point_radius95_mm']:.2g} mm, are "
                 f"those of the marker clusters' frames, {told['interval_method']}. They hold if the clusters move on "
@@ -187,10 +202,11 @@ def _joint_axis(trial: TrialView) -> Iterator[str]:
     )
 
 
-def _other_joint(joint: JointSummary) -> Iterator[str]:
+def _other_joint(joint: JointSummary, *, located: bool) -> Iterator[str]:
     """Tell of two axes or a center, where the motion has them."""
     two, ball, kind = joint["two_axes"], joint["ball"], joint["joint_type"]
-    if two is None and ball is None:
+    ball_by_turning = two is None and ball is None and kind["type"] == "ball"
+    if two is None and ball is None and not ball_by_turning:
         return
     status = "stated" if kind["status"] == "forced" else kind["status"]
     found = "has two axes, one fixed in each segment" if two is not None else "is a ball joint"
@@ -199,7 +215,8 @@ def _other_joint(joint: JointSummary) -> Iterator[str]:
         "its own angles are given for each frame."
     )
     if kind["interval_method"] is not None:
-        yield f"The 95 % intervals are those of the marker clusters' frames, {kind['interval_method']}."
+        whose = "marker clusters'" if located else "sensors'"
+        yield f"The 95 % intervals are those of the {whose} frames, {kind['interval_method']}."
 
 
 def _model(trial: TrialView) -> Iterator[str]:
@@ -212,13 +229,21 @@ def _model(trial: TrialView) -> Iterator[str]:
     pieces = "phase by phase" if settings.blend == "piecewise" else "all poses at once"
     yield (f"The motion was modeled by {method} of {len(keyframes)} keyframe poses ({listed}), {pieces}.")
     if settings.tolerance_mm is not None:
+        selection = model["selection"]
+        if selection is None or selection["tolerance_deg"] is None:
+            within = f"the RMS displacement stays within {settings.tolerance_mm:g} mm"
+        else:
+            within = f"the angle to the measured orientation stays within {selection['tolerance_deg']:g}°"
         yield (
-            "The keyframes are the fewest measured poses between which the RMS displacement stays within "
-            f"{settings.tolerance_mm:g} mm in every frame, found by dynamic programming."
+            f"The keyframes are the fewest measured poses between which {within} in every frame, found by dynamic "
+            "programming."
         )
     elif len(keyframes) > model["phases"] + 1:
         yield f"The parameter of each keyframe is {_KNOTS.get(settings.knots, f'by {settings.knots}')}."
     yield from _laws(trial, model)
+    if not trial.located:
+        yield "The model's error is the angle between modeled and measured orientation."
+        return
     points = model["points"]
     over = (
         f"the {trial.named_joint.distal.name}'s markers"

@@ -121,7 +121,8 @@ def brief(value: float | None, digits: int = 2) -> str:
 
 def vector(values: Iterable[float | None] | None, decimals: int = 1) -> str:
     """Write a vector; a dash where it is not known."""
-    if values is None:
+    values = [] if values is None else list(values)
+    if all(value is None or not math.isfinite(value) for value in values):
         return _NONE
     return ", ".join(number(value, decimals) for value in values)
 

@@ -14,16 +14,26 @@ from elbowscrew.report.captions import overlay_caption
 from elbowscrew.report.figure_files import figure_files, files_of
 from elbowscrew.results.staging import settle, write_files
 from elbowscrew.results.trial_views import view_of_result
-from elbowscrew.view.figure_names import FIGURE_ENTRIES, OVERLAY, caption_file
+from elbowscrew.view.figure_names import FIGURE_ENTRIES, OVERLAY, caption_file, has_figure
 
 _LONGEST_NAME: Final = 80
 
 
 class Published(NamedTuple):
-    """The files written, and the results that an overlay had to leave out as they have no movement out and back."""
+    """The files written, and what was not.
+
+    Attributes
+    ----------
+    files : tuple of Path
+    left_out : tuple of Path
+        Results that an overlay had to leave out, as they have no movement out and back.
+    not_drawn : tuple of (Path, str)
+        Results, and the figures asked for that they have nothing for.
+    """
 
     files: tuple[Path, ...]
     left_out: tuple[Path, ...]
+    not_drawn: tuple[tuple[Path, str], ...]
 
 
 def save_publication_figures(
@@ -72,10 +82,11 @@ def save_publication_figures(
     contents: dict[str, bytes] = {}
     single = [name for name in FIGURE_ENTRIES if name in names]
     prefixes = _prefixes(results)
-    curves, left_out, units = [], [], set()
+    curves, left_out, not_drawn, units = [], [], [], set()
     for result, prefix in zip(results, prefixes, strict=True):
         settle(result)
         trial = view_of_result(result, single)
+        not_drawn += [(result, name) for name in single if not has_figure(name, trial)]
         for name, content in figure_files(trial, single, formats, width_mm, font).items():
             contents[f"{prefix}{name}"] = content
         if OVERLAY in names:
@@ -97,7 +108,7 @@ def save_publication_figures(
         cycles = sum(curve.cycles for curve in curves)
         contents |= drawn | {caption_file(OVERLAY): overlay_caption(len(curves), cycles, unit).encode()}
     write_files(folder, contents, replaceable=("",) if force else None)
-    return Published(tuple(folder / name for name in contents), tuple(left_out))
+    return Published(tuple(folder / name for name in contents), tuple(left_out), tuple(not_drawn))
 
 
 def _prefixes(results: Sequence[Path]) -> list[str]:

@@ -58,12 +58,10 @@ def error_chart(trial: TrialView) -> Markup:
     """Angle error and RMS displacement of the model over time, one above the other."""
     panels: list[str] = []
     keys = Markup()
-    for k, (values, label, unit) in enumerate(
-        (
-            (np.degrees(trial.angle_error), "Angle error", "deg"),
-            (1000.0 * trial.rms_displacement, "RMS displacement", "mm"),
-        )
-    ):
+    errors = [(np.degrees(trial.angle_error), "Angle error", "deg")]
+    if trial.located:
+        errors.append((1000.0 * trial.rms_displacement, "RMS displacement", "mm"))
+    for k, (values, label, unit) in enumerate(errors):
         chart = _over_time(trial, f"error{k}", "", "", range_of(values, zero=True), f"{label} ({unit})", height=230.0)
         _mark_tracking(chart, trial)
         chart.line(trial.time_s, values, "measured", "model against measurement")
@@ -73,8 +71,9 @@ def error_chart(trial: TrialView) -> Markup:
         panels.append(chart.panel(0.0, 235.0 * k))
         keys = chart.keys()
     whose = f"the {trial.named_joint.distal.name}'s points"
-    text = f"Angle between modeled and measured orientation, and RMS displacement of {whose}, over time."
-    return keys + picture("error", "Error of the model over time", text, WIDTH, 465.0, panels)
+    displacement = f", and RMS displacement of {whose}" if trial.located else ""
+    text = f"Angle between modeled and measured orientation{displacement}, over time."
+    return keys + picture("error", "Error of the model over time", text, WIDTH, 235.0 * len(panels) - 5.0, panels)
 
 
 def euler_chart(trial: TrialView) -> Markup:

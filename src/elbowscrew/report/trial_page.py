@@ -114,7 +114,7 @@ def trial_page(trial: TrialView, folder: Path) -> str:
         "hardly_deg": _HARDLY_DEG,
         "widest_deg": float(np.degrees(WIDEST)),
         "theta_chart": theta_chart(trial),
-        "axis_chart": axis_chart(trial),
+        "axis_chart": axis_chart(trial) if trial.located else None,
         "error_chart": error_chart(trial),
         "euler_chart": euler_chart(trial),
         "curve_chart": None if curve is None else repetition_chart(curve, trial.repetitions.number.size),
@@ -134,7 +134,8 @@ def trial_page(trial: TrialView, folder: Path) -> str:
         ],
         "files": [(name, text) for name, text in _FILES if (folder / name).is_file()],
     }
-    return render("trial.html", styles=("page.css",), script="trial.js", data=scene_of(trial), content=content)
+    scene = scene_of(trial) if trial.located else None
+    return render("trial.html", styles=("page.css",), script="trial.js", data=scene, content=content)
 
 
 def _frame_names(words: Joint) -> dict[str, str]:

@@ -19,7 +19,7 @@ from elbowscrew.model.comparison_summary_types import (
 )
 from elbowscrew.results.recording_summary import recording_summary, source_summary, warnings_summary
 from elbowscrew.results.statistics import known
-from elbowscrew.results.summary import selection_summary, settings_summary
+from elbowscrew.results.summary import law_error, selection_summary, settings_summary
 
 _BEST_TOLD: Final = 20
 _BEST_OF_EACH_TOLD: Final = 4
@@ -40,7 +40,10 @@ def comparison_summary(comparison: Comparison) -> ComparisonSummary:
             {"start_frame": int(frame[first]), "end_frame": int(frame[last])} for first, last in phases.law_rows
         ],
         "laws": {
-            name: [{"law": law.name, "peak": law.peak, "rms_displacement_mm": known(1000.0 * law.rms)} for law in laws]
+            name: [
+                {"law": law.name, "peak": law.peak, **law_error(law, as_angle=not comparison.points.located)}
+                for law in laws
+            ]
             for name, laws in comparison.laws.items()
         },
         "models": int(comparison.models.rank.size),

@@ -33,7 +33,7 @@ from elbowscrew.model.joint_summary_types import (
 )
 from elbowscrew.motion.screws.frames import frame_called
 from elbowscrew.results.joint_type_summary import INTERVAL_METHODS, joint_type_summary, numbers_of_type
-from elbowscrew.results.statistics import known, rms, statistic
+from elbowscrew.results.statistics import known, known_vector, rms, statistic
 
 
 def joint_summary(analysis: Analysis) -> JointSummary:
@@ -137,11 +137,11 @@ def _mean_axis(mean: MeanLine | None) -> MeanAxisSummary | None:
 def _line(line: LineEstimate) -> EstimateSummary:
     return {
         "direction": line.direction.tolist(),
-        "point_mm": (1000.0 * line.point).tolist(),
+        "point_mm": known_vector(1000.0 * line.point),
         "direction_in_proximal": line.direction_proximal.tolist(),
-        "point_in_proximal_mm": (1000.0 * line.point_proximal).tolist(),
+        "point_in_proximal_mm": known_vector(1000.0 * line.point_proximal),
         "direction_in_distal": line.direction_distal.tolist(),
-        "point_in_distal_mm": (1000.0 * line.point_distal).tolist(),
+        "point_in_distal_mm": known_vector(1000.0 * line.point_distal),
     }
 
 
@@ -174,16 +174,16 @@ def _bodies(analysis: Analysis) -> BodiesSummary:
     """Say where the bodies are at the reference, and where their markers: with `screw.csv`, all that figures show."""
     joint = analysis.joint
     return {
-        "distal_in_proximal": _pose(joint.reference),
-        "proximal_in_lab": _pose(joint.dual_quat_lab_proximal),
+        "distal_in_proximal": _pose(joint.reference, located=joint.located),
+        "proximal_in_lab": _pose(joint.dual_quat_lab_proximal, located=joint.located),
         "proximal_markers_mm": _markers(analysis.proximal),
         "distal_markers_mm": _markers(analysis.distal),
     }
 
 
-def _pose(dual_quat: Float) -> PoseSummary:
+def _pose(dual_quat: Float, *, located: bool) -> PoseSummary:
     quat, position = pose_from_dual_quat(dual_quat)
-    return {"quaternion": quat.tolist(), "position_mm": (1000.0 * position).tolist()}
+    return {"quaternion": quat.tolist(), "position_mm": (1000.0 * position).tolist() if located else None}
 
 
 def _markers(body: RigidBody | None) -> list[Vector] | None:
@@ -201,7 +201,7 @@ def _noise(noise: PoseNoise | None) -> NoiseSummary | None:
         "source": noise.source,
         "marker_noise_mm": None if noise.marker_noise is None else 1000.0 * noise.marker_noise,
         "rotation_sd_deg": np.degrees(deviation[:3]).tolist(),
-        "position_sd_mm": (1000.0 * deviation[3:]).tolist(),
+        "position_sd_mm": known_vector(1000.0 * deviation[3:]),
     }
 
 

@@ -24,7 +24,7 @@ from elbowscrew.model.joint_summary_types import (
 )
 from elbowscrew.model.joint_type import BallJoint, JointLine, Measure, SecondRotation, TwoAxes
 from elbowscrew.motion.screws.frames import frame_called
-from elbowscrew.results.statistics import known
+from elbowscrew.results.statistics import known, known_vector
 
 _MILLIMETERS: Final = 1000.0
 _DEGREES: Final = float(np.degrees(1.0))
@@ -169,11 +169,11 @@ def _line(line: JointLine, frame: _Frame) -> JointLineSummary:
     determined = line.determined and line.axis_cone < 0.5 * np.pi
     return {
         "direction": direction.tolist(),
-        "point_mm": (_MILLIMETERS * point).tolist(),
+        "point_mm": known_vector(_MILLIMETERS * point),
         "direction_in_proximal": line.direction_proximal.tolist(),
-        "point_in_proximal_mm": (_MILLIMETERS * line.point_proximal).tolist(),
+        "point_in_proximal_mm": known_vector(_MILLIMETERS * line.point_proximal),
         "direction_in_distal": line.direction_distal.tolist(),
-        "point_in_distal_mm": (_MILLIMETERS * line.point_distal).tolist(),
+        "point_in_distal_mm": known_vector(_MILLIMETERS * line.point_distal),
         "cone95_deg": known(_DEGREES * line.axis_cone) if determined else None,
         "radius95_mm": known(_MILLIMETERS * line.point_radius) if determined else None,
         "range_deg": known(_DEGREES * line.range),

@@ -69,7 +69,11 @@ def read_keyframes(
     table.check((np.diff(time_s) > 0.0, "time_s must increase from line to line"))
     unit = next((unit for unit in METERS if f"d_x_{unit}" in table.columns), "mm")
     e = np.column_stack([table.numbers(name) for name in _POSE[:4]])
-    d = METERS[unit] * np.column_stack([table.numbers(f"{name}_{unit}") for name in _POSE[4:]])
+    places = [f"{name}_{unit}" for name in _POSE[4:]]
+    located = not all(table.is_blank(name) for name in places)
+    d = np.zeros((time_s.size, 3))
+    if located:
+        d = METERS[unit] * np.column_stack([table.numbers(name) for name in places])
     table.check((np.abs(norm(e) - 1.0) <= _UNIT_TOLERANCE, "e0 to e3 must be a unit quaternion"))
     count = time_s.size
     if count < 2:
@@ -98,7 +102,7 @@ def read_keyframes(
         pose = continuous_signs(pose)
     blend = table.word("blend", ("piecewise", "global"), "piecewise")
     wanted = method or table.word("method", METHOD_NAMES, "dlb")
-    joint, joint_angle = _joint(table) if wanted == "joint" else (None, None)
+    joint, joint_angle = _joint(table, located=located) if wanted == "joint" else (None, None)
     return KeyframeSet(
         frame=table.numbers("frame").astype(np.int64) if "frame" in table.columns else np.arange(count, dtype=np.int64),
         time_s=time_s,
@@ -113,17 +117,24 @@ def read_keyframes(
         law_end_s=ends,
         joint=joint,
         joint_angle=joint_angle,
+        located=located,
     )
 
 
-def _joint(table: _Table) -> tuple[JointCoordinates, Float]:
-    """Read the joint whose angles are interpolated, and its angles (K, k)."""
+def _joint(table: _Table, *, located: bool) -> tuple[JointCoordinates, Float]:
+    """Read the joint whose angles are interpolated, and its angles (K, k); without positions its places are 0."""
     if "joint_type" not in table.columns:
         msg = f"{table.path}: --method joint: the file does not tell of a joint; give another, such as --method sclerp"
         raise SettingError(msg)
     kind = next(name for name in MOVING_JOINTS if name == table.word("joint_type", MOVING_JOINTS, ""))
     columns = [column for column in KEYFRAME_JOINT_COLUMNS[kind] if column.quantity is not Quantity.LABEL]
-    read = {column: table.in_si(column.name, column.quantity) for column in columns}
+    nowhere = np.zeros(len(table.lines))
+    read = {
+        column: nowhere
+        if not located and column.quantity is Quantity.LENGTH
+        else table.in_si(column.name, column.quantity)
+        for column in columns
+    }
     angle = np.stack([values for column, values in read.items() if column.attribute == "joint_angle"], axis=1)
     shared = np.full(max(column.component or 0 for column in columns) + 1, np.nan)
     for column, values in read.items():
@@ -222,6 +233,10 @@ class _Table:
                 raise RecordingError(msg)
         columns = {name: [row[k].strip() for _, row in rows[1:]] for k, name in enumerate(names)}
         return cls(path, columns, [line for line, _ in rows[1:]])
+
+    def is_blank(self, name: str) -> bool:
+        """Whether a column has no numbers at all: positions that were not measured."""
+        return not any(self.columns.get(name, ["0"]))
 
     def numbers(self, name: str) -> Float:
         """Numbers of a column, shape (K,)."""

@@ -15,6 +15,11 @@ def known(value: Any) -> float | None:
     return float(value) if np.isfinite(value) else None
 
 
+def known_vector(values: Float) -> list[float] | None:
+    """Give the numbers of a vector, or None if one of them is not finite."""
+    return [float(value) for value in values] if np.isfinite(values).all() else None
+
+
 def statistic(function: Callable[[Float], Any], values: Float) -> float | None:
     """Give a statistic of the values, or None if all of them are NaN."""
     return float(function(values)) if np.isfinite(values).any() else None

@@ -14,13 +14,14 @@ from elbowscrew._version import __version__
 from elbowscrew.configuring import options_from_settings
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.joints import side_between
-from elbowscrew.model import Analysis, JointAxis, Landmarks, Selection
+from elbowscrew.model import Analysis, JointAxis, Landmarks, PhaseLaw, Selection
 from elbowscrew.model.anatomy import Landmark
 from elbowscrew.model.summary_types import (
     JointAxisSummary,
     JointWords,
     LandmarksSummary,
     LandmarkSummary,
+    LawErrorSummary,
     ModelSummary,
     MotionSummary,
     PhaseLawSummary,
@@ -31,7 +32,7 @@ from elbowscrew.model.summary_types import (
 from elbowscrew.motion.screws.frames import frame_called
 from elbowscrew.results.joint_type_summary import INTERVAL_METHODS, joint_type_summary, numbers_of_type
 from elbowscrew.results.recording_summary import quality_summary, recording_summary, source_summary, warnings_summary
-from elbowscrew.results.statistics import known, rms, statistic
+from elbowscrew.results.statistics import known, known_vector, rms, statistic
 from elbowscrew.settings import Settings
 
 _LIBRARIES: Final = ("numpy", "scipy", "matplotlib", "pandas", "pydantic")
@@ -119,6 +120,7 @@ def _trial(analysis: Analysis) -> TrialSummary:
         "measured_frames": int(screw.valid.sum()),
         "filled_frames": int(screw.filled.sum()),
         "missing_share": float(1.0 - screw.valid.mean()),
+        "positions": analysis.joint.located,
         "reference_frame": int(screw.frame[analysis.joint.reference_row]),
         "lowpass_hz": analysis.joint.lowpass_hz,
         "instantaneous_lowpass_hz": analysis.instantaneous.lowpass_hz,
@@ -158,7 +160,7 @@ def _motion(analysis: Analysis) -> MotionSummary:
         ],
         "expressed_in": frame_called(analysis.settings.express_in, analysis.named_joint)[0],
         "axis_frames": int((screw.axis_known & screw.valid).sum()),
-        "mean_axis": {"direction": axis.direction.tolist(), "point_mm": (1000.0 * axis.point).tolist()},
+        "mean_axis": {"direction": axis.direction.tolist(), "point_mm": known_vector(1000.0 * axis.point)},
         "axis_dispersion_deg": float(np.degrees(axis.dispersion)),
         "axis_dispersion_all_frames_deg": statistic(np.nanmedian, np.degrees(axis.deviation)),
         "axis_dispersion_weighted_deg": float(np.degrees(axis.weighted_dispersion)),
@@ -181,17 +183,17 @@ def _joint_axis(axis: JointAxis) -> JointAxisSummary | None:
         "model": axis.preferred,
         "is_mean": axis.mean_axis is not None,
         "direction": told.line.direction.tolist(),
-        "point_mm": (1000.0 * told.line.point).tolist(),
+        "point_mm": known_vector(1000.0 * told.line.point),
         "axis_cone95_deg": known(np.degrees(told.axis_cone)),
         "point_radius95_mm": known(1000.0 * told.point_radius),
-        "pitch_mm_per_rad": 1000.0 * best.pitch,
+        "pitch_mm_per_rad": known(1000.0 * best.pitch),
         "interval_method": None if told.decided_by is None else INTERVAL_METHODS[told.decided_by],
         "sensitivity_deg_per_deg": known(best.sensitivity),
     }
 
 
 def _interpolation(analysis: Analysis) -> ModelSummary:
-    modeled, settings = analysis.interpolated, analysis.settings
+    modeled, settings, points = analysis.interpolated, analysis.settings, analysis.points
     # A theta that was not measured is no measure of the model.
     theta_error = np.degrees(np.where(analysis.screw.valid, modeled.angle - analysis.screw.angle, np.nan))
     return {
@@ -225,9 +227,9 @@ def _interpolation(analysis: Analysis) -> ModelSummary:
         "max_axis_distance_mm": statistic(np.nanmax, 1000.0 * modeled.axis_distance),
         "max_axis_distance_frame": _frame_of_max(modeled.frame, modeled.axis_distance),
         "points": {
-            "from": analysis.points.origin,
-            "centroid_mm": (1000.0 * analysis.points.centroid).tolist(),
-            "radius_of_gyration_mm": 1000.0 * analysis.points.radius_of_gyration,
+            "from": points.origin,
+            "centroid_mm": (1000.0 * points.centroid).tolist() if points.located else None,
+            "radius_of_gyration_mm": 1000.0 * points.radius_of_gyration if points.located else None,
         },
     }
 
@@ -242,23 +244,44 @@ def _phase_laws(analysis: Analysis) -> list[PhaseLawSummary]:
             "peak_sd": known(law.peak_sd),
             "start_frame": int(frame[first]),
             "end_frame": int(frame[last]),
-            "rms_displacement_mm": known(1000.0 * law.rms),
+            **law_error(law, as_angle=not analysis.points.located),
         }
         for law, (first, last) in zip(analysis.laws, analysis.keyframes.phases.law_rows, strict=True)
     ]
 
 
+def law_error(law: PhaseLaw, *, as_angle: bool) -> LawErrorSummary:
+    """How far a law is off the measured motion, as the length or the angle that it is."""
+    return {
+        "rms_displacement_mm": None if as_angle else known(1000.0 * law.rms),
+        "rms_angle_deg": known(np.degrees(law.rms)) if as_angle else None,
+    }
+
+
 def selection_summary(found: Selection, frame: NDArray[np.int64]) -> SelectionSummary:
     """Keyframes that were chosen, and the error over the number of keyframes."""
+
+    def told(value: float) -> tuple[float | None, float | None]:
+        """In millimeters, or in degrees."""
+        return (None, float(np.degrees(value))) if found.as_angle else (1000.0 * value, None)
+
+    mm, deg = told(found.tolerance)
     return {
-        "tolerance_mm": 1000.0 * found.tolerance,
+        "tolerance_mm": mm,
+        "tolerance_deg": deg,
         "frames": found.frames,
         "keyframes": int(found.row.size),
         "keyframe_frames": frame[found.row].tolist(),
         "compression_ratio": found.compression,
         "complete": found.complete,
         "curve": [
-            {"keyframes": int(count), "max_rms_displacement_mm": 1000.0 * largest, "rms_displacement_mm": 1000.0 * mean}
+            {
+                "keyframes": int(count),
+                "max_rms_displacement_mm": told(largest)[0],
+                "rms_displacement_mm": told(mean)[0],
+                "max_angle_deg": told(largest)[1],
+                "rms_angle_deg": told(mean)[1],
+            }
             for count, largest, mean in zip(found.count, found.largest.tolist(), found.rms.tolist(), strict=True)
         ],
     }

@@ -201,6 +201,7 @@ def _view(summary: Summary, joint: JointSummary, settings: Settings, read: _Tabl
         distal_name=trial["distal"]["name"],
         proximal_markers=_markers(bodies["proximal_markers_mm"]),
         distal_markers=_markers(bodies["distal_markers_mm"]),
+        located=trial["positions"],
         reference=_pose(bodies["distal_in_proximal"]),
         proximal_in_lab=_pose(bodies["proximal_in_lab"]),
         frame=screw["frame"],
@@ -226,10 +227,10 @@ def _view(summary: Summary, joint: JointSummary, settings: Settings, read: _Tabl
         repetitions=Repetitions(**read.repetitions),
         repetition_curve=read.curve,
         mean_direction=np.array(motion["mean_axis"]["direction"], dtype=np.float64),
-        mean_point=_millimeters(motion["mean_axis"]["point_mm"]),
+        mean_point=_point(motion["mean_axis"]["point_mm"]),
         spread95=_region(dispersion["direction_95_deg"], dispersion["position_95_mm"]),
         joint_direction=np.array(line["direction"], dtype=np.float64),
-        joint_point=_millimeters(line["point_mm"]),
+        joint_point=_point(line["point_mm"]),
         confidence95=None if fit is None else _region(fit["axis_cone95_deg"], fit["point_radius95_mm"]),
         joint_angles=None if read.angles is None else JointAngles(**read.angles),
         axis_path=None if read.path is None else AxisPath(**read.path),
@@ -242,12 +243,17 @@ def _angle_table(joint: JointSummary) -> tuple[tables.Column, ...]:
 
 
 def _pose(pose: PoseSummary) -> Float:
-    return dual_quat_from_pose(np.array(pose["quaternion"], dtype=np.float64), _millimeters(pose["position_mm"]))
+    position = np.zeros(3) if pose["position_mm"] is None else _millimeters(pose["position_mm"])
+    return dual_quat_from_pose(np.array(pose["quaternion"], dtype=np.float64), position)
 
 
 def _millimeters(values: Any) -> Float:
     """Read lengths in millimeters as meters."""
     return np.array(values, dtype=np.float64) / 1000.0
+
+
+def _point(point_mm: Vector | None) -> Float:
+    return np.full(3, np.nan) if point_mm is None else _millimeters(point_mm)
 
 
 def _markers(offsets: list[Vector] | None) -> Float | None:

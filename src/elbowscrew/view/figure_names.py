@@ -20,6 +20,8 @@ class FigureEntry(NamedTuple):
         Whether it is drawn of every result that has what it shows; else it is made on request.
     needs : str
         What a result must have for it, as a field of `elbowscrew.view.trial_view.TrialView`; empty if it needs nothing.
+    places : bool
+        Whether it shows places, which orientations alone do not tell.
     table : str
         Which table it needs beside those that every view has, by its name in `TrialView.extra`.
     """
@@ -27,24 +29,25 @@ class FigureEntry(NamedTuple):
     home: str
     usual: bool
     needs: str = ""
+    places: bool = False
     table: str = ""
 
 
 FIGURE_ENTRIES: Final[dict[str, FigureEntry]] = {
     "theta": FigureEntry("figures.theta_figure", usual=True),
     "euler_parameters": FigureEntry("figures.euler_parameters_figure", usual=True),
-    "joint": FigureEntry("joint_type.joint_figure", usual=True),
-    "slide": FigureEntry("kinematics.slide_figure", usual=True),
+    "joint": FigureEntry("joint_type.joint_figure", usual=True, places=True),
+    "slide": FigureEntry("kinematics.slide_figure", usual=True, places=True),
     "error": FigureEntry("figures.error_figure", usual=True),
     "anatomy": FigureEntry("anatomy.anatomy_figure", usual=True, needs="has_landmarks", table="anatomy"),
     "velocity": FigureEntry("kinematics.velocity_figure", usual=False, needs="has_velocity", table="instantaneous"),
     "instantaneous_axes": FigureEntry(
-        "figures.instantaneous_axes_figure", usual=False, needs="has_velocity", table="instantaneous"
+        "figures.instantaneous_axes_figure", usual=False, needs="has_velocity", places=True, table="instantaneous"
     ),
     "cycles": FigureEntry("cycles.cycles_figure", usual=False, needs="has_cycles", table="cycles"),
     "quality": FigureEntry("quality.quality_figure", usual=False, table="losses"),
-    "axis": FigureEntry("figures.axis_figure", usual=False),
-    "joint_axis": FigureEntry("figures.joint_axis_figure", usual=False),
+    "axis": FigureEntry("figures.axis_figure", usual=False, places=True),
+    "joint_axis": FigureEntry("figures.joint_axis_figure", usual=False, places=True),
     "joint_angles": FigureEntry("joint_angles.joint_angles_figure", usual=False, needs="joint_angles"),
     "axis_path": FigureEntry("joint_angles.axis_path_figure", usual=False, needs="axis_path"),
     "fig7": FigureEntry("paper_figures.figure_7", usual=False),
@@ -72,9 +75,9 @@ def chosen_figures(names: Sequence[str] | None) -> tuple[str, ...]:
 
 def has_figure(name: str, view: TrialView) -> bool:
     """Tell whether a trial has what a figure shows."""
-    needs = FIGURE_ENTRIES[name].needs
+    needs, places = FIGURE_ENTRIES[name].needs, FIGURE_ENTRIES[name].places
     found = getattr(view, needs) if needs else True
-    return found is not None and found is not False
+    return found is not None and found is not False and (view.located or not places)
 
 
 def caption_file(name: str) -> str:

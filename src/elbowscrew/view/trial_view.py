@@ -43,6 +43,8 @@ class TrialView(ArrayRecord):
     distal_name : str
     proximal_markers, distal_markers : ndarray, shape (M, 3), or None
         Of each body in its own frame, if it has any.
+    located : bool
+        Whether positions were measured; else poses are rotations about the origins, and places NaN.
     reference, proximal_in_lab : ndarray, shape (8,)
         Poses at the reference, unit dual quaternions: the distal body in the proximal one, and the latter in the
         laboratory.
@@ -86,6 +88,7 @@ class TrialView(ArrayRecord):
     distal_name: str
     proximal_markers: Float | None
     distal_markers: Float | None
+    located: bool
     reference: Float
     proximal_in_lab: Float
     frame: NDArray[np.int64]

@@ -42,7 +42,7 @@ from elbowscrew.settings import Settings
 
 _TIMED: Final = 3
 _LONG_ENOUGH_S: Final = 0.003
-_DEFAULT_TOLERANCE: Final = 2e-3
+_DEFAULT_TOLERANCE: Final = {True: 2e-3, False: float(np.radians(2.0))}  # m, or of orientations alone rad
 
 
 def compare(
@@ -64,7 +64,8 @@ def compare(
     recording : Recording
     settings : Settings, optional
         What does not belong to the plan: bodies, phases, points, and so on. Its tolerance is that of the selection,
-        2 mm by default, and its low-pass that of the filtered keyframes, found by residual analysis by default.
+        2 mm by default (2 deg of orientations alone), and its low-pass that of the filtered keyframes, found by
+        residual analysis by default.
     plan : ComparisonPlan, optional
         Which models.
     report : callable
@@ -113,13 +114,14 @@ def compare(
         for model in models:
             rows.append(_row(model, source, fitted[model.law], ways[model.method], measured, points, raw))
             report(len(rows), steps)
-    tolerance = _DEFAULT_TOLERANCE if wanted.tolerance_mm is None else 1e-3 * wanted.tolerance_mm
+    located = points.located
+    tolerance = _DEFAULT_TOLERANCE[located] if wanted.tolerance_mm is None else wanted.tolerance_in_si(located=located)
     selections, doubts = _selections(measured, phases, points, tolerance, plan.methods, joint)
     report(steps, steps)
     return Comparison(
         recording=measured.recording,
         settings=wanted.model_copy(update={"express_in": measured.express_in}),
-        models=_ranked(rows),
+        models=_ranked(rows, "rms_displacement" if located else "rms_angle_error"),
         phases=phases,
         frame=measured.screw.frame,
         laws=laws,
@@ -234,18 +236,19 @@ def _row(
     if not np.isfinite(modeled.dual_quat[~modeled.phase.mask]).all():
         return {**row, "note": "the blended poses cancel in some frames"}
     found = model_errors(modeled.dual_quat, measured, points, settings)
-    errors = {
-        "displacement": found.rms_displacement,
-        "angle_error": found.angle_error,
-        "translation_error": found.translation_error,
-        "axis_error": found.axis_error,
-        "axis_distance": found.axis_distance,
-    }
+    errors = {"angle_error": found.angle_error, "axis_error": found.axis_error}
+    if points.located:
+        errors |= {
+            "displacement": found.rms_displacement,
+            "translation_error": found.translation_error,
+            "axis_distance": found.axis_distance,
+        }
     for name, values in errors.items():
         known = np.isfinite(values).any()
         row[f"rms_{name}"] = float(np.sqrt(np.nanmean(values**2))) if known else np.nan
         row[f"max_{name}"] = float(np.nanmax(values)) if known else np.nan
-    row["max_displacement_frame"] = int(measured.screw.frame[int(np.nanargmax(errors["displacement"]))])
+    if points.located:
+        row["max_displacement_frame"] = int(measured.screw.frame[int(np.nanargmax(errors["displacement"]))])
     row["ns_per_frame"] = 1e9 * seconds / int((~modeled.phase.mask).sum())
     return row
 
@@ -263,8 +266,8 @@ def _timed(make: Callable[[], ModeledPoses]) -> tuple[ModeledPoses, float]:
     return result, best
 
 
-def _ranked(rows: list[dict[str, Any]]) -> ComparedModels:
-    order = sorted(range(len(rows)), key=lambda k: (rows[k].get("rms_displacement", np.inf), k))
+def _ranked(rows: list[dict[str, Any]], error: str) -> ComparedModels:
+    order = sorted(range(len(rows)), key=lambda k: (rows[k].get(error, np.inf), k))
     arranged = [rows[k] for k in order]
 
     def column(name: str) -> NDArray[Any]:

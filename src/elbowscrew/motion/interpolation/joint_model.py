@@ -14,7 +14,7 @@ from elbowscrew.model.joint_type import JointType
 from elbowscrew.motion.interpolation.modeling import METHODS, Method, joint_method
 from elbowscrew.motion.joint.coordinates import joint_angles_of
 from elbowscrew.motion.screws.measurement import Measurement
-from elbowscrew.motion.screws.uncertainty import joint_covariance
+from elbowscrew.motion.screws.uncertainty import fitted_covariance
 
 
 class Interpolation(NamedTuple):
@@ -78,7 +78,7 @@ class ModelJoint(NamedTuple):
 
         def covariance(rows: Index) -> Float:
             poses = measured.joint.dual_quat_proximal_distal[rows]
-            return joint_covariance(poses, *measured.noise.assumed)
+            return fitted_covariance(measured.joint, poses, *measured.noise.assumed)
 
         return joint_angles_of(self.coordinates, pose, covariance, measured.joint.reference_row)
 

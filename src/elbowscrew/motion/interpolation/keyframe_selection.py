@@ -11,6 +11,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 from elbowscrew.errors import SettingError
 from elbowscrew.geometry.arrays import Bool, Float, Index
 from elbowscrew.model import BodyPoints, Selection
+from elbowscrew.motion.difference import displacement_of_error, told_error
 from elbowscrew.motion.interpolation.segment_errors import JointSeries, PoseTrack
 
 # Up to so many frames every pair of them is looked at, and so the best set of each size is known.
@@ -52,7 +53,7 @@ def select_keyframes(
     points : BodyPoints
         What the displacement is averaged over.
     tolerance : float
-        Meters.
+        Meters; radians where the points stand for orientations alone.
     method : {"sclerp", "sdlb", "joint"}
         How the model goes from one keyframe to the next.
     series : JointSeries, optional
@@ -87,6 +88,7 @@ def select_keyframes(
     """
     stops = np.unique(np.concatenate([[0, len(pose) - 1], [] if required is None else required])).astype(np.int64)
     track = _Track(PoseTrack.of(pose, points, method, series), parameter, points, method, stops)
+    wanted, tolerance = tolerance, displacement_of_error(tolerance, points)
     limit = tolerance * (1.0 + _ROUND_OFF) + _NANOMETERS
     if track.left[stops].max() > limit:
         raise _no_set(track, tolerance)
@@ -95,15 +97,16 @@ def select_keyframes(
     known: dict[tuple[int, int], Float] = {}  # sets of many sizes share most of their segments
     if not found or _errors(track, found[-1], known).max() > limit:
         raise _no_set(track, tolerance)
-    errors = [_errors(track, row, known) for row in found]
+    errors = [told_error(_errors(track, row, known), points) for row in found]
     return Selection(
         row=found[-1],
-        tolerance=tolerance,
+        tolerance=wanted,
         frames=len(pose),
         count=np.array([row.size for row in found], dtype=np.int64),
         largest=np.array([error.max() for error in errors]),
         rms=np.array([np.sqrt(np.mean(error**2)) for error in errors]),
         complete=complete,
+        as_angle=not points.located,
     )
 
 
@@ -304,14 +307,15 @@ def _row_at(track: _Track, first: int, ends: Index, share: float) -> Index:
 
 
 def _no_set(track: _Track, tolerance: float) -> SettingError:
+    scale, unit = (1000.0, "mm") if track.points.located else (float(np.degrees(1.0)), "deg")
+    limit, left = (scale * float(told_error(np.asarray(e), track.points)) for e in (tolerance, track.left.max()))
     if track.poses.series is not None:
-        left = 1000.0 * track.left.max()
         return SettingError(
-            f"--tolerance {1000.0 * tolerance:g}mm: the joint itself leaves up to {left:.2g} mm of the measured poses, "
+            f"--tolerance {limit:g}{unit}: the joint itself leaves up to {left:.2g} {unit} of the measured poses, "
             "so that no keyframes keep to it; give a larger tolerance, or --method sclerp"
         )
     return SettingError(
-        f"--tolerance {1000.0 * tolerance:g}mm: where the law rests the motion itself moves by more than that, so that "
+        f"--tolerance {limit:g}{unit}: where the law rests the motion itself moves by more than that, so that "
         "no keyframes keep to it; give a larger tolerance, or leave --law out"
     )
 

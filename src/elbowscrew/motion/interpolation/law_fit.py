@@ -14,7 +14,7 @@ from elbowscrew.geometry import sclerp
 from elbowscrew.geometry._small_angle import length
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import BodyPoints, ModelPhases, PhaseLaw
-from elbowscrew.motion.difference import rms_displacement
+from elbowscrew.motion.difference import rms_displacement, told_error
 from elbowscrew.motion.interpolation.laws import LAWS, Law, asymmetric, named_law
 
 LawFunction = Callable[[Float], Float]
@@ -105,7 +105,8 @@ class _Phase(NamedTuple):
         if not self.tau.size:
             return np.nan
         modeled = sclerp(self.ends[0], self.ends[1], law(self.tau), way="as given")
-        return float(np.sqrt(np.mean(rms_displacement(self.pose, modeled, self.points) ** 2)))
+        error = told_error(rms_displacement(self.pose, modeled, self.points), self.points)
+        return float(np.sqrt(np.mean(error**2)))
 
     def named(self, name: str, peak: float | None) -> FittedLaw:
         law = named_law(name, peak).position

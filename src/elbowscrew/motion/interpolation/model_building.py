@@ -21,7 +21,7 @@ from elbowscrew.model import (
     Selection,
 )
 from elbowscrew.model.joint_type import JointType
-from elbowscrew.motion.difference import DEFAULT_RADIUS, points_from_markers, points_from_radius
+from elbowscrew.motion.difference import DEFAULT_RADIUS, points_from_markers, points_from_radius, points_of_orientation
 from elbowscrew.motion.interpolation.joint_model import ModelJoint, interpolation_called
 from elbowscrew.motion.interpolation.keyframe_selection import select_keyframes
 from elbowscrew.motion.interpolation.keyframes import keyframes_at, phase_time, rows_of_frames
@@ -146,7 +146,12 @@ def model_laws(
 
 
 def body_points(distal: RigidBody, settings: Settings) -> BodyPoints:
-    """Points that the RMS displacement is averaged over: of the radius asked for, the markers, or 50 mm."""
+    """Points that the RMS displacement is averaged over: of the radius asked for, the markers, or 50 mm.
+
+    Of a body without positions there are none; what stands for them makes angles of displacements.
+    """
+    if not distal.located:
+        return points_of_orientation()
     if settings.radius_mm is not None:
         return points_from_radius(settings.radius_mm / 1000.0)
     if distal.marker_offsets is not None:
@@ -186,7 +191,7 @@ def _selected(
         measured.displacement[rows],
         parameter,
         points,
-        1e-3 * float(settings.tolerance_mm or 0.0),
+        settings.tolerance_in_si(located=points.located),
         method=settings.model_method,
         series=None if series is None else series._replace(angle=series.angle[rows]),
         required=np.searchsorted(rows, bounds),

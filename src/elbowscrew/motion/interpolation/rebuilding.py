@@ -70,6 +70,7 @@ def keyframes_of(analysis: Analysis) -> KeyframeSet:
         law_end_s=time_s[phases.law_rows[:, 1]],
         joint=joint,
         joint_angle=angle,
+        located=J.located,
     )
 
 
@@ -142,9 +143,9 @@ def interpolate(keyframes: KeyframeSet, frames: int) -> RebuiltMotion:
         phase=modeled.phase[chosen],
         fraction=modeled.fraction[chosen],
         angle=series.angle,
-        slide=series.slide,
+        slide=series.slide if keyframes.located else np.full(frames, np.nan),
         euler_parameters=D[:, :4],
-        translation=pose_from_dual_quat(D)[1],
+        translation=pose_from_dual_quat(D)[1] if keyframes.located else np.full((frames, 3), np.nan),
     )
 
 

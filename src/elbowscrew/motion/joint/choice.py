@@ -48,6 +48,7 @@ _MUCH_RETRACED: Final = 0.5
 _LARGEST_WANDER: Final = np.radians(15.0)
 _WANDERS: Final = "an axis that wanders with the angle explains as much as two axes do"
 _HARDLY: Final = "so little motion tells no axis"
+_NO_CENTER: Final = "whether it turns about one center, orientations alone do not tell"
 _LITTLE: Final = "a second rotation is seen, but is too small to tell its axis"
 
 LARGEST_AXIS_SD: Final = np.radians(10.0)
@@ -60,6 +61,8 @@ RMS_TO_RANGE: Final = 3.3
 """Range of a rotation that goes to and fro, over its RMS."""
 
 _ORDER: Final[tuple[Fitted, ...]] = ("rigid", "hinge", "screw_hinge", "two_axes", "ball")
+# What orientations alone can refuse: they see no slide, and a ball has any of them.
+_ORDER_BY_TURNING: Final[tuple[Fitted, ...]] = ("rigid", "hinge", "two_axes")
 
 
 class Choice(NamedTuple):
@@ -105,7 +108,7 @@ class _Tried:
         return self.fit.residual_translation > _LARGEST_LEFT
 
 
-class _Contest:
+class Contest:
     """The types on the same frames, each fitted when it is first asked for."""
 
     def __init__(
@@ -118,6 +121,11 @@ class _Contest:
         self.stated_one = one
         self.tried: dict[Fitted, _Tried] = {}
         self.known_heldout: dict[Fitted, float] = {}
+
+    @property
+    def order(self) -> tuple[Fitted, ...]:
+        """The types that can be told from one another, the simplest first."""
+        return _ORDER if self.poses.located else _ORDER_BY_TURNING
 
     def __getitem__(self, name: Fitted) -> _Tried:
         if name not in self.tried:
@@ -144,7 +152,8 @@ class _Contest:
         angle = fit.mechanism.frames[:, 0]
         share = (angle - angle.min()) / max(float(np.ptp(angle)), _TINY)
         waves = np.cos(np.pi * np.arange(_WAVES) * share[:, None])
-        columns = (pieces.whitener[:, :, :, None] * waves[:, None, None, :]).reshape(*pieces.whitened.shape, -1)
+        whitener = pieces.whitener if self.poses.located else pieces.whitener[:, :, :3]
+        columns = (whitener[:, :, :, None] * waves[:, None, None, :]).reshape(*pieces.whitened.shape, -1)
         design = np.concatenate([pieces.design, columns], axis=2)
         return _heldout_variance(design, pieces.whitened, float(fit.weight.sum()))
 
@@ -153,6 +162,8 @@ class _Contest:
         """Hinge or screw-hinge: as the joint's axis was found to be, else by the pitch's own interval."""
         if self.stated_one is not None:
             return self.stated_one
+        if not self.poses.located:
+            return "hinge"
         screw = self["screw_hinge"]
         mechanism = screw.fit.mechanism
         pitch = mechanism.pitch if isinstance(mechanism, OneAxis) else 0.0
@@ -169,11 +180,11 @@ class _Contest:
         change = np.diff(on_all.whitened, 3, axis=0)
         if not len(change):
             return 0.0
-        return float(np.median(np.sum(change**2, axis=1))) / (_THIRD_DIFFERENCES * (6 - tried.own_count))
+        return float(np.median(np.sum(change**2, axis=1))) / (_THIRD_DIFFERENCES * tried.frame_freedom)
 
     def try_all(self) -> None:
         """Fit every type."""
-        for name in _ORDER:
+        for name in self.order:
             self[name]
 
     def hardly_turns(self) -> bool:
@@ -210,7 +221,7 @@ def choose_type(
     one : {"hinge", "screw_hinge"}, optional
         Which of both a single axis is, where that is known already.
     """
-    contest = _Contest(poses, noise_known=noise_known, robust=robust, one=one)
+    contest = Contest(poses, noise_known=noise_known, robust=robust, one=one)
     if forced is not None:
         contest[forced]
         return _chosen(contest, forced, "forced", f"{JOINT_TYPE_WORDS[forced]}, as stated")
@@ -220,10 +231,10 @@ def choose_type(
     return (_explained(contest) if noise_known else None) or _best(contest)
 
 
-def _explained(contest: _Contest) -> Choice | None:
+def _explained(contest: Contest) -> Choice | None:
     """Take the simplest type that the stated noise explains; None if it explains none."""
     simpler: dict[Fitted, Fitted] = {"two_axes": "hinge", "ball": "two_axes"}
-    for name in _ORDER:
+    for name in contest.order:
         tried = contest[name]
         # What leaves more of the frames it was fitted to leaves no less of others.
         if not tried.valid or tried.fit.variance > _EXPLAINED or contest.heldout(name) > _EXPLAINED:
@@ -241,27 +252,29 @@ def _explained(contest: _Contest) -> Choice | None:
     return None
 
 
-def _doubtful(contest: _Contest) -> bool:
+def _doubtful(contest: Contest) -> bool:
     """Whether one axis that wanders, or with a second rotation too small to tell, could have moved so."""
     single, two = contest.heldout(contest.one), contest.heldout("two_axes")
     retraced = _over(single - contest.heldout_wandering(contest.one), single - two)
     return contest.hardly_turns() or not contest.sure_axes() or retraced > _MUCH_RETRACED
 
 
-def _best(contest: _Contest) -> Choice:
+def _best(contest: Contest) -> Choice:
     """Take the simplest type that no richer one beats by enough."""
     if _over(contest.heldout("rigid"), contest.floor("rigid")) < contest["rigid"].need:
         return _unless_too_far(contest, "rigid", 0.0)
     one = contest.one
     if _over(contest.heldout(one), contest.floor(one)) < _NEED_LARGE:
         return _unless_too_far(contest, one, 0.0)
-    rigid, single, two, ball = contest["rigid"], contest[one], contest["two_axes"], contest["ball"]
-    names: tuple[Fitted, ...] = ("rigid", one, "two_axes", "ball")
-    left_rigid, left_single, left_two, left_ball = (contest.heldout(name) for name in names)
+    rigid, single, two = contest["rigid"], contest[one], contest["two_axes"]
+    names: tuple[Fitted, ...] = ("rigid", one, "two_axes")
+    left_rigid, left_single, left_two = (contest.heldout(name) for name in names)
+    left_ball = contest.heldout("ball") if contest.poses.located else np.inf
+    ball_valid = contest.poses.located and contest["ball"].valid
     gain = _over(left_rigid, min(left_single, left_two, left_ball))
     if gain < rigid.need:
         return _unless_too_far(contest, "rigid", gain)
-    least = min(left_two, left_ball if ball.valid else np.inf)
+    least = min(left_two, left_ball if ball_valid else np.inf)
     gain = _over(left_single, least)
     if gain < single.need or single.leaves_little:
         return _unless_too_far(contest, one, gain)
@@ -269,8 +282,11 @@ def _best(contest: _Contest) -> Choice:
     if retraced > _ALL_RETRACED and single.range_left < _LARGEST_WANDER:
         return _unless_too_far(contest, one, gain, doubt=_WANDERS)
     gain = _over(left_two, left_ball)
-    if ball.valid and gain >= two.need:
+    if ball_valid and gain >= two.need:
         return _unless_too_far(contest, "ball", 0.0)
+    if not contest.poses.located and two.range_left >= _LARGE:
+        left = f"two axes leave {np.degrees(two.fit.residual_rotation):.2g} deg RMS of rotation; {_NO_CENTER}"
+        return _chosen(contest, "ball", "approximate", left)
     if not two.valid:
         return _none_fits(contest, "more than one axis moves, but too little or too noisily to tell the second")
     if contest.hardly_turns():
@@ -282,10 +298,12 @@ def _best(contest: _Contest) -> Choice:
         doubt = "their angles go together, as those of one axis that wanders would"
     elif _over(left_single, left_two) < _NEED_SMALL:
         doubt = "one axis does not leave much more"
+    elif not contest.poses.located and not two.leaves_little:
+        doubt = "of so much only positions tell whether it is a third rotation"
     return _unless_too_far(contest, "two_axes", gain, doubt=doubt)
 
 
-def _unless_too_far(contest: _Contest, name: Fitted, gain: float, *, doubt: str | None = None) -> Choice:
+def _unless_too_far(contest: Contest, name: Fitted, gain: float, *, doubt: str | None = None) -> Choice:
     """Take a type, approximate where something speaks against it, unless it leaves more than a joint may."""
     tried = contest[name]
     words, leave = JOINT_TYPE_WORDS[name], "leave" if name == "two_axes" else "leaves"
@@ -293,7 +311,8 @@ def _unless_too_far(contest: _Contest, name: Fitted, gain: float, *, doubt: str 
     if tried.too_far:
         contest.try_all()
         return _none_fits(contest, f"{words} would be preferred, but {leave} {left_mm:.0f} mm")
-    left = f"{words} {leave} {np.degrees(tried.fit.residual_rotation):.2g} deg and {left_mm:.2g} mm RMS"
+    left = f"{words} {leave} {np.degrees(tried.fit.residual_rotation):.2g} deg"
+    left += f" and {left_mm:.2g} mm RMS" if contest.poses.located else " RMS of rotation"
     if doubt is None and gain >= _NEED_LARGE:
         doubt = (
             f"a richer type leaves {gain:.1f} times less variance, which is within what skin and imperfect joints do"
@@ -303,7 +322,7 @@ def _unless_too_far(contest: _Contest, name: Fitted, gain: float, *, doubt: str 
     return _chosen(contest, name, "determined", f"{left}; no richer type explains much more")
 
 
-def _none_fits(contest: _Contest, reason: str) -> Choice:
+def _none_fits(contest: Contest, reason: str) -> Choice:
     """Free if no valid type comes within 12 mm, else undetermined."""
     if all(tried.too_far for tried in contest.tried.values() if tried.valid):
         least = min(tried.fit.residual_translation for tried in contest.tried.values() if tried.valid)
@@ -313,7 +332,7 @@ def _none_fits(contest: _Contest, reason: str) -> Choice:
 
 
 def _chosen(
-    contest: _Contest,
+    contest: Contest,
     name: JointTypeName,
     status: Literal["determined", "approximate", "forced"] | None,
     reason: str,
@@ -343,6 +362,8 @@ def middle_range(values: Float) -> float:
 
 
 def _is_valid(name: Fitted, fit: Fit[Mechanism], deviation: Float) -> bool:
+    if name == "ball" and fit.told is not None:  # its rotations are the measured ones
+        return True
     if name == "ball":
         return bool(np.nan_to_num(deviation, nan=np.inf).max() < _LARGEST_CENTER_SD)
     if name != "two_axes":

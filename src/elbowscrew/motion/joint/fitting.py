@@ -45,17 +45,22 @@ def fit_type(name: Fitted, poses: Poses, *, robust: bool = False) -> Fit[Mechani
 def shared_covariance(fit: Fit[Mechanism], *, noise_known: bool) -> Float:
     """Covariance (P, P) of the shared numbers: of the stated noise, or of larger and correlated residuals.
 
-    NaN where the frames do not determine them, or are too few to tell of a noise that nobody states.
+    NaN where the frames do not determine them, or are too few to tell of a noise that nobody states; and of the numbers
+    that orientations do not tell.
     """
     scale = np.sqrt(np.maximum(np.diag(fit.information), 0.0))
-    unknown = np.full(fit.information.shape, np.nan)
-    if not (scale > 0.0).all() or not (noise_known or fit.freedom >= _LEAST_FREEDOM):
+    unknown = np.full((fit.mechanism.shared_count,) * 2, np.nan)
+    if not scale.size or not (scale > 0.0).all() or not (noise_known or fit.freedom >= _LEAST_FREEDOM):
         return unknown
     values, vectors = np.linalg.eigh(fit.information / np.outer(scale, scale))
     if values[0] < _LEAST_INFORMATION:
         return unknown
     inverse: Float = (vectors / values) @ vectors.T / np.outer(scale, scale)
-    return inverse * max(fit.variance, 1.0 if noise_known else 0.0) * frames_that_count_as_one(fit)
+    told = range(len(unknown)) if fit.told is None else fit.told
+    unknown[np.ix_(told, told)] = (
+        inverse * max(fit.variance, 1.0 if noise_known else 0.0) * frames_that_count_as_one(fit)
+    )
+    return unknown
 
 
 def frames_that_count_as_one(fit: Fit[Mechanism]) -> float:

@@ -10,6 +10,7 @@ from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.twist import adjoint
 from elbowscrew.motion.joint.joint_fit import LineFit, linear_model
+from elbowscrew.motion.joint.likelihood import whitener_of
 
 _LEAST_INFORMATION: Final = 1e-13
 
@@ -33,6 +34,8 @@ class Influence(NamedTuple):
         The relative poses themselves.
     second : ndarray, shape (F,), or None
         Another angle, where the motion is told by two.
+    told : tuple of int or None
+        Which of the joint's shared numbers these P are, where orientations alone do not tell all of them.
     """
 
     angle: Float
@@ -42,6 +45,7 @@ class Influence(NamedTuple):
     whitener: Float
     joint: Float
     second: Float | None = None
+    told: tuple[int, ...] | None = None
 
     @property
     def angles(self) -> Float:
@@ -96,6 +100,7 @@ def influence_of_fit(fit: LineFit, joint: Float, covariance: Float) -> Influence
         joint=joint,
         angle=fit.angle,
         weight=fit.weight,
+        told=fit.told,
     )
 
 
@@ -109,6 +114,7 @@ def influence_of_poses(
     joint: Float,
     angle: Float,
     weight: Float,
+    told: tuple[int, ...] | None = None,
 ) -> Influence:
     """Influence of each pose on the shared numbers of a joint of any type, the frames' own numbers eliminated.
 
@@ -127,6 +133,8 @@ def influence_of_poses(
     joint : ndarray, shape (F, 8)
     angle, weight : ndarray, shape (F,)
         The motion, and the weight of each frame in the fit.
+    told : tuple of int, optional
+        Which of the shared numbers the poses tell of, if not of all.
 
     References
     ----------
@@ -134,9 +142,9 @@ def influence_of_poses(
     ``I^-1 X^T Q L^T Ad(F)^-1``, where ``W = L L^T`` and ``X = Q L^T G``. Q turns steadily along the frames, so that the
     whitened residuals are series in time.
     """
-    root = np.swapaxes(np.linalg.cholesky(information), -1, -2)
+    root = whitener_of(information)
     across = _across(root @ own) @ root * np.sqrt(weight)[:, None, None]
-    design = across @ derivatives
+    design = across @ (derivatives if told is None else derivatives[..., list(told)])
     # The root of the frame's weight is in the whitener and in the design, so that the influence has all of it.
     return Influence(
         angle=angle,
@@ -145,6 +153,7 @@ def influence_of_poses(
         design=design,
         whitener=across @ adjoint(line_distal),
         joint=joint,
+        told=told,
     )
 
 
@@ -169,12 +178,12 @@ def with_columns(influence: Influence, columns: Float) -> tuple[Influence, Float
 
 
 def _across(own: Float) -> Float:
-    """Orthonormal rows (F, 6 - K, 6) across the K columns of each frame, turning no more than the columns do."""
+    """Orthonormal rows (F, n - K, n) across the K columns (F, n, K) of each frame, turning no more than these do."""
     turned = np.swapaxes(own, -1, -2)
     projector = own @ np.linalg.solve(turned @ own, turned)
-    count = own.shape[-1]
+    rows, count = own.shape[-2:]
     # Fixed directions as far as can be from all frames' columns, made orthogonal to each frame's own.
-    fixed = np.linalg.eigh(projector.mean(axis=0))[1][:, : 6 - count]
+    fixed = np.linalg.eigh(projector.mean(axis=0))[1][:, : rows - count]
     rest = fixed - projector @ fixed
     square = np.swapaxes(rest, -1, -2) @ rest
     return np.linalg.solve(np.linalg.cholesky(square), np.swapaxes(rest, -1, -2))

@@ -102,17 +102,24 @@ class JointInterval:
         J, where the residuals ask for it.
     skin : ndarray, shape (P, P), or None
         Covariance by the stated skin motion.
+    told : tuple of int or None
+        Which of the joint's numbers these P are; of the others nothing is known, and they have no part in a radius.
     """
 
     markers: Mixture | None
     residuals: ResidualSpectrum | None
     blocks: Mixture | None
     skin: Float | None
+    told: tuple[int, ...] | None = None
+
+    def _of_told(self, rows: Float) -> Float:
+        return rows if self.told is None else rows[..., list(self.told)]
 
     def radii(self, rows: Float, level: float = LEVEL) -> dict[Method, float]:
-        """Radius of ``rows @ x``, rows of shape (k, P), by each method that is used; skin comes on top."""
+        """Radius of ``rows @ x``, rows of all numbers, by each method that is used; skin comes on top."""
         if self.residuals is None:
             return {}
+        rows = self._of_told(rows)
         found: dict[Method, float] = {"B": self.residuals.radius(rows, level)}
         if self.markers is not None:
             found["A"] = self.markers.of(rows).radius(level)
@@ -122,6 +129,7 @@ class JointInterval:
 
     def skin_radius(self, rows: Float, level: float = LEVEL) -> float:
         """Part of the stated skin motion in the radius."""
+        rows = self._of_told(rows)
         return 0.0 if self.skin is None else Mixture.of_one(rows @ self.skin @ rows.T).radius(level)
 
     def radius(self, rows: Float, level: float = LEVEL) -> float:
@@ -159,7 +167,7 @@ def joint_interval(
         Whether the poses' noise is stated; else the residuals alone tell of it.
     """
     if not influence.determined:
-        return JointInterval(markers=None, residuals=None, blocks=None, skin=None)
+        return JointInterval(markers=None, residuals=None, blocks=None, skin=None, told=influence.told)
     markers: Mixture | None = None
     for cluster in clusters:
         found = cluster.covariance(influence)
@@ -174,6 +182,7 @@ def joint_interval(
         residuals=residuals,
         blocks=block_jackknife(influence) if asked else None,
         skin=skin_covariance(influence, skin, reference_angle, reference_second) if skin else None,
+        told=influence.told,
     )
 
 

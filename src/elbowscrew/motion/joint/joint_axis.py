@@ -13,6 +13,7 @@ from elbowscrew.geometry.arrays import Float, Index
 from elbowscrew.geometry.dual_quaternion import conjugate, pose_from_dual_quat, transform_lines
 from elbowscrew.geometry.sensitivity import NORMAL_95
 from elbowscrew.model import FittedJoint, JointAxis, JointMotion, MarkerMotion
+from elbowscrew.motion.joint.direction_fit import fit_direction
 from elbowscrew.motion.joint.estimates import line_errors, line_estimate
 from elbowscrew.motion.joint.influence import influence_of_fit
 from elbowscrew.motion.joint.interval import (
@@ -29,7 +30,7 @@ from elbowscrew.motion.joint.nonrigid import Segment
 from elbowscrew.motion.joint.wander import wander_of_axis
 from elbowscrew.motion.joint.wander_result import told_wander
 from elbowscrew.motion.screws.pose_noise import JointNoise
-from elbowscrew.motion.screws.uncertainty import joint_covariance
+from elbowscrew.motion.screws.uncertainty import fitted_covariance
 
 _MOST_FRAMES: Final = 20_000
 LARGEST_UNEXPLAINED: Final = 0.25
@@ -74,7 +75,10 @@ def estimate_joint_axis(
     rows, poses, covariance = fitted_frames(joint, noise, noise_gain)
     start = transform_lines(joint.reference, mean_line)
     near = pose_from_dual_quat(joint.reference)[1]
-    fits = {screw: fit_joint(poses, covariance, start, near, screw=screw, robust=robust) for screw in (False, True)}
+    if joint.located:
+        fits = {screw: fit_joint(poses, covariance, start, near, screw=screw, robust=robust) for screw in (False, True)}
+    else:  # nothing tells of a slide
+        fits = {False: fit_direction(poses, covariance, robust=robust)}
     hinge = fits[False]
     about_mean = hinge.angle - np.average(hinge.angle, weights=hinge.weight)
     spread = _rms(about_mean[:, None], hinge.weight)
@@ -117,7 +121,7 @@ def fitted_frames(joint: JointMotion, noise: JointNoise, noise_gain: Float) -> t
     rows = np.flatnonzero(joint.measured)
     rows = evenly_thinned(rows, _MOST_FRAMES)
     poses = joint.dual_quat_proximal_distal[rows]
-    return rows, poses, noise_gain[rows, None, None] * joint_covariance(poses, *noise.assumed)
+    return rows, poses, fitted_covariance(joint, poses, *noise.assumed, gain=noise_gain[rows])
 
 
 class BodyMarkers(NamedTuple):

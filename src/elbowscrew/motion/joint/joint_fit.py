@@ -18,6 +18,7 @@ from elbowscrew.geometry._small_angle import length
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.quaternion import quat_from_rotation_matrix, rotation_matrix_from_quat
 from elbowscrew.geometry.twist import adjoint
+from elbowscrew.motion.joint.likelihood import information_of
 
 _ITERATIONS: Final = 30
 _SMALL_STEP: Final = 1e-10
@@ -32,6 +33,7 @@ _TUKEY: Final = 6.10
 _LEAST_FREEDOM: Final = 20.0
 _LEAST_INFORMATION: Final = 1e-13
 _SHARED_HINGE: Final = (0, 1, 3, 4)  # tilts about x and y, shifts along x and y
+_HINGE: Final = 9  # shared parameters: those of both lines, and the slide at angle 0
 
 
 class LineFit(NamedTuple):
@@ -53,6 +55,8 @@ class LineFit(NamedTuple):
         Whitened RMS of the residuals, and the number of frames that count as one.
     freedom : float
         Degrees of freedom that the residuals have.
+    told : tuple of int or None
+        Which of the shared parameters the P of the information are; None where it is all of them.
     """
 
     proximal: Float
@@ -65,13 +69,14 @@ class LineFit(NamedTuple):
     noise_ratio: float
     correlation: float
     freedom: float
+    told: tuple[int, ...] | None = None
 
     def covariance(self, *, noise_known: bool) -> Float:
         """Covariance of the shared parameters, shape (P, P).
 
         That of the stated noise; larger where the residuals are larger or go together from frame to frame. Where the
         noise is not known, the residuals alone tell of it. NaN where the frames do not determine the line, or are too
-        few to tell of the noise.
+        few to tell of the noise. Of parameters that are not told it is 0.
         """
         scale = np.sqrt(np.maximum(np.diag(self.information), 0.0))
         told = noise_known or self.freedom >= _LEAST_FREEDOM
@@ -82,7 +87,15 @@ class LineFit(NamedTuple):
             return np.full(self.information.shape, np.nan)
         inverse: Float = (vectors / values) @ vectors.T / np.outer(scale, scale)
         least = 1.0 if noise_known else 0.0
-        return inverse * max(self.noise_ratio, least) ** 2 * self.correlation
+        return _whole(inverse * max(self.noise_ratio, least) ** 2 * self.correlation, self.told)
+
+
+def _whole(covariance: Float, told: tuple[int, ...] | None) -> Float:
+    if told is None:
+        return covariance
+    found = np.zeros((_HINGE, _HINGE))
+    found[np.ix_(told, told)] = covariance
+    return found
 
 
 def fit_joint(
@@ -109,7 +122,7 @@ def fit_joint(
     ----------
     Gauss and Newton with the frames' angles eliminated; robust: Maronna, Martin and Yohai 2006.
     """
-    W: Float = np.asarray(np.linalg.inv(covariance), dtype=np.float64)
+    W = information_of(covariance)
     A = _line_pose(line, near)
     # The distal body's line: where the proximal body's is seen from it, in the middle of the motion.
     F = dq.normalize(dq.multiply(dq.conjugate(joint[len(joint) // 2]), A))
@@ -278,9 +291,9 @@ def linear_model(fit: LineFit, covariance: Float) -> tuple[Float, Float, Float]:
         information (F, 6, 6) of each pose; all in the frame of the line.
     """
     at = _Step(fit.proximal, fit.distal, fit.angle, fit.pitch)
-    derivatives = _derivatives(at, screw=len(fit.information) > 9)
+    derivatives = _derivatives(at, screw=len(fit.information) > _HINGE)
     own = np.array([0.0, 0.0, 1.0, 0.0, 0.0, fit.pitch])
-    return derivatives, own, _weights_in_line(at, np.asarray(np.linalg.inv(covariance), dtype=np.float64))
+    return derivatives, own, _weights_in_line(at, information_of(covariance))
 
 
 def _integrated_autocorrelation(series: Float) -> float:

@@ -11,7 +11,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
-from typing import Final, Generic, NamedTuple, Self, TypeVar
+from typing import ClassVar, Final, Generic, NamedTuple, Self, TypeVar
 
 import numpy as np
 
@@ -31,10 +31,11 @@ _ROBUST_ROUNDS: Final = 30
 _ROBUST_STEPS: Final = 2
 _BLOCK: Final = 4096
 _TINY: Final = np.finfo(np.float64).tiny
+_COMPONENTS: Final = 6
 # By the residual's degrees of freedom a frame: median of chi-square, and Tukey's constant with 95 % efficiency, from
 # the asymptotic variance of an M-estimate of location in so many dimensions (Maronna, Martin and Yohai 2006).
-_MEDIAN_SQUARE: Final = {3: 2.366, 4: 3.357, 5: 4.351, 6: 5.348}
-_TUKEY: Final = {3: 5.490, 4: 5.810, 5: 6.096, 6: 6.356}
+_MEDIAN_SQUARE: Final = {1: 0.455, 2: 1.386, 3: 2.366, 4: 3.357, 5: 4.351, 6: 5.348}
+_TUKEY: Final = {1: 4.685, 2: 5.123, 3: 5.490, 4: 5.810, 5: 6.096, 6: 6.356}
 
 
 class Poses(NamedTuple):
@@ -44,8 +45,9 @@ class Poses(NamedTuple):
     ----------
     joint : ndarray, shape (F, 8)
         Distal body in the proximal one, any signs.
-    whitener : ndarray, shape (F, 6, 6)
-        ``U`` with ``U^T U`` the inverse covariance of each pose's error in the distal body's frame.
+    whitener : ndarray, shape (F, 6, 6) or (F, 3, 6)
+        ``U`` with ``U^T U`` the inverse covariance of each pose's error in the distal body's frame; three rows where
+        the positions were not measured.
     """
 
     joint: Float
@@ -53,9 +55,16 @@ class Poses(NamedTuple):
 
     @classmethod
     def of(cls, joint: Float, covariance: Float) -> Poses:
-        """Poses (F, 8) and the covariances (F, 6, 6) of their errors in the distal body's frame."""
-        inverse = np.linalg.inv(np.broadcast_to(covariance, (len(joint), 6, 6)))
-        return cls(joint, np.swapaxes(np.linalg.cholesky(inverse), -1, -2))
+        """Poses (F, 8) and the covariances (F, 6, 6) of their errors in the distal body's frame.
+
+        The variance of positions that were not measured is infinite (`fitted_covariance`).
+        """
+        return cls(joint, whitener_of(information_of(np.broadcast_to(covariance, (len(joint), 6, 6)))))
+
+    @property
+    def located(self) -> bool:
+        """Whether the positions were measured."""
+        return int(self.whitener.shape[-2]) == _COMPONENTS
 
     def at(self, rows: Index | slice) -> Poses:
         """Give the poses of some frames."""
@@ -93,9 +102,18 @@ class Mechanism(ABC):
     ----------
     frames : ndarray, shape (F, ...)
         The numbers that belong to one frame each.
+    turning : tuple of int
+        Which of the shared numbers turn the body: orientations tell no others.
     """
 
+    turning: ClassVar[tuple[int, ...]]
+
     frames: Float
+
+    @property
+    @abstractmethod
+    def shared_count(self) -> int:
+        """How many shared numbers there are."""
 
     @property
     @abstractmethod
@@ -105,6 +123,14 @@ class Mechanism(ABC):
     @abstractmethod
     def linear(self, joint: Float) -> Linear:
         """Residuals and derivatives at poses (F, 8), which `frames` must belong to."""
+
+    def whole(self, shared: Float) -> Float:
+        """All shared numbers (..., P) of those that are told, the others 0."""
+        if shared.shape[-1] == self.shared_count:
+            return shared
+        found = np.zeros((*shared.shape[:-1], self.shared_count))
+        found[..., list(self.turning)] = shared
+        return found
 
     @abstractmethod
     def moved(self, shared: Float, own: Float) -> Self:
@@ -148,14 +174,14 @@ class Fit(NamedTuple, Generic[M_co]):
     mechanism : Mechanism
     square : ndarray, shape (F,)
         Squared whitened distance of each frame, its own numbers at the optimum.
-    whitened : ndarray, shape (F, 6)
-        Whitened residual, projected off the frame's own numbers.
+    whitened : ndarray, shape (F, 6) or (F, 3)
+        Whitened residual, projected off the frame's own numbers; three where the positions were not measured.
     residual : ndarray, shape (F, 6)
         The same as a twist in `Mechanism.residual_frame`.
     weight : ndarray, shape (F,)
         1, or less for outliers of a robust fit.
     information : ndarray, shape (P, P)
-        Inverse of the covariance of the shared numbers under the stated noise.
+        Inverse of the covariance of the shared numbers that are told (`told`) under the stated noise.
     own_covariance : ndarray, shape (F, k, k)
         Of the frame's own numbers for given shared ones, under the stated noise.
     """
@@ -167,6 +193,16 @@ class Fit(NamedTuple, Generic[M_co]):
     weight: Float
     information: Float
     own_covariance: Float
+
+    @property
+    def told(self) -> tuple[int, ...] | None:
+        """Which of the shared numbers the poses tell of; None where it is all of them."""
+        return None if self.whitened.shape[-1] == _COMPONENTS else self.mechanism.turning
+
+    @property
+    def frame_freedom(self) -> int:
+        """Degrees of freedom that the residual of one frame has."""
+        return int(self.whitened.shape[-1]) - self.own_count
 
     @property
     def cost(self) -> float:
@@ -181,7 +217,7 @@ class Fit(NamedTuple, Generic[M_co]):
     @property
     def freedom(self) -> float:
         """Degrees of freedom of the residuals."""
-        return float((6 - self.own_count) * self.weight.sum() - len(self.information))
+        return float(self.frame_freedom * self.weight.sum() - len(self.information))
 
     @property
     def variance(self) -> float:
@@ -217,7 +253,8 @@ def _reduced(mechanism: Mechanism, poses: Poses, weight: Float) -> _Reduced:
     linear = mechanism.linear(poses.joint)
     k = linear.own.shape[-1]
     whitener = poses.whitener @ adjoint(mechanism.residual_frame)
-    whole = whitener @ np.concatenate([linear.own, linear.residual[..., None], linear.shared], axis=-1)
+    told = linear.shared if poses.located else linear.shared[..., list(mechanism.turning)]
+    whole = whitener @ np.concatenate([linear.own, linear.residual[..., None], told], axis=-1)
     own, rest = whole[..., :k], whole[..., k:]
     across = np.swapaxes(own, -1, -2)
     square = across @ own
@@ -227,7 +264,7 @@ def _reduced(mechanism: Mechanism, poses: Poses, weight: Float) -> _Reduced:
     mixed = covariance @ (across @ rest)
     rest = rest - own @ mixed
     residual, shared = rest[..., 0], rest[..., 1:]
-    flat = (*shared.shape[:-3], -1, shared.shape[-1])
+    flat = (*shared.shape[:-3], shared.shape[-3] * shared.shape[-2], shared.shape[-1])
     weighed = np.swapaxes((shared * weight[:, None, None]).reshape(flat), -1, -2)
     return _Reduced(
         information=weighed @ shared.reshape(flat),
@@ -263,7 +300,7 @@ def race(mechanisms: list[M], poses: Poses, *, rounds: int) -> list[Fit[M]]:
         damped = damped + damping[:, None, None] * np.eye(scale.shape[1])
         step = np.linalg.solve(damped, (at.gradient / scale)[..., None])[..., 0] / scale
         own = at.own_step - (at.own_by_shared @ step[:, None, :, None])[..., 0]
-        after = field.moved(step, np.clip(own, -_LARGEST_FRAME_STEP, _LARGEST_FRAME_STEP))
+        after = field.moved(field.whole(step), np.clip(own, -_LARGEST_FRAME_STEP, _LARGEST_FRAME_STEP))
         new = _reduced(after, poses, weight)
         new_cost = new.square.sum(axis=-1)
         better = new_cost <= cost * (1.0 + 1e-12)
@@ -303,6 +340,8 @@ def fit_mechanism(
     """
     weight = np.ones(len(poses.joint)) if weight is None else weight
     at, damping = _reduced(mechanism, poses, weight), 1e-6
+    if not at.gradient.size:  # nothing is shared that the poses tell of
+        return settled(mechanism, poses)
     cost = float(weight @ at.square)
     for _ in range(iterations):
         scale = np.sqrt(np.maximum(np.diag(at.information), _TINY))
@@ -315,7 +354,7 @@ def fit_mechanism(
             if unsettled < _SETTLED and at.gradient @ step <= tolerance * cost:
                 return _fitted(mechanism, at, weight)
             own = np.clip(at.own_step - at.own_by_shared @ step, -_LARGEST_FRAME_STEP, _LARGEST_FRAME_STEP)
-            after = mechanism.moved(step, own)
+            after = mechanism.moved(mechanism.whole(step), own)
             new = _reduced(after, poses, weight)
             new_cost = float(weight @ new.square)
             if new_cost <= cost * (1.0 + 1e-12):
@@ -342,7 +381,9 @@ def fit_robustly(fit: Fit[M], poses: Poses) -> Fit[M]:
     ----------
     Maronna, Martin and Yohai 2006; the scale is the median distance.
     """
-    freedom = 6 - fit.own_count
+    freedom = fit.frame_freedom
+    if not freedom:  # each frame is met exactly
+        return fit
     cost = np.inf
     for k in range(_ROBUST_ROUNDS):
         distance = np.sqrt(fit.square)
@@ -374,7 +415,7 @@ def settled(mechanism: M, poses: Poses, *, rounds: int = 3) -> Fit[M]:
             if np.abs(at.own_step).max() < _SMALLEST_STEP:
                 break
             step = np.clip(at.own_step, -_LARGEST_FRAME_STEP, _LARGEST_FRAME_STEP)
-            part = part.moved(np.zeros(len(at.information)), step)
+            part = part.moved(np.zeros(part.shared_count), step)
             at = _reduced(part, block, weight)
         fits.append(_fitted(part, at, weight))
     join: Callable[[list[Float]], Float] = np.concatenate
@@ -392,3 +433,20 @@ def settled(mechanism: M, poses: Poses, *, rounds: int = 3) -> Fit[M]:
 def residual_twist(model: Float, joint: Float) -> Float:
     """Twist (F, 6) that leads from the model's poses to the measured ones, in the model's frame."""
     return 2.0 * dq.log(dq.canonical(dq.multiply(dq.conjugate(model), joint)))
+
+
+def information_of(covariance: Float) -> Float:
+    """Inverse of covariances (..., 6, 6); 0 for positions whose variance is infinite."""
+    if np.isfinite(covariance[..., 3:, 3:]).all():
+        return np.asarray(np.linalg.inv(covariance), dtype=np.float64)
+    found = np.zeros(covariance.shape)
+    found[..., :3, :3] = np.linalg.inv(covariance[..., :3, :3])
+    return found
+
+
+def whitener_of(information: Float) -> Float:
+    """``U`` with ``U^T U`` the information (..., 6, 6): upper triangular, with three rows if positions have none."""
+    if information[..., 3:, 3:].any():
+        return np.swapaxes(np.linalg.cholesky(information), -1, -2)
+    turning = np.swapaxes(np.linalg.cholesky(information[..., :3, :3]), -1, -2)
+    return np.concatenate([turning, np.zeros(turning.shape)], axis=-1)

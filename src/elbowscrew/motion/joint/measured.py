@@ -8,6 +8,7 @@ from typing import Final
 import numpy as np
 
 from elbowscrew.choices import JOINT_TYPE_WORDS, StatedJoint
+from elbowscrew.errors import SettingError
 from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat
 from elbowscrew.joints import side_of
 from elbowscrew.model import JointAxis, MeanAxis, QualityWarning, RigidBody
@@ -26,13 +27,14 @@ from elbowscrew.motion.joint.nonrigid import Segment
 from elbowscrew.motion.joint.typed import identify_joint
 from elbowscrew.motion.screws.measurement import Measurement
 from elbowscrew.motion.screws.pose_noise import STILL_STRETCH, fix_a_pose
-from elbowscrew.motion.screws.uncertainty import joint_covariance
+from elbowscrew.motion.screws.uncertainty import fitted_covariance
 from elbowscrew.settings import Settings
 
 _LARGE_NOISE_RATIO: Final = 2.0
 _LEAST_SHIFT: Final = 1e-6
 _ONE_AXIS: Final = ("hinge", "screw_hinge")
 _OTHERS: Final = ("rigid", "two_axes", "ball", "free")
+_NO_CENTER: Final = "three rotations are seen, and whether they have one center orientations do not tell"
 _FOUND: Final = {
     "two_axes": "the joint has two axes (joint.json)",
     "ball": "the joint has a center (joint.json)",
@@ -42,7 +44,19 @@ _FOUND: Final = {
 
 
 def measured_joint_axis(measured: Measurement, mean: MeanAxis, settings: Settings) -> JointAxis:
-    """Estimate the joint's axis, starting from the mean of the finite axes."""
+    """Estimate the joint's axis, starting from the mean of the finite axes.
+
+    Raises
+    ------
+    SettingError
+        If the joint is stated to slide, and there are no positions.
+    """
+    if settings.stated_joint == "screw_hinge" and not measured.joint.located:
+        msg = (
+            "--joint-type screw-hinge: the two bodies have orientations and no positions, which tell of no slide; give "
+            "hinge, or leave it out"
+        )
+        raise SettingError(msg)
     return estimate_joint_axis(
         measured.joint,
         measured.course,
@@ -63,7 +77,8 @@ def measured_joint_type(measured: Measurement, joint_axis: JointAxis, settings: 
     if stated == "free":
         return _without_numbers(stated, "free, as stated")
     rows, poses, covariance = fitted_frames(measured.joint, measured.noise, measured.noise_gain)
-    if not np.ptp(pose_from_dual_quat(poses)[1], axis=0).max() > _LEAST_SHIFT:
+    located = measured.joint.located
+    if located and not np.ptp(pose_from_dual_quat(poses)[1], axis=0).max() > _LEAST_SHIFT:
         return None
     return identify_joint(
         poses,
@@ -104,9 +119,9 @@ def _everywhere(measured: Measurement, settings: Settings) -> Everywhere:
     joint = measured.joint
     return Everywhere(
         joint.dual_quat_proximal_distal,
-        lambda rows: joint_covariance(joint.dual_quat_proximal_distal[rows], proximal, distal),
+        lambda rows: fitted_covariance(joint, joint.dual_quat_proximal_distal[rows], proximal, distal),
         measured.noise_gain,
-        joint_covariance(joint.reference, proximal, distal) / settings.reference_window,
+        fitted_covariance(joint, joint.reference, proximal, distal) / settings.reference_window,
     )
 
 
@@ -183,6 +198,8 @@ def joint_axis_warnings(
         left = joint_axis.unexplained
         share = f"{100.0 * left:.0f} % of its rotation" if left < 1.0 else "more rotation than there is about it"
         found = "" if joint_type is None else f"; {_FOUND.get(joint_type.type, 'what it is, is undetermined')}"
+        if joint_type is not None and joint_type.type == "ball" and not measured.joint.located:
+            found = f"; {_NO_CENTER}"
         message = (
             f"the motion has no single axis: a hinge leaves {share} unexplained, so that no joint axis is fitted, and "
             f"theta and the mean axis mix rotations{found}"

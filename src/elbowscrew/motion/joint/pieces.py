@@ -18,10 +18,10 @@ class Pieces(NamedTuple):
 
     Attributes
     ----------
-    whitened : ndarray, shape (F, 6 - k)
+    whitened : ndarray, shape (F, 6 - k), or (F, 3 - k) where the positions were not measured
         Residuals across the frame's own numbers, each of variance 1 under the stated noise.
     design : ndarray, shape (F, 6 - k, P)
-        Their derivatives by the shared numbers.
+        Their derivatives by the shared numbers that are told.
     whitener : ndarray, shape (F, 6 - k, 6)
         Their derivatives by the error of the pose.
     """
@@ -43,7 +43,9 @@ def influence_pieces(fit: Fit[Mechanism], poses: Poses) -> Pieces:
     linear = fit.mechanism.linear(poses.joint)
     whitener = poses.whitener @ adjoint(fit.mechanism.residual_frame)
     k = linear.own.shape[2]
-    across = np.linalg.qr(whitener @ linear.own, mode="complete")[0][..., k:] if k else np.eye(6)
+    across = np.linalg.qr(whitener @ linear.own, mode="complete")[0][..., k:]
+    across = across if k else np.eye(poses.whitener.shape[-2])
     across = np.swapaxes(across, -1, -2) * np.sqrt(fit.weight)[:, None, None]
     whitened = across @ (whitener @ linear.residual[..., None])
-    return Pieces(whitened[..., 0], across @ whitener @ linear.shared, across @ poses.whitener)
+    told = linear.shared if fit.told is None else linear.shared[..., list(fit.told)]
+    return Pieces(whitened[..., 0], across @ whitener @ told, across @ poses.whitener)

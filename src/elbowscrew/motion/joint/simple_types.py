@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Final, Self
+from typing import ClassVar, Final, Self
 
 import numpy as np
 
@@ -29,6 +29,8 @@ _IDENTITY: Final = np.array([1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])
 class Rigid(Mechanism):
     """No motion at all: one pose (8,)."""
 
+    turning: ClassVar = (0, 1, 2)
+
     pose: Float
 
     @classmethod
@@ -36,6 +38,11 @@ class Rigid(Mechanism):
         """At the mean of poses (F, 8)."""
         signed = dq.align_signs(joint, joint[len(joint) // 2])
         return cls(pose=dq.normalize(signed.mean(axis=0)), frames=np.zeros((len(joint), 0)))
+
+    @property
+    def shared_count(self) -> int:
+        """A twist of the pose."""
+        return 6
 
     @property
     def residual_frame(self) -> Float:
@@ -61,6 +68,8 @@ class Rigid(Mechanism):
 class OneAxis(Mechanism):
     """A hinge or screw-hinge ``A Z(theta, p theta) F^-1``; `joint_fit` tells the rest. ``frames``: angle (F, 1)."""
 
+    turning: ClassVar = (0, 1, 4, 5)
+
     proximal: Float
     distal: Float
     pitch: float
@@ -76,6 +85,11 @@ class OneAxis(Mechanism):
         F = dq.multiply(F, about_z(np.zeros(()), -slide))
         found = cls(proximal=A, distal=F, pitch=0.0, screw=screw, frames=np.zeros((0, 1)))
         return found.placed(joint)
+
+    @property
+    def shared_count(self) -> int:
+        """Tilts and shifts of both lines, the slide, and a pitch."""
+        return 10 if self.screw else 9
 
     @property
     def residual_frame(self) -> Float:
@@ -122,6 +136,8 @@ class Ball(Mechanism):
     and Heller 2006), millimeters at a small range.
     """
 
+    turning: ClassVar = ()
+
     proximal: Float
     distal: Float
 
@@ -130,6 +146,11 @@ class Ball(Mechanism):
         """From the points that stay nearest each other, which is SCoRE."""
         in_distal, in_proximal = nearest_points(joint, undetermined=0)
         return cls(proximal=in_proximal, distal=in_distal, frames=np.zeros((0, 8))).placed(joint)
+
+    @property
+    def shared_count(self) -> int:
+        """Both centers."""
+        return 6
 
     @property
     def residual_frame(self) -> Float:

@@ -61,11 +61,11 @@ def find_two_axes(poses: Poses) -> Fit[TwoAxesMechanism]:
     few, _ = poses.thinned(_FRAMES)
     fewer, racing = few.thinned(_RACE_FRAMES)
     hinge = fit_mechanism(OneAxis.start(few.joint), few, iterations=8, tolerance=1e-2)
-    starts = [
-        *_constant_angle_starts(poses.thinned(_ROTATION_FRAMES)[0].joint, few.joint),
-        *_parallel_starts(few.joint),
-        *_residual_starts(hinge, None),
-    ]
+    starts = _constant_angle_starts(poses.thinned(_ROTATION_FRAMES)[0].joint, few.joint)
+    if poses.located:
+        starts += [*_parallel_starts(few.joint), *_residual_starts(hinge, None)]
+    else:  # all lines pass one point, and parallel axes are one
+        starts += _residual_starts(hinge, (1.0,))
     runners = sorted(_race(starts, racing, fewer), key=lambda runner: runner.cost)
     going: list[_Runner] = []
     for runner in runners[:4]:
@@ -78,7 +78,7 @@ def find_two_axes(poses: Poses) -> Fit[TwoAxesMechanism]:
         going.append(runner)
     best = _on(going, few)
     least = min(best, key=lambda runner: runner.cost)
-    if least.phantom or _sine(least.fit) < _NEARLY_PARALLEL:
+    if poses.located and (least.phantom or _sine(least.fit) < _NEARLY_PARALLEL):
         scanned = _race(_residual_starts(hinge, _SCANNED), racing, fewer)
         near = [runner for runner in scanned if not runner.phantom and runner.cost < 3.0 * least.cost]
         best += _on(sorted(near, key=lambda runner: runner.cost)[:_MOST_SCANNED], few)

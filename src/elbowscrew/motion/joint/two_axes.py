@@ -8,7 +8,7 @@ and intersecting axes are alike regular, which they are not in the numbers of De
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Final, NamedTuple, Self
+from typing import ClassVar, Final, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,9 +32,16 @@ _SCALE: Final = np.array([1.0, 1.0, 1.0, _LENGTH, _LENGTH, _LENGTH])
 class TwoAxesMechanism(Mechanism):
     """Poses A, M and F, shape (8,) each. ``frames``: both angles (F, 2), rad."""
 
+    turning: ClassVar = (0, 1, 4, 8, 9)
+
     proximal: Float
     between: Float
     distal: Float
+
+    @property
+    def shared_count(self) -> int:
+        """Tilts and shifts of both lines, and four of M between them."""
+        return 12
 
     @property
     def residual_frame(self) -> Float:
@@ -43,12 +50,17 @@ class TwoAxesMechanism(Mechanism):
 
     @property
     def directions(self) -> Float:
-        """Twists (6, 4) that M moves by: across those of both angles."""
+        """Twists (6, 4) that M moves by: across those of both angles; the first alone turns where M only does."""
         second = dq.transform_lines(dq.conjugate(self.between), Z_LINE)
         angles = np.stack([np.broadcast_to(Z_LINE, second.shape), second], axis=-1)
+        if not second[..., 3:].any():
+            found = np.zeros((*angles.shape[:-1], 4))
+            found[..., :3, 0] = np.linalg.svd(angles[..., :3, :])[0][..., 2]
+            found[..., 3:, 1:] = np.eye(3)
+            return found
         left = np.linalg.svd(angles / _SCALE[:, None])[0]
-        found: Float = left[..., 2:] * _SCALE[:, None]
-        return found
+        across: Float = left[..., 2:] * _SCALE[:, None]
+        return across
 
     def linear(self, joint: Float) -> Linear:
         """12 shared numbers (tilts and shifts of both lines, 4 of M between them), 2 of a frame's own."""

@@ -61,6 +61,7 @@ def influence_of_type(fit: Fit[Mechanism], poses: Poses) -> Influence:
         joint=poses.joint,
         angle=angles[:, 0],
         weight=fit.weight,
+        told=fit.told,
     )
     return found if angles.shape[1] == 1 else found._replace(second=angles[:, 1])
 

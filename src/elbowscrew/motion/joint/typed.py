@@ -102,9 +102,11 @@ def identify_joint(
         everywhere = Everywhere(joint, lambda rows: of_each[rows], np.ones(len(joint)))
     mechanism = fit.mechanism
     scale = max(fit.variance, 1.0 if noise_known else 0.0)
+    if not fit.frame_freedom:  # nothing is left that could tell of the noise
+        scale = 1.0 if noise_known else np.nan
     if isinstance(mechanism, TwoAxesMechanism):
         start = reference_numbers(mechanism, everywhere, reference)
-        at = _oriented(mechanism.zeroed(start.own[0]), left=left)
+        at = _oriented(mechanism.zeroed(start.own[0]), left=left, located=poses.located)
         written = fit_mechanism(at, most, iterations=0, weight=fit.weight)
         every = numbers_everywhere(at, everywhere, reference)
         every = every._replace(angle=_near_zero(every.angle))
@@ -119,6 +121,8 @@ def identify_joint(
     start = reference_numbers(mechanism, everywhere, reference)
     allowed = coordinates_of(replace(mechanism, frames=start.own), reference)
     every = numbers_everywhere(mechanism, everywhere, reference)
+    if isinstance(mechanism, Ball) and not poses.located:
+        return _result(choice, every, scale, coordinates=allowed)
     if isinstance(mechanism, Ball):
         interval = interval_of_type(fit, most, evidence.at(rows))
         center = _ball(fit, mechanism, interval, most.joint, noise_known=noise_known)
@@ -174,21 +178,22 @@ def _near_zero(angle: Float) -> Float:
     return np.asarray(angle - 2.0 * np.pi * turns[nearest])
 
 
-def _oriented(at: TwoAxesMechanism, *, left: bool) -> TwoAxesMechanism:
+def _oriented(at: TwoAxesMechanism, *, left: bool, located: bool) -> TwoAxesMechanism:
     """Axis 1 with its largest excursion positive; axis 2 toward the joint from the distal body, of a left side away.
 
     The origins are put on the feet of the common normal, where the positions of both axes are of interest; of parallel
-    axes, which have none, and whose second is given the sense of its excursion, nearest the bodies' origins.
+    axes, which have none, and whose second is given the sense of its excursion, nearest the bodies' origins. Where no
+    positions were measured the second has that sense, too.
     """
     angle = _near_zero(at.frames)
     senses = np.where(angle.max(axis=0) >= -angle.min(axis=0), 1.0, -1.0)
     geometry = axes_geometry(at)
     parallel = min(geometry.angle, np.pi - geometry.angle) < _PARALLEL
-    if not parallel:
+    if located and not parallel:
         senses[1] = (1.0 if geometry.foot2 >= 0.0 else -1.0) * (-1.0 if left else 1.0)
     at = at.turned(float(senses[0]), float(senses[1]))
     first, second = _to_origin(at.proximal), _to_origin(at.distal)
-    if parallel:
+    if parallel or not located:
         return at.slid(first, second)
     geometry = axes_geometry(at)
     return at.slid(first + geometry.foot1, second + geometry.foot2)

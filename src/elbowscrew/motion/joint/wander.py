@@ -15,6 +15,8 @@ from elbowscrew.motion.joint.joint_fit import LineFit
 
 _GRID: Final = 400
 _TILT_SHIFT: Final = (0, 1, 3, 4)
+_HINGE: Final = 9  # a hinge's shared numbers, behind which those of the wander stand
+_WANDER_TILTS: Final = (_HINGE, _HINGE + 1)
 _TELLS_NOTHING: Final = np.radians(45.0)  # of a wander that would not be seen: no linear step tells of more
 
 
@@ -139,7 +141,14 @@ def wander_of_axis(
     summed = summed - summed.mean(axis=0)
     flat = summed.reshape(_GRID, -1).T
     extra = np.stack([np.interp(fit.angle, grid, column) for column in flat], axis=1).reshape(-1, 6, 4)
-    more, step = with_columns(influence, adjoint(fit.distal) @ extra)
+    columns = adjoint(fit.distal) @ extra
+    if influence.told is None:
+        more, step = with_columns(influence, columns)
+        inverse = more.inverse
+    else:  # orientations tell of tilts alone
+        more, step = with_columns(influence, columns[..., :2])
+        more = more._replace(told=(*influence.told, *_WANDER_TILTS))
+        inverse, step = _all_numbers(more, step)
     if not more.determined:
         return None
     interval = joint_interval(more, clusters, skin=skin, reference_angle=reference_angle, noise_known=noise_known)
@@ -157,7 +166,7 @@ def wander_of_axis(
         significant=any(size > limit for size, limit in zip(sizes, sure, strict=True)),
         step=step,
         interval=interval,
-        inverse=more.inverse,
+        inverse=inverse,
         middle=0.5 * (low + high),
         half_range=0.5 * (high - low),
         pitch=fit.pitch,
@@ -171,3 +180,11 @@ def _columns(angle: Float, pitch: float) -> Float:
     half = np.zeros((len(angle), 6))
     half[:, 2], half[:, 5] = 0.5 * angle, 0.5 * pitch * angle
     return adjoint(dq.conjugate(dq.exp(half)))[:, :, list(_TILT_SHIFT)]
+
+
+def _all_numbers(told: Influence, step: Float) -> tuple[Float, Float]:
+    """Covariance and step of all numbers, 0 for those that orientations do not tell of."""
+    places = list(told.told or ())
+    inverse, whole = np.zeros((_HINGE + 4, _HINGE + 4)), np.zeros(_HINGE + 4)
+    inverse[np.ix_(places, places)], whole[places] = told.inverse, step
+    return inverse, whole

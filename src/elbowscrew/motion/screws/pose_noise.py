@@ -9,6 +9,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from elbowscrew.choices import NOISE_SOURCES, functions_named
+from elbowscrew.errors import SettingError
 from elbowscrew.geometry._blocks import evenly_thinned
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_quaternion import align_signs, conjugate, log, multiply, normalize
@@ -55,7 +56,18 @@ def pose_noise(body: RigidBody, rate_hz: float, settings: Settings) -> PoseNoise
     -------
     PoseNoise or None
         None if there is no source.
+
+    Raises
+    ------
+    SettingError
+        If noise of markers is stated of a body without positions.
     """
+    if settings.marker_noise_mm is not None and not body.located:
+        msg = (
+            f"--marker-noise: body {body.name!r} has orientations and no positions, and so no markers; leave it out: "
+            "residuals and stillness tell of the noise"
+        )
+        raise SettingError(msg)
     if settings.marker_noise_mm is not None:
         return _from_marker_noise(body, settings.marker_noise_mm / 1000.0, "option", settings)
     for name in NOISE_SOURCES:
@@ -163,9 +175,10 @@ def _share_shown(body: RigidBody, covariance: Float) -> float:
         return 1.0
     off = 2.0 * log(align_signs(multiply(conjugate(poses[0]), poses), _IDENTITY))
     off = off - off.mean(axis=0)
-    square = np.einsum("ni,ij,nj->n", off, np.linalg.inv(covariance), off)
+    told = 6 if body.located else 3
+    square = np.einsum("ni,ij,nj->n", off[:, :told], np.linalg.inv(covariance[:told, :told]), off[:, :told])
     # Twice, so that a body at rest that is as noisy as it is said to be has all of its noise.
-    return min(2.0 * float(square.sum()) / (6.0 * (len(rows) - 1)), 1.0)
+    return min(2.0 * float(square.sum()) / (told * (len(rows) - 1)), 1.0)
 
 
 def _from_marker_noise(body: RigidBody, marker_noise: float, source: str, settings: Settings) -> PoseNoise:

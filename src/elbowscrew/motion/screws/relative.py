@@ -41,7 +41,7 @@ def joint_from_bodies(
     proximal : RigidBody or None
         The proximal body; None if it stands still.
     distal : RigidBody
-        The distal body.
+        The distal body; with positions if the proximal one has any.
     frame : ndarray of int64, shape (N,)
         Frame numbers, for messages.
     elapsed : ndarray, shape (N,)
@@ -95,6 +95,7 @@ def joint_from_bodies(
         reference_row=row,
         lowpass_hz=lowpass_hz,
         dual_quat_lab_proximal=IDENTITY if proximal is None else _mean_pose(proximal_pose[window]),
+        located=distal.located,
     )
 
 

@@ -62,6 +62,33 @@ def joint_covariance(joint: Float, proximal: PoseNoise | None, distal: PoseNoise
     return distal.covariance + levered @ np.swapaxes(lever, -1, -2)
 
 
+def fitted_covariance(
+    joint: JointMotion,
+    poses: Float,
+    proximal: PoseNoise | None,
+    distal: PoseNoise,
+    *,
+    gain: Float | float = 1.0,
+) -> Float:
+    """What a joint is fitted with: `joint_covariance` of poses (F, 8), the variance of unmeasured positions infinite.
+
+    Parameters
+    ----------
+    joint : JointMotion
+        That the poses are of.
+    poses : ndarray, shape (..., 8)
+    proximal, distal : PoseNoise
+    gain : ndarray, shape (...), or float
+        Share of the noise's variance that a filter has left.
+    """
+    covariance = np.asarray(gain)[..., None, None] * joint_covariance(poses, proximal, distal)
+    if not joint.located:
+        covariance = covariance.copy()
+        covariance[..., :3, 3:], covariance[..., 3:, :] = 0.0, 0.0
+        covariance[..., range(3, 6), range(3, 6)] = np.inf
+    return covariance
+
+
 def screw_errors(
     displacement: Float,
     joint: JointMotion,

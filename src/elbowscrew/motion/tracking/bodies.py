@@ -12,7 +12,7 @@ from elbowscrew.errors import AnalysisError, SettingError
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.joints import Joint
 from elbowscrew.model import BodyQuality, QualityWarning, Recording, RigidBody, marker_matches
-from elbowscrew.motion.tracking.body_pairs import on_the_spot_warning, turns_on_the_spot
+from elbowscrew.motion.tracking.body_pairs import no_positions_warnings, on_the_spot_warning, turns_on_the_spot
 from elbowscrew.motion.tracking.marker_poses import body_from_markers
 from elbowscrew.motion.tracking.quality import check_bodies
 from elbowscrew.motion.tracking.selection import ChosenBodies, choose_bodies
@@ -79,16 +79,16 @@ def tracked_bodies(recording: Recording, settings: Settings) -> TrackedBodies:
     if unusable is not None:
         msg = f"{unusable.message}; choose other bodies, or export the take again"
         raise AnalysisError(msg)
-    nowhere = [found.body.name for found in checked.bodies if not found.body.located]
-    if nowhere:
-        msg = f"body {nowhere[0]!r} has no measured positions, and nothing says where the joint is"
-        raise AnalysisError(msg)
-    doubts = tuple(on_the_spot_warning(found.body.name) for found in checked.bodies if turns_on_the_spot(found.body))
-    proximal = None if proximal is None else checked.bodies[0].body
+    bodies = tuple(found.body for found in checked.bodies)
+    doubts = tuple(on_the_spot_warning(body.name) for body in bodies if turns_on_the_spot(body))
+    if not all(body.located for body in bodies):
+        doubts += no_positions_warnings([body.name for body in bodies if body.located], settings.tolerance_mm)
+        bodies = tuple(body.without_positions() for body in bodies)
+    proximal = None if proximal is None else bodies[0]
     broken_rows = np.unique(np.concatenate([found.broken_rows for found in checked.bodies]))
     return TrackedBodies(
         proximal=proximal,
-        distal=checked.bodies[-1].body,
+        distal=bodies[-1],
         joint=chosen_bodies.joint,
         broken_rows=broken_rows,
         elapsed=checked.elapsed,

@@ -91,3 +91,26 @@ def on_the_spot_warning(name: str) -> QualityWarning:
         "the axis mean nothing"
     )
     return QualityWarning(code="on-the-spot", message=message)
+
+
+def no_positions_warnings(unused: Sequence[str], tolerance: float | str | None) -> tuple[QualityWarning, ...]:
+    """Say what is found of a joint of which no positions were measured.
+
+    Parameters
+    ----------
+    unused : sequence of str
+        Bodies whose positions are not used, as the other one has none.
+    tolerance : float, str or None
+        That of the model as it is stated: what is without a unit is an angle here.
+    """
+    message = (
+        "there are orientations and no positions: angles, directions of axes and their errors are told; slide, places "
+        "of axes, centers, distances and speeds are left empty, and errors and tolerance of the model are angles"
+    )
+    if unused:
+        message += f" (the positions of {', '.join(map(repr, unused))} are not used, as the other body has none)"
+    found = [QualityWarning(code="no-positions", message=message)]
+    if isinstance(tolerance, float):
+        message = f"--tolerance {tolerance:g} is taken as {tolerance:g} deg, as there are no positions"
+        found.append(QualityWarning(code="tolerance-in-degrees", message=message))
+    return tuple(found)

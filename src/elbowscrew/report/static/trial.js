@@ -2,6 +2,7 @@
 // The view in space: drawn on a plain canvas, so that it needs neither a library nor a graphics card.
 (() => {
   const scene = JSON.parse(document.getElementById("data").textContent);
+  if (!scene) return; // there are orientations alone
   const viewer = document.getElementById("viewer");
   const canvas = document.getElementById("space");
   const context = canvas.getContext("2d");

@@ -1,0 +1,105 @@
+"""What a person reads on the terminal of the joint as a whole: which it is, and where its axes or its center are."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal
+
+from elbowscrew.cli.text import vector_text
+
+if TYPE_CHECKING:
+    from elbowscrew.model.joint_summary_types import (
+        JointLineSummary,
+        JointTypeSummary,
+        SecondRotationSummary,
+        Vector,
+        WanderSummary,
+    )
+    from elbowscrew.model.summary_types import MotionSummary
+
+
+def joint_text(found: JointTypeSummary) -> str:
+    """Say which joint it is, and why."""
+    status = {"forced": " (as stated)", None: ""}.get(found["status"], f" ({found['status']})")
+    return f"{found['type'].replace('_', '-' if 'hinge' in found['type'] else ' ')}{status}: {found['reason']}"
+
+
+def joint_axis_text(motion: MotionSummary, *, located: bool) -> str:
+    """Say where the joint's axis is, or its axes or center, and how well that is known."""
+    axis, numbers = motion["joint_axis"], motion["joint_numbers"]
+    whose, whose_body = ("clusters'", "cluster") if located else ("sensors'", "sensor")
+    if axis is None:
+        return _axes_or_center(motion, whose)
+    model = axis["model"].replace("_", "-")
+    direction = vector_text(axis["direction"], 4)
+    beside = _wander(numbers["wander"]) + _second_rotation(numbers["second_rotation"])
+    if axis["axis_cone95_deg"] is None:
+        place = place_text(axis["point_mm"])
+        return f"direction ({direction}){place} ({model}; undetermined: no interval can be given){beside}"
+    which = f"mean axis of a {model} whose axis wanders" if axis["is_mean"] else model
+    place = "" if axis["point_mm"] is None else f", point ({vector_text(axis['point_mm'], 1)})"
+    place += "" if axis["point_radius95_mm"] is None else f" within {axis['point_radius95_mm']:.2g} mm"
+    return (
+        f"direction ({direction}) within {axis['axis_cone95_deg']:.2g} deg{place} "
+        f"({which}, 95 %, for the {whose} frames, {axis['interval_method']}; "
+        f"each degree that a {whose_body} turns on its bone with the motion turns this axis by up to "
+        f"{axis['sensitivity_deg_per_deg']:.2g} deg){beside}"
+    )
+
+
+def _wander(found: WanderSummary | None) -> str:
+    """How far the axis goes with the angle, or what would not be seen."""
+    if found is None or found["size_deg"] is None or found["unseen_deg"] is None:
+        return ""
+    if not found["significant"]:
+        return f"; the axis stays: a wander below {found['unseen_deg']:.2g} deg would not be seen"
+    shift = "" if found["size_mm"] is None else f" and {found['size_mm']:.2g} mm"
+    return f"; it wanders by {found['size_deg']:.2g} deg{shift} over the range (axis_path.csv)"
+
+
+def _second_rotation(found: SecondRotationSummary | None) -> str:
+    if found is None or found["range_deg"] is None:
+        return ""
+    axis = found["axis"]
+    which = "its axis undetermined" if axis is None else f"about ({vector_text(axis['direction'], 4)})"
+    return f"; second rotation {found['range_deg']:.2g} deg, {which}"
+
+
+def place_text(point_mm: Vector | None) -> str:
+    """Say where a line passes, if that is known."""
+    return "" if point_mm is None else f", point ({vector_text(point_mm, 1)}) mm"
+
+
+def _axes_or_center(motion: MotionSummary, whose: str) -> str:
+    found, axes, ball = motion["joint_type"], motion["joint_numbers"]["two_axes"], motion["joint_numbers"]["ball"]
+    if axes is not None:
+        told = f"{_one_of_two(axes['axis1'], 'proximal')}; {_one_of_two(axes['axis2'], 'distal')}"
+        if axes["angle_between_deg"] is None:
+            return f"{told}; how they stand to each other is undetermined ({_stands_on(found, whose)})"
+        apart = f"{axes['angle_between_deg']:.1f} deg"
+        if axes["distance_mm"] is not None:
+            apart += f" and {abs(axes['distance_mm']):.1f} mm"
+        elif axes["parallel_offset_mm"] is not None:
+            apart = f"parallel, {axes['parallel_offset_mm']:.1f} mm"
+        return f"{told}; {apart} apart ({_stands_on(found, whose)})"
+    if ball is not None:
+        within = "" if ball["radius95_mm"] is None else f" within {ball['radius95_mm']:.2g} mm"
+        return (
+            f"center ({vector_text(ball['center_in_proximal_mm'], 1)}) mm in the proximal body{within} "
+            f"({_stands_on(found, whose)})"
+        )
+    return "none"
+
+
+def _stands_on(found: JointTypeSummary, whose: str) -> str:
+    return f"95 %, for the {whose} frames, {found['interval_method'] or 'not known'}"
+
+
+def _one_of_two(axis: JointLineSummary, body: Literal["proximal", "distal"]) -> str:
+    number = 1 if body == "proximal" else 2
+    direction = vector_text(axis["direction_in_proximal"] if number == 1 else axis["direction_in_distal"], 4)
+    if not axis["determined"]:
+        return f"axis {number} undetermined, {axis['range_deg']:.0f} deg about it"
+    return (
+        f"axis {number} ({direction}) in the {body} body within {axis['cone95_deg']:.2g} deg, "
+        f"{axis['range_deg']:.0f} deg about it"
+    )
