@@ -231,6 +231,7 @@ def _trial(told: Told) -> dict[str, Any]:
         "measured_frames": int(screw["valid"].sum()),
         "filled_frames": int(screw["filled"].sum()),
         "missing_share": 1.0 - screw["valid"].mean(),
+        "positions": True,
         "reference_frame": int(told.option("--reference") or frame[screw["valid"] == 1][0]),
         "lowpass_hz": None if told.option("--lowpass") is None else float(told.option("--lowpass") or "nan"),
     }
@@ -531,6 +532,7 @@ def _phase_laws(told: Told) -> list[dict[str, Any]]:
                 "start_frame": frame[start],
                 "end_frame": frame[end],
                 "rms_displacement_mm": np.sqrt(np.mean(square)),
+                "rms_angle_deg": None,
             }
         )
     return found
@@ -552,6 +554,7 @@ def _selection(told: Told, tolerance: float) -> dict[str, Any]:
     count, frames = len(told.keyframes), int(told.model["theta_deg"].notna().sum())
     return {
         "tolerance_mm": tolerance,
+        "tolerance_deg": None,
         "frames": frames,
         "keyframes": count,
         "keyframe_frames": told.keyframes["frame"].tolist(),

@@ -206,7 +206,8 @@ def joint_axis_warnings(
         )
         warnings.append(QualityWarning(code="no-single-axis", message=message))
     if measured.noise.known is None:
-        message = "the noise of the poses is not known, so that axes have no error bars; --marker-noise MM gives them"
+        how = "--marker-noise MM gives them" if measured.joint.located else "only a still stretch would tell of it"
+        message = f"the noise of the poses is not known, so that axes have no error bars; {how}"
         warnings.append(QualityWarning(code="noise-unknown", message=message, severity="note"))
     elif joint_axis.best is not None and joint_axis.best.noise_ratio > _LARGE_NOISE_RATIO:
         message = (
@@ -219,8 +220,8 @@ def joint_axis_warnings(
         n is not None and n.source == STILL_STRETCH and m for n, m in zip(known, measured.noise.moving, strict=False)
     ):
         message = (
-            "error bars rest on the jitter of a still stretch, which a moving body usually exceeds many times over; "
-            "--marker-noise MM states more"
+            "error bars rest on the jitter of a still stretch, which a moving body usually exceeds many times over"
+            + ("; --marker-noise MM states more" if measured.joint.located else "")
         )
         warnings.append(QualityWarning(code="noise-from-jitter", message=message))
     return tuple(warnings)
