@@ -78,8 +78,8 @@ def test_tables_leave_places_empty(result: Path) -> None:
 
 
 def test_pages_and_figures_leave_out_what_needs_places_and_say_why(result: Path) -> None:
-    figures = {path.name for path in (result / "figures").iterdir()}
-    assert figures == {"theta.png", "euler_parameters.png", "joint_angles.png", "error.png"}
+    figures = {path.name for path in (result / "figures").glob("*.png")}
+    assert figures == {"theta.png", "euler_parameters.png", "error.png"}
     page = (result / "report.html").read_text()
     assert "There are orientations and no positions" in page
     assert "the view in space, the pictures of the axes, and all numbers of places and lengths are left out" in page
@@ -94,8 +94,12 @@ def test_pages_and_figures_leave_out_what_needs_places_and_say_why(result: Path)
 def test_figures_for_publication_are_those_that_can_be_drawn(
     result: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert main(["report", str(result), "--figures", "theta,axis", "-o", str(tmp_path / "figures")]) == 0
-    assert [path.name for path in (tmp_path / "figures").iterdir()] == ["theta.pdf"]
+    assert (
+        main(["report", str(result), "--figures", "theta,axis,joint_angles,velocity", "-o", str(tmp_path / "figures")])
+        == 0
+    )
+    drawn = {path.name for path in (tmp_path / "figures").glob("*.pdf")}
+    assert drawn == {"theta.pdf", "joint_angles.pdf", "velocity.pdf"}
     assert "has nothing for the figure axis, which is left out" in capsys.readouterr().err
 
 
