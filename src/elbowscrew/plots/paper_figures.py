@@ -29,11 +29,10 @@ def _angle_figure(analysis: Analysis | TrialView, *, width_mm: float = WIDTH_MM,
     panels = series.overview_grid(figure, whole, stretch, 1)
     ax = panels[-1]
     unit, time_s = view.settings.angle_unit, view.time_s
-    rows = view.keyframes.row
     angle = angle_in(view.modeled_angle if modeled else view.angle, unit)
     look = style.MODELED if modeled else style.MEASURED
     series.line(ax, time_s, angle, label="modeled" if modeled else "measured", **look)
-    ax.plot(time_s[rows], angle_in(view.angle[rows], unit), label="keyframes", **style.KEYFRAME)
+    series.mark_keyframes(ax, view, angle_in(view.angle, unit))
     if not modeled:
         series.mark_tracking(ax, view)
     ax.set_ylabel(f"Angle θ ({unit})")

@@ -24,6 +24,7 @@ from elbowscrew.view.long_trials import Stretch, envelope, stretch_of
 from elbowscrew.view.trial_view import TrialView
 
 OVERVIEW_MM: Final = 24.0
+_KEYFRAMES: Final = 20  # more are drawn smaller
 _PIECE: Final = 500
 
 
@@ -37,8 +38,7 @@ def plot_theta(ax: Axes, analysis: Analysis | TrialView) -> Axes:
     band(ax, time_s, angle, reach)
     line(ax, time_s, angle, label="measured", **style.MEASURED)
     line(ax, time_s, angle_in(view.modeled_angle, unit), label=_model_label(view), **style.MODELED)
-    rows = view.keyframes.row
-    ax.plot(time_s[rows], angle[rows], label="keyframes", **style.KEYFRAME)
+    mark_keyframes(ax, view, angle)
     mark_movements(ax, view)
     mark_tracking(ax, view)
     ax.set_ylabel(f"Angle θ ({unit})")
@@ -53,8 +53,7 @@ def plot_euler_parameter(ax: Axes, analysis: Analysis | TrialView, component: in
     line(ax, time_s, measured, label="measured", **style.MEASURED)
     modeled = view.modeled_euler_parameters[:, component]
     line(ax, time_s, modeled, label=_model_label(view), **style.MODELED)
-    rows = view.keyframes.row
-    ax.plot(time_s[rows], measured[rows], label="keyframes", **style.KEYFRAME)
+    mark_keyframes(ax, view, measured)
     mark_tracking(ax, view)
     ax.set_ylabel(f"e{'₀₁₂₃'[component]} (–)")
     return over_time(ax, time_s)
@@ -144,6 +143,15 @@ def span_line(ax: Axes, view: TrialView, values: Float, *, label: str) -> Axes:
     return ax
 
 
+def mark_keyframes(ax: Axes, view: TrialView, values: Float) -> Axes:
+    """Mark the poses that the model goes through on a curve (N,), smaller where they are many."""
+    rows = view.keyframes.row
+    size = style.KEYFRAME["markersize"] * min(1.0, np.sqrt(_KEYFRAMES / max(rows.size, 1)))
+    look = {**style.KEYFRAME, "markersize": size, "markeredgewidth": min(1.2, 0.3 * size)}
+    ax.plot(view.time_s[rows], values[rows], label="keyframes", **look)
+    return ax
+
+
 def mark_tracking(ax: Axes, view: TrialView) -> Axes:
     """Shade the frames without a measured pose: plain where they stay empty, hatched where they were filled in."""
     half = 0.5 / view.rate_hz
@@ -179,8 +187,7 @@ def _plot_error(ax: Axes, view: TrialView, values: Float, name: str, unit: str) 
         ax.axhline(level, **style.LEVEL)
         ax.set_title(f"RMS {level:.3g} {unit}", loc="right", fontweight="normal")
     if stretch_of(view) is None:
-        rows = view.keyframes.row
-        ax.plot(time_s[rows], values[rows], label="keyframes", **style.KEYFRAME)
+        mark_keyframes(ax, view, values)
     mark_tracking(ax, view)
     ax.set_ylabel(f"{name} ({unit})")
     ax.set_ylim(bottom=min(0.0, ax.get_ylim()[0]))
