@@ -80,6 +80,7 @@ def test_tables_leave_places_empty(result: Path) -> None:
 def test_pages_and_figures_leave_out_what_needs_places_and_say_why(result: Path) -> None:
     figures = {path.name for path in (result / "figures").glob("*.png")}
     assert figures == {"theta.png", "euler_parameters.png", "error.png"}
+    assert "displacement" not in (result / "figures" / "error.caption.txt").read_text()
     page = (result / "report.html").read_text()
     assert "There are orientations and no positions" in page
     assert "the view in space, the pictures of the axes, and all numbers of places and lengths are left out" in page

@@ -47,6 +47,9 @@ def overlay_caption(trials: int, cycles: int, unit: AngleUnit) -> str:
     )
 
 
+_DISPLACEMENT: Final = {True: "rms_displacement", False: "rms_displacement_mean"}
+
+
 def comparison_caption(found: Comparison | TrialsComparison) -> str:
     """Describe the figure of a comparison of models."""
     of = (
@@ -54,13 +57,19 @@ def comparison_caption(found: Comparison | TrialsComparison) -> str:
         if isinstance(found, Comparison)
         else f"{len(found.trials)} trials (mean, bars: standard deviation)"
     )
+    located = bool(np.isfinite(getattr(found.models, _DISPLACEMENT[isinstance(found, Comparison)])).any())
+    settings = found.settings
+    error = (
+        f"RMS displacement of the distal body's points, {settings.length_unit}"
+        if located
+        else f"angle between modeled and measured orientation, {settings.angle_unit}"
+    )
     return (
-        f"Error of models of {of}: RMS displacement of the distal body's points, {found.settings.length_unit}. (a) "
+        f"Error of models of {of}: {error}. (a) "
         "Each "
         "interpolation method under its best law of motion, over the number of keyframes in each phase. (b) Each law "
         "under "
-        "its best method. (c) Keyframes from the recording as it is, filtered and thinned. (d) Largest RMS "
-        "displacement "
+        "its best method. (c) Keyframes from the recording as it is, filtered and thinned. (d) Largest error "
         "over the number of keyframes where these are chosen best.\n"
     )
 
@@ -121,11 +130,14 @@ def _slide(view: TrialView) -> Iterator[str]:
 
 
 def _error(view: TrialView) -> Iterator[str]:
-    yield (
-        f"Error of the model ({_named_model(view)}) over time: (a) angle between modeled and measured orientation, "
-        "(b) RMS "
-        f"displacement of the {view.named_joint.distal.name}'s points; dotted: its RMS over time."
-    )
+    named, body = _named_model(view), view.named_joint.distal.name
+    if view.located:
+        yield (
+            f"Error of the model ({named}) over time: (a) angle between modeled and measured orientation, (b) RMS "
+            f"displacement of the {body}'s points; dotted: its RMS over time."
+        )
+    else:
+        yield f"Error of the model ({named}) over time: angle of modeled to measured orientation; dotted: its RMS."
     yield "Circles: the poses that the model passes through." if stretch_of(view) is None else _PARTS
     yield from _shading(view)
 
@@ -142,7 +154,8 @@ def _anatomy(view: TrialView) -> Iterator[str]:
 
 
 def _velocity(view: TrialView) -> Iterator[str]:
-    yield "Angular velocity about the instantaneous axis, positive as θ grows, and velocity along it, over time."
+    along = ", and velocity along it," if view.located else ""
+    yield f"Angular velocity about the instantaneous axis, positive as θ grows{along} over time."
     yield from _filter(view)
     yield from _long(view, "the range of θ in each part of the recording")
     yield from _shading(view)
@@ -203,7 +216,7 @@ def _joint_axis(view: TrialView) -> Iterator[str]:
 
 def _joint_angles(view: TrialView) -> Iterator[str]:
     yield f"The joint's own angles ({JOINT_TYPE_WORDS[view.joint_summary['joint_type']['type']]}) over time"
-    yield "and what it leaves of each pose, rotation and position."
+    yield "and what it leaves of each pose, rotation and position." if view.located else "and the rotation it leaves."
     yield from _long(view, "the range of θ in each part of the recording")
     if view.joint_angles is not None:
         reach = NORMAL_95 * view.joint_angles.angle_sd

@@ -49,7 +49,7 @@ FIGURE_ENTRIES: Final[dict[str, FigureEntry]] = {
     "axis": FigureEntry("figures.axis_figure", usual=False, places=True),
     "joint_axis": FigureEntry("figures.joint_axis_figure", usual=False, places=True),
     "joint_angles": FigureEntry("joint_angles.joint_angles_figure", usual=False, needs="joint_angles"),
-    "axis_path": FigureEntry("joint_angles.axis_path_figure", usual=False, needs="axis_path"),
+    "axis_path": FigureEntry("joint_angles.axis_path_figure", usual=False, needs="axis_path", places=True),
     "fig7": FigureEntry("paper_figures.figure_7", usual=False),
     "fig8": FigureEntry("paper_figures.figure_8", usual=False),
     "fig9": FigureEntry("paper_figures.figure_9", usual=False),
