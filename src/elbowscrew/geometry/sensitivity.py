@@ -79,7 +79,7 @@ def screw_sensitivity(dual_quat: ArrayLike) -> ScrewSensitivity:
     tau = np.concatenate([np.zeros((3, 3)), np.eye(3)], axis=1)
     across = rho - n[..., :, None] * angle[..., None, :]
     across_dual = tau - n[..., :, None] * slide[..., None, :] - m[..., :, None] * angle[..., None, :]
-    cross_n, cross_m = _cross_matrix(n), _cross_matrix(m)  # eta x N = -N x eta
+    cross_n, cross_m = cross_matrix(n), cross_matrix(m)  # eta x N = -N x eta
     direction = 0.5 * (cotangent * across - cross_n @ rho)
     moment = 0.5 * (cotangent * across_dual + slope * across - cross_m @ rho - cross_n @ tau)
     point = cross_n @ moment - cross_m @ direction
@@ -135,7 +135,8 @@ def _circle_factors() -> tuple[Float, Float]:
     return ratio, 0.5 * (low + high)
 
 
-def _cross_matrix(vector: Float) -> Float:
+def cross_matrix(vector: Float) -> Float:
+    """Matrices (..., 3, 3) that give the cross product of vectors (..., 3) with what they are applied to."""
     x, y, z = (vector[..., k] for k in range(3))
     zero = np.zeros(x.shape)
     rows = [np.stack([zero, -z, y], -1), np.stack([z, zero, -x], -1), np.stack([-y, x, zero], -1)]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -9,7 +10,7 @@ import pytest
 from hinges import hinge_errors
 from trials import ARM, FOREARM, LINE, START, joint_poses, noisy_joint, pose_covariance
 
-from elbowscrew import Recording, RigidBody, Settings, analyze, simulate_trial
+from elbowscrew import Recording, RigidBody, Settings, analyze, read_recording, simulate_trial
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry import line_through
 from elbowscrew.geometry import quaternion as qn
@@ -79,6 +80,47 @@ def test_exact_poses_give_the_exact_line_in_both_bodies() -> None:
         assert np.ptp(sense * fit.angle - angle) < 1e-9
         assert np.abs(fit.residual).max() < 1e-9
     assert sara_lines(joint_poses(angle, 0 * angle), angle)[0] == pytest.approx(LINE, abs=1e-7)
+
+
+@pytest.mark.parametrize("robust", [False, True], ids=["least squares", "robust"])
+@pytest.mark.parametrize("trial", range(-1, 10))
+def test_a_fit_ends_at_a_fixed_point(trial: int, robust: bool, samples: Path) -> None:
+    """Begun from the line that it has found, or from another, it comes back to that line in both bodies.
+
+    Trial -1 is the sample of the paper.
+    """
+    recording = read_recording(samples / "elbow_paper.csv") if trial < 0 else simulated(trial)
+    joint = dq.canonical(recording.bodies[-1].dual_quat_lab_body)
+    if len(recording.bodies) > 1:
+        joint = dq.multiply(dq.conjugate(recording.bodies[0].dual_quat_lab_body), joint)
+    covariance = joint_covariance(joint, *NOISE)
+    near = dq.pose_from_dual_quat(joint[0])[1]
+    start = sara_lines(joint, np.arange(len(joint), dtype=np.float64))[0]
+    for screw in (False, True):
+        fits = [fit_joint(joint, covariance, start, near, screw=screw, robust=robust)]
+        found = dq.transform_lines(fits[0].proximal, Z)
+        aside = dq.transform_lines(dq.exp(np.array([0.02, -0.03, 0.01, 0.0, 0.005, 0.001])), found)
+        for line in (found, aside):
+            fits.append(fit_joint(joint, covariance, line, near, screw=screw, robust=robust))
+        for fit in fits[1:]:
+            np.testing.assert_allclose(dq.transform_lines(fit.proximal, Z), found, rtol=0.0, atol=1e-13)
+            np.testing.assert_allclose(
+                dq.transform_lines(fit.distal, Z), dq.transform_lines(fits[0].distal, Z), rtol=0.0, atol=1e-13
+            )
+            assert fit.pitch == pytest.approx(fits[0].pitch, rel=0.0, abs=1e-13)
+
+
+def simulated(trial: int) -> Recording:
+    """Ten trials with one axis: little and much motion and noise, an axis that wanders, an arm that stands or moves."""
+    return simulate_trial(
+        joint_type=("hinge", "screw-hinge")[trial % 2],
+        frames=250 + 40 * trial,
+        top_deg=(30.0, 70.0, 130.0)[trial // 4],
+        marker_noise_mm=(0.05, 0.2, 1.5)[trial % 3],
+        proximal=("still", "moving")[trial // 2 % 2],
+        wander_deg=4.0 * (trial in (4, 7)),
+        seed=trial,
+    ).recording
 
 
 @pytest.mark.parametrize("express_in", ["distal", "proximal", "lab"])

@@ -13,6 +13,7 @@ from elbowscrew.geometry._blocks import evenly_thinned
 from elbowscrew.geometry._small_angle import half_cotangent_share, length
 from elbowscrew.geometry.arrays import Float, Index
 from elbowscrew.geometry.quaternion import rotation_matrix_from_quat
+from elbowscrew.geometry.sensitivity import cross_matrix
 from elbowscrew.geometry.twist import adjoint
 from elbowscrew.motion.joint.likelihood import Mechanism, Poses, settled
 from elbowscrew.motion.joint.simple_types import Ball
@@ -194,8 +195,6 @@ def inverse_jacobian(vector: Float) -> Float:
     ``log(exp(e) exp(v)) = v + J e``, ``J = 1 - [v]x/2 + (1 - (t/2) cot(t/2)) [v]x^2/t^2`` with the angle t.
     """
     angle = length(vector)
-    x, y, z = np.moveaxis(vector, -1, 0)
-    zero = np.zeros(angle.shape)
-    cross = np.stack([zero, -z, y, z, zero, -x, -y, x, zero], axis=-1).reshape(*angle.shape, 3, 3)
+    cross = cross_matrix(vector)
     found: Float = np.eye(3) - 0.5 * cross + half_cotangent_share(angle)[..., None, None] * (cross @ cross)
     return found

@@ -17,13 +17,22 @@ from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry._small_angle import length
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.quaternion import quat_from_rotation_matrix, rotation_matrix_from_quat
+from elbowscrew.geometry.sensitivity import cross_matrix
 from elbowscrew.geometry.twist import adjoint
 from elbowscrew.motion.joint.likelihood import information_of
 
 _ITERATIONS: Final = 30
-_SMALL_STEP: Final = 1e-10
+# Steps shrink until they are round-off, which does not.
+_SMALL_STEP: Final = 1e-13
+_ROUND_OFF: Final = 1e-8
+_SHRINKS: Final = 0.9
 _HALVINGS: Final = 12
-_ROBUST_ROUNDS: Final = 30
+# A step that is to lower the cost by less than such a share is far smaller than the noise: round-off would judge it.
+_LEAST_GAIN: Final = 1e-9
+# ``x/(1 - exp(-x)) = 1 + x/2 + x^2/12 - x^4/720 + ...``: the powers from 1 on.
+_INVERSE_JACOBIAN: Final = (1.0 / 2.0, 1.0 / 12.0, 0.0, -1.0 / 720.0, 0.0, 1.0 / 30_240.0)
+_ROBUST_START: Final = 10
+_ROBUST_ROUNDS: Final = 100
 # Residuals across the angle have 5 degrees of freedom a frame: median of chi-square, and Tukey's constant that keeps
 # 95 % efficiency there (Kudraszow and Maronna 2011 tabulate it for M-estimates of several dimensions).
 _FREEDOM: Final = 5
@@ -129,21 +138,24 @@ def fit_joint(
     angle = _angles(joint, A, F)
     pitch, weight = 0.0, np.ones(len(joint))
     best = _Step(A, F, angle, pitch)
+    size = np.inf
     for _ in range(_ITERATIONS):
+        before = size
         best, size = _step(best, joint, W, weight, screw)
-        if size < _SMALL_STEP:
+        if _settled(size, before):
             break
     if robust:
         for k in range(_ROBUST_ROUNDS):
             distance = np.sqrt(np.maximum(_square(best, joint, W), 0.0))
             scale = float(np.median(distance)) / np.sqrt(_MEDIAN_SQUARE)
             relative = distance / max(scale, np.finfo(np.float64).tiny)
-            if k < _ROBUST_ROUNDS // 3:
+            if k < _ROBUST_START:
                 weight = 1.0 / np.maximum(relative, 1.0)
             else:
                 weight = np.maximum(1.0 - (relative / _TUKEY) ** 2, 0.0) ** 2
+            before = size
             best, size = _step(best, joint, W, weight, screw)
-            if k > _ROBUST_ROUNDS // 3 and size < _SMALL_STEP:
+            if k > _ROBUST_START and _settled(size, before):
                 break
     return _result(best, joint, W, weight, screw)
 
@@ -194,7 +206,7 @@ def _square(at: _Step, joint: Float, W: Float) -> Float:
     along = np.array([0.0, 0.0, 1.0, 0.0, 0.0, at.pitch])
     weighted = (W_line @ residual[..., None])[..., 0]
     free = W_line @ along
-    square: Float = np.sum(weighted * residual, axis=1) - (weighted @ along) ** 2 / (free @ along)
+    square: Float = np.sum(weighted * residual, axis=1) - (_force(residual, weighted) @ along) ** 2 / (free @ along)
     return square
 
 
@@ -220,25 +232,52 @@ def _normal_equations(at: _Step, joint: Float, W: Float, weight: Float, screw: b
     free = W_line @ along
     own = free @ along
     mixed = np.einsum("fip,i->fp", WG, along)
-    pull = np.einsum("fip,fi->fp", WG, residual)
-    own_pull = np.einsum("fi,fi->f", free, residual)
+    force = _force(residual, (W_line @ residual[..., None])[..., 0])
+    pull = np.einsum("fip,fi->fp", G, force)
+    own_pull = force @ along
     information = np.einsum("f,fip,fiq->pq", weight, G, WG) - np.einsum("f,fp,fq->pq", weight / own, mixed, mixed)
     gradient = weight @ (pull - mixed * (own_pull / own)[:, None])
     return information, gradient, own_pull / own, mixed / own[:, None], residual
 
 
+def _force(residual: Float, weighted: Float) -> Float:
+    """How the cost changes with a small twist of the model's pose: ``J^T W r``, from r and ``W r``, shape (F, 6) each.
+
+    J is the inverse of the left Jacobian of the residual r, whose frame turns with the model. Without it the equations
+    are not those of the least cost: the larger the noise, the farther from it they end.
+
+    References
+    ----------
+    Solà, Deray and Atchuthan 2018, A micro Lie theory for state estimation in robotics.
+    """
+    # ``(-ad(r))^T``, ad the matrix ``[[w]x 0; [v]x [w]x]``.
+    turn = np.zeros((len(residual), 6, 6))
+    turn[:, :3, :3] = turn[:, 3:, 3:] = cross_matrix(residual[:, :3])
+    turn[:, :3, 3:] = cross_matrix(residual[:, 3:])
+    total, power = weighted, weighted
+    for coefficient in _INVERSE_JACOBIAN:
+        power = (turn @ power[..., None])[..., 0]
+        total = total + coefficient * power
+    return total
+
+
 def _step(at: _Step, joint: Float, W: Float, weight: Float, screw: bool) -> tuple[_Step, float]:
-    """One step of Gauss and Newton; its size in radians and meters."""
+    """One step of Gauss and Newton, and the size of a full one in radians and meters; 0 where no step is better."""
     information, gradient, own, mixed, _ = _normal_equations(at, joint, W, weight, screw)
     scale = np.sqrt(np.maximum(np.diag(information), np.finfo(np.float64).tiny))
     step = np.linalg.lstsq(information / np.outer(scale, scale), gradient / scale, rcond=1e-13)[0] / scale
-    cost = weight @ _square(at, joint, W)
+    size, gain, cost = float(np.abs(step).max()), float(gradient @ step), float(weight @ _square(at, joint, W))
     for _ in range(_HALVINGS):  # a full step may lead too far where the poses are far from any hinge
         after = _moved(at, step, own - mixed @ step, screw=screw)
-        if weight @ _square(after, joint, W) <= cost:
-            return after, float(np.abs(step).max())
-        step, own = 0.5 * step, 0.5 * own
+        if gain <= _LEAST_GAIN * cost or weight @ _square(after, joint, W) <= cost:
+            return after, size
+        step, own, gain = 0.5 * step, 0.5 * own, 0.5 * gain
     return at, 0.0
+
+
+def _settled(size: float, before: float) -> bool:
+    """Whether a step is all round-off, by its size and that of the one before it."""
+    return size < _SMALL_STEP or _SHRINKS * before < size < _ROUND_OFF
 
 
 def _moved(at: _Step, step: Float, turn: Float, *, screw: bool) -> _Step:
