@@ -15,6 +15,7 @@ import numpy as np
 from elbowscrew.choices import JOINT_TYPE_WORDS
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.model.joint_type import JointTypeName, TypeCandidate
+from elbowscrew.motion.joint.deciding_frames import deciding_frames
 from elbowscrew.motion.joint.fitting import Fitted, fit_type, shared_covariance
 from elbowscrew.motion.joint.likelihood import Fit, Mechanism, Poses, settled
 from elbowscrew.motion.joint.pieces import influence_pieces
@@ -114,7 +115,7 @@ class Contest:
     def __init__(
         self, poses: Poses, *, noise_known: bool, robust: bool, one: Literal["hinge", "screw_hinge"] | None = None
     ) -> None:
-        self.poses, _ = poses.thinned(_FRAMES)
+        self.poses = poses.at(deciding_frames(poses.joint, _FRAMES))
         self.consecutive = poses.at(slice(_CONSECUTIVE))
         self.noise_known = noise_known
         self.robust = robust
@@ -211,7 +212,7 @@ def choose_type(
     Parameters
     ----------
     poses : Poses
-        In order of time; at most 200 of them, evenly spread, decide.
+        In order of time; at most 200 of them, spread over the motion, decide.
     noise_known : bool
         Whether the covariances are stated ones; then the simplest type that they explain is taken.
     robust : bool
