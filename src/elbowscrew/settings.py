@@ -9,11 +9,11 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Mapping
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Literal
 
 from pydantic import BaseModel, field_validator, model_validator
 
+from elbowscrew import setting_values as taken
 from elbowscrew.choices import (
     FRAMES,
     STATED_JOINTS,
@@ -33,6 +33,7 @@ from elbowscrew.choices import (
     StatedJoint,
 )
 from elbowscrew.column_file import ColumnFile, read_column_file
+from elbowscrew.cycle_times import read_cycle_times
 from elbowscrew.declaring import (
     BODIES,
     FORMER_NAMES,
@@ -45,7 +46,7 @@ from elbowscrew.declaring import (
     declared,
     setting,
 )
-from elbowscrew.errors import SettingError, shown
+from elbowscrew.errors import SettingError
 
 STILL: Final = "none"
 """The value of ``proximal`` that says: the file has no such body, it stands still."""
@@ -266,16 +267,12 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
             raise ValueError(msg)
         return named
 
-    @field_validator("express_in", mode="before")
-    @classmethod
-    def _frame(cls, value: object) -> object:
-        """Take the three frames, and segments' words; which end a word means is known with the joint."""
-        from elbowscrew.joints import ends_called
-
-        if not isinstance(value, str) or not (value in FRAMES or ends_called(value)):
-            msg = f"expected {', '.join(FRAMES)}, or a segment's word, as forearm or shank, found {shown(value)}"
-            raise ValueError(msg)
-        return value
+    _frame = field_validator("express_in", mode="before")(taken.frame)
+    _joint_type = field_validator("joint_type", mode="before")(taken.joint_type)
+    _cutoff = field_validator("lowpass_hz", mode="before")(taken.cutoff)
+    _cycles = field_validator("cycles", mode="before")(taken.read_where_named(read_cycle_times))
+    _columns = field_validator("columns", mode="before")(taken.read_where_named(read_column_file))
+    _skin = field_validator("skin_motion")(taken.skin_motion)
 
     @model_validator(mode="after")
     def _check_frame(self) -> Settings:
@@ -290,55 +287,6 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
             )
             raise ValueError(msg)
         return self
-
-    @field_validator("joint_type", mode="before")
-    @classmethod
-    def _known_joint(cls, value: object) -> object:
-        """Take the types with a hyphen, too."""
-        name = value.replace("-", "_") if isinstance(value, str) else value
-        if name not in ("auto", *STATED_JOINTS):
-            msg = f"expected auto, {', '.join(STATED_JOINTS)}, found {shown(value)}"
-            raise ValueError(msg)
-        return name
-
-    @field_validator("lowpass_hz", mode="before")
-    @classmethod
-    def _cutoff(cls, value: object) -> object:
-        """Take ``none`` for no filter, and numbers as text, as the command line gives them."""
-        if value == "none":
-            return None
-        if isinstance(value, str) and value != "auto":
-            try:
-                value = float(value)
-            except ValueError as error:
-                msg = f"expected a cut-off in hertz, auto or none, found {shown(value)}"
-                raise ValueError(msg) from error
-        if isinstance(value, int | float) and not 0.0 < value < math.inf:
-            msg = f"expected a cut-off above 0 Hz, found {shown(value)}"
-            raise ValueError(msg)
-        return value
-
-    @field_validator("cycles", mode="before")
-    @classmethod
-    def _cycle_times(cls, value: object) -> object:
-        """Take the name of a file with the times, too."""
-        from elbowscrew.cycle_times import read_cycle_times
-
-        return read_cycle_times(Path(value)) if isinstance(value, str | Path) else value
-
-    @field_validator("columns", mode="before")
-    @classmethod
-    def _column_file(cls, value: object) -> object:
-        """Take the name of the file, too."""
-        return read_column_file(Path(value)) if isinstance(value, str | Path) else value
-
-    @field_validator("skin_motion")
-    @classmethod
-    def _check_skin(cls, value: tuple[float, ...] | None) -> tuple[float, ...] | None:
-        if value is not None and not all(0.0 <= part <= 90.0 for part in value):
-            msg = f"expected millimeters, and degrees if any, from 0 to 90, found {', '.join(f'{x:g}' for x in value)}"
-            raise ValueError(msg)
-        return value
 
     @model_validator(mode="after")
     def _check_cycles(self) -> Settings:
