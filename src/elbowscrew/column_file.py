@@ -14,7 +14,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 
 from elbowscrew.choices import FileUnit, RotationType
 from elbowscrew.errors import shown
-from elbowscrew.opening import read_toml, sha256_of
+from elbowscrew.opening import read_toml_and_digest
 
 SECONDS: Final = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
 """What a time is in seconds, by its unit."""
@@ -209,7 +209,7 @@ def read_column_file(path: Path) -> ColumnFile:
         If it cannot be read, or a key or value is not a possible one; it names the key, in one line.
     """
     try:
-        given, digest = read_toml(path), sha256_of(path)
+        given, digest = read_toml_and_digest(path)
     except OSError as error:
         msg = f"{path}: cannot be read as a file of columns: {error.strerror or error}"
         raise ValueError(msg) from error

@@ -71,15 +71,28 @@ def read_text(path: Path, encoding: str = "utf-8", largest: int = _LARGEST) -> s
     UnicodeDecodeError
         If it is not text.
     """
+    return _decoded(_read_bytes(path, largest), encoding)
+
+
+def _read_bytes(path: Path, largest: int) -> bytes:
     with open_bytes(path) as stream:
         content = stream.read(largest + 1)
     if len(content) > largest:
         raise OSError(errno.EFBIG, f"it has over {largest} bytes")
+    return content
+
+
+def _decoded(content: bytes, encoding: str) -> str:
     return io.TextIOWrapper(io.BytesIO(content), encoding=encoding).read()
 
 
 def read_toml(path: Path) -> dict[str, Any]:
-    """Read a TOML file, be it with a byte order mark.
+    """Read a TOML file; as `read_toml_and_digest`."""
+    return read_toml_and_digest(path)[0]
+
+
+def read_toml_and_digest(path: Path) -> tuple[dict[str, Any], str]:
+    """Read a TOML file, be it with a byte order mark, and take the SHA-256 of the same bytes.
 
     Raises
     ------
@@ -88,9 +101,10 @@ def read_toml(path: Path) -> dict[str, Any]:
     ValueError
         If it is not TOML, or tables are in it deeper than anybody means.
     """
-    text = read_text(path, encoding="utf-8-sig", largest=_LARGEST_TOML)
+    content = _read_bytes(path, _LARGEST_TOML)
+    text = _decoded(content, "utf-8-sig")
     try:
-        return tomllib.loads(text)
+        return tomllib.loads(text), hashlib.sha256(content).hexdigest()
     except RecursionError as error:
         msg = "tables or lists inside each other, too many of them"
         raise ValueError(msg) from error
