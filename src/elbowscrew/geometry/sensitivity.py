@@ -136,7 +136,26 @@ def _circle_factors() -> tuple[Float, Float]:
 
 
 def cross_matrix(vector: Float) -> Float:
-    """Matrices (..., 3, 3) that give the cross product of vectors (..., 3) with what they are applied to."""
+    """Give the matrices of cross products.
+
+    Parameters
+    ----------
+    vector : ndarray, shape (..., 3)
+
+    Returns
+    -------
+    ndarray, shape (..., 3, 3)
+        Skew-symmetric; ``cross_matrix(v) @ w`` is ``v x w``, in the units of `vector`.
+
+    References
+    ----------
+    The mapping from a vector to its skew-symmetric matrix, as in any textbook of kinematics.
+
+    Examples
+    --------
+    >>> cross_matrix(np.array([1.0, 2.0, 3.0])) @ [0.0, 0.0, 1.0]
+    array([ 2., -1.,  0.])
+    """
     x, y, z = (vector[..., k] for k in range(3))
     zero = np.zeros(x.shape)
     rows = [np.stack([zero, -z, y], -1), np.stack([z, zero, -x], -1), np.stack([-y, x, zero], -1)]
