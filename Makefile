@@ -13,12 +13,12 @@ check:  ## lint, types, architecture contract
 	$(BIN)/lint-imports
 
 test:  ## all tests
-	$(BIN)/pytest -q -n 2
+	$(BIN)/pytest -q -n 2 --dist worksteal
 
 test-oldest:  ## all tests at the oldest versions allowed, in an environment of their own
 	python3 -m venv .venv-oldest
 	.venv-oldest/bin/pip install --quiet --constraint constraints-floor.txt ".[test]"
-	.venv-oldest/bin/pytest -q -n 2
+	.venv-oldest/bin/pytest -q -n 2 --dist worksteal
 
 docs:  ## tables of the documents made anew, links and names in them checked
 	$(BIN)/python docs/make_settings.py

@@ -186,7 +186,7 @@ def compute_once() -> None:
         (
             comparison,
             "compare",
-            lambda recording, settings=None, plan=None: f"{recording.source!r} {settings!r} {plan!r}",
+            lambda recording, settings=None, plan=None, **_: f"{recording.source!r} {settings!r} {plan!r}",
         ),
         (figure_files, "figure_files", of_figures),
     ):

@@ -11,13 +11,13 @@ from elbowscrew.geometry._blocks import evenly_thinned
 from elbowscrew.geometry.arrays import Float, Index
 
 _CELLS: Final = 20  # across the range of the rotation
-_LARGEST_SHARE: Final = 0.25
+_LARGEST_SHARE: Final = 0.5
 _FEWEST: Final = 50
 _ROUNDS: Final = 200
 
 
 def deciding_frames(joint: Float, most: int) -> Index:
-    """Rows, in order, of at most so many of the poses (F, 8): evenly spread, but a quarter in one pose at most.
+    """Rows, in order, of at most so many of the poses (F, 8): evenly spread, but half of them in one pose at most.
 
     Poses are one where their rotation vectors differ by less than a twentieth of the range, whenever they come. Where
     the motion does not visit enough of them, as without any, the rows are evenly spread in time.

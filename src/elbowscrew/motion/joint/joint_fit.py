@@ -29,6 +29,8 @@ _SHRINKS: Final = 0.9
 _HALVINGS: Final = 12
 # A step that is to lower the cost by less than such a share is far smaller than the noise: round-off would judge it.
 _LEAST_GAIN: Final = 1e-9
+_SHORT: Final = 1e-4  # rad and m: longer steps gain nothing only where the poses do not determine the joint
+_LEAST_SCALE: Final = 1e-150  # whose reciprocal has a square
 # ``x/(1 - exp(-x)) = 1 + x/2 + x^2/12 - x^4/720 + ...``: the powers from 1 on.
 _INVERSE_JACOBIAN: Final = (1.0 / 2.0, 1.0 / 12.0, 0.0, -1.0 / 720.0, 0.0, 1.0 / 30_240.0)
 _ROBUST_START: Final = 10
@@ -148,7 +150,7 @@ def fit_joint(
         for k in range(_ROBUST_ROUNDS):
             distance = np.sqrt(np.maximum(_square(best, joint, W), 0.0))
             scale = float(np.median(distance)) / np.sqrt(_MEDIAN_SQUARE)
-            relative = distance / max(scale, np.finfo(np.float64).tiny)
+            relative = distance / max(scale, _LEAST_SCALE)
             if k < _ROBUST_START:
                 weight = 1.0 / np.maximum(relative, 1.0)
             else:
@@ -203,11 +205,17 @@ def _weights_in_line(at: _Step, W: Float) -> Float:
 def _square(at: _Step, joint: Float, W: Float) -> Float:
     """Squared whitened distance of each frame, its angle at the optimum."""
     residual, W_line = _residual(at, joint), _weights_in_line(at, W)
-    along = np.array([0.0, 0.0, 1.0, 0.0, 0.0, at.pitch])
+    along = _along(at, residual)
     weighted = (W_line @ residual[..., None])[..., 0]
-    free = W_line @ along
-    square: Float = np.sum(weighted * residual, axis=1) - (_force(residual, weighted) @ along) ** 2 / (free @ along)
+    own = np.einsum("fi,fij,fj->f", along, W_line, along)
+    square: Float = np.sum(weighted * residual, axis=1) - np.sum(weighted * along, axis=1) ** 2 / own
     return square
+
+
+def _along(at: _Step, residual: Float) -> Float:
+    """How the residual (F, 6) changes with the frame's own angle."""
+    along = np.array([0.0, 0.0, 1.0, 0.0, 0.0, at.pitch])
+    return _carried(residual, np.broadcast_to(along[:, None], (len(residual), 6, 1)))[..., 0]
 
 
 def _derivatives(at: _Step, screw: bool) -> Float:
@@ -226,37 +234,35 @@ def _derivatives(at: _Step, screw: bool) -> Float:
 
 def _normal_equations(at: _Step, joint: Float, W: Float, weight: Float, screw: bool) -> tuple[Float, ...]:
     residual, W_line = _residual(at, joint), _weights_in_line(at, W)
-    G = _derivatives(at, screw)
-    along = np.array([0.0, 0.0, 1.0, 0.0, 0.0, at.pitch])
+    G, along = _carried(residual, _derivatives(at, screw)), _along(at, residual)
     WG = W_line @ G
-    free = W_line @ along
-    own = free @ along
-    mixed = np.einsum("fip,i->fp", WG, along)
-    force = _force(residual, (W_line @ residual[..., None])[..., 0])
-    pull = np.einsum("fip,fi->fp", G, force)
-    own_pull = force @ along
+    weighted = (W_line @ residual[..., None])[..., 0]
+    own = np.einsum("fi,fij,fj->f", along, W_line, along)
+    mixed = np.einsum("fip,fi->fp", WG, along)
+    pull = np.einsum("fip,fi->fp", G, weighted)
+    own_pull = np.sum(weighted * along, axis=1)
     information = np.einsum("f,fip,fiq->pq", weight, G, WG) - np.einsum("f,fp,fq->pq", weight / own, mixed, mixed)
     gradient = weight @ (pull - mixed * (own_pull / own)[:, None])
     return information, gradient, own_pull / own, mixed / own[:, None], residual
 
 
-def _force(residual: Float, weighted: Float) -> Float:
-    """How the cost changes with a small twist of the model's pose: ``J^T W r``, from r and ``W r``, shape (F, 6) each.
+def _carried(residual: Float, change: Float) -> Float:
+    """How the residual (F, 6) changes with small twists of the model's pose (F, 6, P): ``J change``.
 
-    J is the inverse of the left Jacobian of the residual r, whose frame turns with the model. Without it the equations
+    J is the inverse of the left Jacobian of the residual, whose frame turns with the model. Without it the equations
     are not those of the least cost: the larger the noise, the farther from it they end.
 
     References
     ----------
     Solà, Deray and Atchuthan 2018, A micro Lie theory for state estimation in robotics.
     """
-    # ``(-ad(r))^T``, ad the matrix ``[[w]x 0; [v]x [w]x]``.
+    # ``-ad(r)``, ad the matrix ``[[w]x 0; [v]x [w]x]``.
     turn = np.zeros((len(residual), 6, 6))
-    turn[:, :3, :3] = turn[:, 3:, 3:] = cross_matrix(residual[:, :3])
-    turn[:, :3, 3:] = cross_matrix(residual[:, 3:])
-    total, power = weighted, weighted
+    turn[:, :3, :3] = turn[:, 3:, 3:] = -cross_matrix(residual[:, :3])
+    turn[:, 3:, :3] = -cross_matrix(residual[:, 3:])
+    total, power = change, change
     for coefficient in _INVERSE_JACOBIAN:
-        power = (turn @ power[..., None])[..., 0]
+        power = turn @ power
         total = total + coefficient * power
     return total
 
@@ -267,11 +273,12 @@ def _step(at: _Step, joint: Float, W: Float, weight: Float, screw: bool) -> tupl
     scale = np.sqrt(np.maximum(np.diag(information), np.finfo(np.float64).tiny))
     step = np.linalg.lstsq(information / np.outer(scale, scale), gradient / scale, rcond=1e-13)[0] / scale
     size, gain, cost = float(np.abs(step).max()), float(gradient @ step), float(weight @ _square(at, joint, W))
+    lost = size <= _SHORT and gain <= _LEAST_GAIN * cost  # what it gains is lost in the round-off of the cost
     for _ in range(_HALVINGS):  # a full step may lead too far where the poses are far from any hinge
         after = _moved(at, step, own - mixed @ step, screw=screw)
-        if gain <= _LEAST_GAIN * cost or weight @ _square(after, joint, W) <= cost:
+        if lost or weight @ _square(after, joint, W) <= cost:
             return after, size
-        step, own, gain = 0.5 * step, 0.5 * own, 0.5 * gain
+        step, own = 0.5 * step, 0.5 * own
     return at, 0.0
 
 

@@ -31,6 +31,7 @@ _ROBUST_ROUNDS: Final = 30
 _ROBUST_STEPS: Final = 2
 _BLOCK: Final = 4096
 _TINY: Final = np.finfo(np.float64).tiny
+_LEAST_SCALE: Final = 1e-150  # whose reciprocal has a square
 _COMPONENTS: Final = 6
 # By the residual's degrees of freedom a frame: median of chi-square, and Tukey's constant with 95 % efficiency, from
 # the asymptotic variance of an M-estimate of location in so many dimensions (Maronna, Martin and Yohai 2006).
@@ -388,7 +389,7 @@ def fit_robustly(fit: Fit[M], poses: Poses) -> Fit[M]:
     for k in range(_ROBUST_ROUNDS):
         distance = np.sqrt(fit.square)
         scale = float(np.median(distance)) / np.sqrt(_MEDIAN_SQUARE[freedom])
-        relative = distance / max(scale, _TINY)
+        relative = distance / max(scale, _LEAST_SCALE)
         if k < _ROBUST_ROUNDS // 3:
             weight = 1.0 / np.maximum(relative, 1.0)
         else:
