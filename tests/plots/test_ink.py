@@ -1,6 +1,6 @@
 """No figure has ink at the edge, texts over each other, or a legend over what it explains.
 
-Each figure is drawn as narrow as it may be and at three other widths, of trials of all kinds in turn;
+Each figure is drawn as narrow as it may be and at two other widths, of trials of all kinds in turn;
 ``benchmarks/figures.py`` draws all figures of all trials at all widths.
 """
 
@@ -24,10 +24,10 @@ NAMES = tuple(FIGURE_ENTRIES)
 
 
 def widths_and_kinds(name: str) -> list[tuple[float, str]]:
-    """Four widths, the narrowest among them, each with another kind of trial that has the figure."""
+    """Three widths, the narrowest among them, each with another kind of trial that has the figure."""
     kinds = [kind for kind in KINDS if has_figure(name, drawn_trial(kind))]
     first = NAMES.index(name)
-    widths = (60.0, *(WIDTHS_MM[(first + 2 * k) % len(WIDTHS_MM)] for k in range(3)))
+    widths = (60.0, *(WIDTHS_MM[(first + 2 * k) % len(WIDTHS_MM)] for k in range(2)))
     return [(width, kinds[(first + k) % len(kinds)]) for k, width in enumerate(widths)]
 
 

@@ -70,7 +70,8 @@ def drawn(samples: Path, folder: Path, **environment: str) -> dict[str, bytes]:
     """Figures of the command, started in a folder."""
     result = folder / "result"
     done = subprocess.run(
-        [sys.executable, "-m", "elbowscrew", "analyze", str(samples / "elbow_paper.csv"), "-o", str(result), "-q"],
+        [sys.executable, "-m", "elbowscrew", "analyze", str(samples / "elbow_paper.csv"), "-o", str(result), "-q",
+         "--figures", "theta"],
         cwd=folder, env={**os.environ, **environment}, capture_output=True, text=True, check=False, timeout=300,
     )  # fmt: skip
     assert done.returncode == 0, done.stderr

@@ -40,7 +40,6 @@ def test_no_steps_unless_asked_for_and_none_where_the_motion_is_smaller() -> Non
     assert len(steps.to_frame()) == 0
 
 
-@pytest.mark.monte_carlo
 def test_a_steps_interval_holds_the_truth_in_95_percent() -> None:
     inside = []
     for seed in range(60):

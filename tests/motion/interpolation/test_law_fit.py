@@ -101,7 +101,6 @@ def test_an_asymmetric_law_moves_the_highest_velocity_of_the_model() -> None:
     assert int(np.argmax(np.diff(fraction[:211]))) == pytest.approx(0.3 * 211, abs=2)
 
 
-@pytest.mark.monte_carlo
 @pytest.mark.parametrize("noise_deg", [0.05, 0.3])
 def test_the_sd_of_a_fitted_peak_is_its_scatter(noise_deg: float) -> None:
     """Where the law's ends are known: white noise of the rotation, that of the two end poses in it."""

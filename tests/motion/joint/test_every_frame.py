@@ -31,7 +31,6 @@ def everywhere(joint: Float, covariance: Float, reference: Float | None = None) 
     return Everywhere(joint, lambda rows: covariance[rows], np.ones(len(joint)), reference)
 
 
-@pytest.mark.monte_carlo
 @pytest.mark.parametrize("kind", ["hinge", "two_axes", "ball"])
 def test_standard_deviations_hold_what_frame_and_reference_err(kind: Fitted) -> None:
     """Errors against the exact angles, over trials: each has a reference of its own, whose error all frames share."""

@@ -53,7 +53,6 @@ def fewest(share: float, trials: int = TRIALS) -> float:
     return float(binom.ppf(1e-3, trials, share)) / trials
 
 
-@pytest.mark.monte_carlo
 @pytest.mark.parametrize("top_deg", [20.0, 140.0])
 def test_white_noise_is_held_and_no_more_than_needed(top_deg: float) -> None:
     found = coverage(Hinge(top_deg=top_deg), white(), TRIALS, seed=3, pitch=True)
@@ -67,7 +66,6 @@ def test_white_noise_is_held_and_no_more_than_needed(top_deg: float) -> None:
     assert found.spurious_pitch <= 0.08
 
 
-@pytest.mark.monte_carlo
 @pytest.mark.parametrize(
     ("hinge", "noise"),
     [
@@ -89,13 +87,11 @@ def test_markers_that_move_widen_the_interval_by_what_they_do(hinge: Hinge, nois
     assert found.spurious_pitch <= 0.08
 
 
-@pytest.mark.monte_carlo
 def test_more_cycles_of_skin_do_not_undo_the_interval() -> None:
     found = coverage(Hinge(cycles=4), skin(5e-3), 40, seed=5)
     assert (found.held >= fewest(0.88, 40)).all()
 
 
-@pytest.mark.monte_carlo
 def test_a_cluster_that_goes_with_the_flexion_is_held_where_it_is_stated() -> None:
     moved = turning_with_flexion(np.radians(2.0), 2e-3)
     stated = (
@@ -121,7 +117,6 @@ def test_noise_that_is_not_white_is_as_sure_as_the_markers_that_show_it(markers:
         assert freedom == most if np.isfinite(most) else freedom > 100.0
 
 
-@pytest.mark.monte_carlo
 def test_the_markers_covariance_is_unbiased_for_skin() -> None:
     """Squared errors over many trials have the mean of the covariance, whatever the correlation."""
     rng = np.random.default_rng(7)
@@ -213,7 +208,6 @@ def test_radii_do_not_depend_on_the_frames_of_the_bodies() -> None:
         assert same.decided_by(rows) == interval.decided_by(rows)
 
 
-@pytest.mark.monte_carlo
 def test_with_the_rms_of_the_markers_alone_the_interval_survives_skin_over_eight_cycles() -> None:
     """What `analyze` keeps of the markers; a formula for white noise covers a tenth here."""
     found = coverage(Hinge(top_deg=60.0, cycles=8), skin(5e-3), 30, seed=904, rms_alone=True)

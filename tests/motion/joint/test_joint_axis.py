@@ -28,7 +28,6 @@ def rms(values: Float) -> float:
     return float(np.sqrt(np.mean(values**2)))
 
 
-@pytest.mark.monte_carlo
 @pytest.mark.parametrize("top_deg", [20, 60, 140])
 def test_maximum_likelihood_attains_the_bound(top_deg: int) -> None:
     trials = 120
@@ -39,7 +38,6 @@ def test_maximum_likelihood_attains_the_bound(top_deg: int) -> None:
     assert rms(errors["maximum likelihood"]) < rms(errors["weighted mean"]) < rms(errors["plain mean"])
 
 
-@pytest.mark.monte_carlo
 def test_outliers_hurt_a_robust_fit_little() -> None:
     errors = hinge_errors(90, 40, seed=1, robust_too=True)
     assert rms(errors["robust, 10 % outliers"]) < 1.5 * rms(errors["maximum likelihood"])
@@ -47,7 +45,6 @@ def test_outliers_hurt_a_robust_fit_little() -> None:
     assert rms(errors["least squares, 10 % outliers"]) > 5.0 * rms(errors["maximum likelihood"])
 
 
-@pytest.mark.monte_carlo
 def test_the_stated_covariance_is_that_of_the_estimates() -> None:
     """The squared error in units of the covariance is a chi-square of the line's four numbers."""
     rng = np.random.default_rng(8)
