@@ -16,7 +16,7 @@ from elbowscrew.opening import digest_of, open_bytes, open_text
 
 _HEAD_BYTES: Final = 65536
 _MAX_LINE: Final = 1 << 24
-_BLOCK_CHARACTERS: Final = 1 << 19
+_BLOCK_CHARACTERS: Final = 3 << 17
 _LIMIT_LOCK: Final = threading.RLock()
 # Only a line of numbers may have its cells separated by blanks.
 _NUMBERS: Final = re.compile(rb"(?:[-+.\deE]+|nan)(?: (?:[-+.\deE]+|nan))+", re.IGNORECASE)
