@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from pathlib import Path
 
 from elbowscrew.choices import FRAMES, STATED_JOINTS
@@ -52,17 +53,10 @@ def skin_motion(value: tuple[float, ...] | None) -> tuple[float, ...] | None:
     return value
 
 
-def cycles(value: object) -> object:
-    """Take the name of a file for the times that it holds, too."""
-    from elbowscrew.cycle_times import read_cycle_times
+def read_where_named(read: Callable[[Path], object]) -> Callable[[object], object]:
+    """Take the name of a file for what it holds, too."""
 
-    return read_cycle_times(Path(value)) if isinstance(value, str | Path) else value
+    def taken(value: object) -> object:
+        return read(Path(value)) if isinstance(value, str | Path) else value
 
-
-def columns(value: object) -> object:
-    """Take the name of a file for what it says, too."""
-    if value is None:
-        return None
-    from elbowscrew.column_file import ColumnFile, read_column_file
-
-    return read_column_file(Path(value)) if isinstance(value, str | Path) else ColumnFile.model_validate(value)
+    return taken

@@ -32,6 +32,8 @@ from elbowscrew.choices import (
     RotationType,
     StatedJoint,
 )
+from elbowscrew.column_file import ColumnFile, read_column_file
+from elbowscrew.cycle_times import read_cycle_times
 from elbowscrew.declaring import (
     BODIES,
     FORMER_NAMES,
@@ -45,11 +47,6 @@ from elbowscrew.declaring import (
     setting,
 )
 from elbowscrew.errors import SettingError
-
-if TYPE_CHECKING:
-    from elbowscrew.column_file import ColumnFile
-else:
-    ColumnFile = Any  # made by `setting_values.columns`: few runs need it, and its models cost every start
 
 STILL: Final = "none"
 """The value of ``proximal`` that says: the file has no such body, it stands still."""
@@ -273,8 +270,8 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
     _frame = field_validator("express_in", mode="before")(taken.frame)
     _joint_type = field_validator("joint_type", mode="before")(taken.joint_type)
     _cutoff = field_validator("lowpass_hz", mode="before")(taken.cutoff)
-    _cycles = field_validator("cycles", mode="before")(taken.cycles)
-    _columns = field_validator("columns", mode="before")(taken.columns)
+    _cycles = field_validator("cycles", mode="before")(taken.read_where_named(read_cycle_times))
+    _columns = field_validator("columns", mode="before")(taken.read_where_named(read_column_file))
     _skin = field_validator("skin_motion")(taken.skin_motion)
 
     @model_validator(mode="after")
