@@ -132,7 +132,8 @@ def plot_cone(ax: Axes3D, center: Float, direction: Float, along: Float, reach: 
     surface = center + along[:, None, None] * direction + reach[:, None, None] * ring
     rings = [surface[0], surface[along.size // 2], surface[-1]]
     lines = list(surface[:, ::4].swapaxes(0, 1))
-    ax.add_collection3d(Line3DCollection([*rings, *lines], colors=color, linewidths=0.6, label=label))
+    for segments, name in ((rings, label), (lines, None)):  # each of one length, which older matplotlib wants
+        ax.add_collection3d(Line3DCollection(segments, colors=color, linewidths=0.6, label=name))
 
 
 def label_space(ax: Axes3D, unit: LengthUnit) -> None:

@@ -105,7 +105,7 @@ def no_positions_warnings(unused: Sequence[str], tolerance: float | str | None) 
     """
     message = (
         "there are orientations and no positions: angles, directions of axes and their errors are told; slide, places "
-        "of axes, centers, distances and speeds are left empty, and errors and tolerance of the model are angles"
+        "of axes, centers, distances and linear speeds are left empty, and errors and tolerance of the model are angles"
     )
     if unused:
         message += f" (the positions of {', '.join(map(repr, unused))} are not used, as the other body has none)"
