@@ -102,7 +102,7 @@ def test_a_fit_ends_at_a_fixed_point(trial: int, robust: bool, samples: Path) ->
         for fit in fits[1:]:
             np.testing.assert_allclose(dq.transform_lines(fit.proximal, Z), found, rtol=0.0, atol=2e-13)
             np.testing.assert_allclose(
-                dq.transform_lines(fit.distal, Z), dq.transform_lines(fits[0].distal, Z), rtol=0.0, atol=1e-13
+                dq.transform_lines(fit.distal, Z), dq.transform_lines(fits[0].distal, Z), rtol=0.0, atol=2e-13
             )
             assert fit.pitch == pytest.approx(fits[0].pitch, rel=0.0, abs=1e-13)
 
