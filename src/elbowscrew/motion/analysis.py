@@ -126,10 +126,12 @@ def analyze(recording: Recording, settings: Settings | None = None, *, landmarks
         )
         warnings += (QualityWarning(code="several-repetitions", message=message),)
     anatomy = None
-    if landmarks is not None and not joint.located:
-        msg = "--landmarks: landmarks are places, and the two bodies have orientations and no positions; leave it out"
-        raise SettingError(msg)
     if landmarks is not None:
+        if not joint.located:
+            msg = (
+                "--landmarks: landmarks are places, and the two bodies have orientations and no positions; leave it out"
+            )
+            raise SettingError(msg)
         named = wanted.distal is not None and (measured.proximal is None or wanted.proximal is not None)
         warnings += side_doubts(landmarks, measured.proximal, measured.distal, named=named)
         anatomy, doubts = anatomical_motion(

@@ -44,7 +44,8 @@ _TUKEY: Final = 6.10
 _LEAST_FREEDOM: Final = 20.0
 _LEAST_INFORMATION: Final = 1e-13
 _SHARED_HINGE: Final = (0, 1, 3, 4)  # tilts about x and y, shifts along x and y
-_HINGE: Final = 9  # shared parameters: those of both lines, and the slide at angle 0
+HINGE_NUMBERS: Final = 9
+"""Shared parameters of a hinge: those of both lines, and the slide at angle 0."""
 
 
 class LineFit(NamedTuple):
@@ -104,7 +105,7 @@ class LineFit(NamedTuple):
 def _whole(covariance: Float, told: tuple[int, ...] | None) -> Float:
     if told is None:
         return covariance
-    found = np.zeros((_HINGE, _HINGE))
+    found = np.zeros((HINGE_NUMBERS, HINGE_NUMBERS))
     found[np.ix_(told, told)] = covariance
     return found
 
@@ -205,17 +206,20 @@ def _weights_in_line(at: _Step, W: Float) -> Float:
 def _square(at: _Step, joint: Float, W: Float) -> Float:
     """Squared whitened distance of each frame, its angle at the optimum."""
     residual, W_line = _residual(at, joint), _weights_in_line(at, W)
-    along = _along(at, residual)
+    return _across(residual, W_line, _carried(residual, _own_column(at))[..., 0])[0]
+
+
+def _across(residual: Float, W_line: Float, along: Float) -> tuple[Float, Float, Float, Float]:
+    """Squared distances (F,) across the frame's angle, and ``W r``, ``d.W r`` and ``d.W d``, d the change by it."""
     weighted = (W_line @ residual[..., None])[..., 0]
-    own = np.einsum("fi,fij,fj->f", along, W_line, along)
-    square: Float = np.sum(weighted * residual, axis=1) - np.sum(weighted * along, axis=1) ** 2 / own
-    return square
+    pull, own = np.sum(weighted * along, axis=1), np.einsum("fi,fij,fj->f", along, W_line, along)
+    return np.sum(weighted * residual, axis=1) - pull**2 / own, weighted, pull, own
 
 
-def _along(at: _Step, residual: Float) -> Float:
-    """How the residual (F, 6) changes with the frame's own angle."""
+def _own_column(at: _Step) -> Float:
+    """Derivative (F, 6, 1) of the model's pose by the frame's own angle, in the frame of the line."""
     along = np.array([0.0, 0.0, 1.0, 0.0, 0.0, at.pitch])
-    return _carried(residual, np.broadcast_to(along[:, None], (len(residual), 6, 1)))[..., 0]
+    return np.broadcast_to(along[:, None], (at.angle.size, 6, 1))
 
 
 def _derivatives(at: _Step, screw: bool) -> Float:
@@ -232,18 +236,33 @@ def _derivatives(at: _Step, screw: bool) -> Float:
     return np.concatenate(columns, axis=2)
 
 
-def _normal_equations(at: _Step, joint: Float, W: Float, weight: Float, screw: bool) -> tuple[Float, ...]:
+class _Equations(NamedTuple):
+    """Normal equations of the shared parameters (P), each frame's angle eliminated.
+
+    `own` is the step of that angle, `mixed` by how much less a shared step makes it; `along` is the residual's change
+    by it, and `square` the squared distance across it.
+    """
+
+    information: Float
+    gradient: Float
+    own: Float
+    mixed: Float
+    residual: Float
+    along: Float
+    square: Float
+
+
+def _normal_equations(at: _Step, joint: Float, W: Float, weight: Float, screw: bool) -> _Equations:
     residual, W_line = _residual(at, joint), _weights_in_line(at, W)
-    G, along = _carried(residual, _derivatives(at, screw)), _along(at, residual)
+    columns = _carried(residual, np.concatenate([_derivatives(at, screw), _own_column(at)], axis=2))
+    G, along = columns[..., :-1], columns[..., -1]
     WG = W_line @ G
-    weighted = (W_line @ residual[..., None])[..., 0]
-    own = np.einsum("fi,fij,fj->f", along, W_line, along)
+    square, weighted, own_pull, own = _across(residual, W_line, along)
     mixed = np.einsum("fip,fi->fp", WG, along)
     pull = np.einsum("fip,fi->fp", G, weighted)
-    own_pull = np.sum(weighted * along, axis=1)
     information = np.einsum("f,fip,fiq->pq", weight, G, WG) - np.einsum("f,fp,fq->pq", weight / own, mixed, mixed)
     gradient = weight @ (pull - mixed * (own_pull / own)[:, None])
-    return information, gradient, own_pull / own, mixed / own[:, None], residual
+    return _Equations(information, gradient, own_pull / own, mixed / own[:, None], residual, along, square)
 
 
 def _carried(residual: Float, change: Float) -> Float:
@@ -269,10 +288,10 @@ def _carried(residual: Float, change: Float) -> Float:
 
 def _step(at: _Step, joint: Float, W: Float, weight: Float, screw: bool) -> tuple[_Step, float]:
     """One step of Gauss and Newton, and the size of a full one in radians and meters; 0 where no step is better."""
-    information, gradient, own, mixed, _ = _normal_equations(at, joint, W, weight, screw)
+    information, gradient, own, mixed, *_, square = _normal_equations(at, joint, W, weight, screw)
     scale = np.sqrt(np.maximum(np.diag(information), np.finfo(np.float64).tiny))
     step = np.linalg.lstsq(information / np.outer(scale, scale), gradient / scale, rcond=1e-13)[0] / scale
-    size, gain, cost = float(np.abs(step).max()), float(gradient @ step), float(weight @ _square(at, joint, W))
+    size, gain, cost = float(np.abs(step).max()), float(gradient @ step), float(weight @ square)
     lost = size <= _SHORT and gain <= _LEAST_GAIN * cost  # what it gains is lost in the round-off of the cost
     for _ in range(_HALVINGS):  # a full step may lead too far where the poses are far from any hinge
         after = _moved(at, step, own - mixed @ step, screw=screw)
@@ -299,10 +318,9 @@ def _moved(at: _Step, step: Float, turn: Float, *, screw: bool) -> _Step:
 
 
 def _result(at: _Step, joint: Float, W: Float, weight: Float, screw: bool) -> LineFit:
-    information, _, own, _, residual = _normal_equations(at, joint, W, weight, screw)
-    residual = residual - own[:, None] * np.array([0.0, 0.0, 1.0, 0.0, 0.0, at.pitch])
-    W_line = _weights_in_line(at, W)
-    square = np.einsum("fi,fij,fj->f", residual, W_line, residual)
+    found = _normal_equations(at, joint, W, weight, screw)
+    information, own, square = found.information, found.own, found.square
+    residual = found.residual - own[:, None] * found.along
     count = weight.sum()
     freedom = float(_FREEDOM * count - len(information))
     in_distal = residual @ adjoint(at.distal).T
@@ -337,7 +355,7 @@ def linear_model(fit: LineFit, covariance: Float) -> tuple[Float, Float, Float]:
         information (F, 6, 6) of each pose; all in the frame of the line.
     """
     at = _Step(fit.proximal, fit.distal, fit.angle, fit.pitch)
-    derivatives = _derivatives(at, screw=len(fit.information) > _HINGE)
+    derivatives = _derivatives(at, screw=len(fit.information) > HINGE_NUMBERS)
     own = np.array([0.0, 0.0, 1.0, 0.0, 0.0, fit.pitch])
     return derivatives, own, _weights_in_line(at, information_of(covariance))
 

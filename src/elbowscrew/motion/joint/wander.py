@@ -11,12 +11,11 @@ from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.twist import adjoint
 from elbowscrew.motion.joint.influence import Influence, with_columns
 from elbowscrew.motion.joint.interval import SURE, ClusterMotion, JointInterval, SkinMotion, joint_interval
-from elbowscrew.motion.joint.joint_fit import LineFit
+from elbowscrew.motion.joint.joint_fit import HINGE_NUMBERS, LineFit
 
 _GRID: Final = 400
 _TILT_SHIFT: Final = (0, 1, 3, 4)
-_HINGE: Final = 9  # a hinge's shared numbers, behind which those of the wander stand
-_WANDER_TILTS: Final = (_HINGE, _HINGE + 1)
+_WANDER_TILTS: Final = (HINGE_NUMBERS, HINGE_NUMBERS + 1)  # those of the wander stand behind the hinge's
 _TELLS_NOTHING: Final = np.radians(45.0)  # of a wander that would not be seen: no linear step tells of more
 
 
@@ -185,6 +184,6 @@ def _columns(angle: Float, pitch: float) -> Float:
 def _all_numbers(told: Influence, step: Float) -> tuple[Float, Float]:
     """Covariance and step of all numbers, 0 for those that orientations do not tell of."""
     places = list(told.told or ())
-    inverse, whole = np.zeros((_HINGE + 4, _HINGE + 4)), np.zeros(_HINGE + 4)
+    inverse, whole = np.zeros((HINGE_NUMBERS + 4, HINGE_NUMBERS + 4)), np.zeros(HINGE_NUMBERS + 4)
     inverse[np.ix_(places, places)], whole[places] = told.inverse, step
     return inverse, whole

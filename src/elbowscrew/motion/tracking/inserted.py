@@ -18,6 +18,8 @@ _FEWEST_OF_A_KIND: Final = 12
 _STRAIGHT_SHARE: Final = 0.25
 _NEARLY_ALL: Final = 95.0
 _SOME: Final = 10.0
+# At least half of the rows are in between, and at least a tenth is recorded; some are lost.
+_HALVES: Final = (40.0, 97.0)
 # Recorded rows that far apart show the motion; next to each other they may show the noise alone.
 _LAGS: Final = (1, 4)
 _MOST_ROWS: Final = 50_000
@@ -69,15 +71,25 @@ def _begin(count: int) -> int:
 
 
 def _recorded(part: Float, begin: int) -> slice:
-    bends, moves = (length(np.diff(part, order, axis=0)) for order in (2, 1))
+    # The bend of a row stands one before it, and so does the move to it.
+    changes = [change for order in (2, 1) if _has_small(change := length(np.diff(part, order, axis=0)))]
     for step in range(min(_MOST, len(part) // _FEWEST_OF_A_KIND), 1, -1):
-        for change in (bends, moves):  # the bend of a row stands one before it, and so does the move to it
+        for change in changes:
             row = _only_change(change, step)
             if row is None:
                 continue
             if any(_goes_on(part[(row + 1) % step :: lag * step]) for lag in _LAGS):
                 return slice((begin + row + 1) % step, None, step)
     return slice(0, None, 1)
+
+
+def _has_small(change: Float) -> bool:
+    """Whether the smaller half of changes (N,) is so much smaller than the largest as rows in between would have it."""
+    known = change[np.isfinite(change)]
+    if not known.size:
+        return False
+    small, large = np.percentile(known, _HALVES)
+    return bool(small <= _STRAIGHT_SHARE * large)
 
 
 def _goes_on(series: Float) -> bool:
