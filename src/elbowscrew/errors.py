@@ -18,10 +18,13 @@ found and what to do next.
 
 from __future__ import annotations
 
+import difflib
+from collections.abc import Sequence
 from typing import NamedTuple
 
 _LONGEST_VALUE = 80
 _LONGEST_MESSAGE = 2000
+_NAMES_TOLD = 24
 
 
 def shown(value: object) -> str:
@@ -38,6 +41,19 @@ def shortened(message: str) -> str:
     if len(message) <= _LONGEST_MESSAGE:
         return message
     return f"{message[: _LONGEST_MESSAGE * 3 // 4]} … {message[-_LONGEST_MESSAGE // 4 :]}"
+
+
+def did_you_mean(wanted: str, names: Sequence[str]) -> str:
+    """Ask back by the names that are nearly the one wanted, in any case of letters; empty if there is none."""
+    known = {name.casefold(): name for name in names}
+    near = [known[name] for name in difflib.get_close_matches(wanted.casefold(), known, n=3)]
+    return f"; did you mean {' or '.join(map(repr, near))}?" if near else ""
+
+
+def told_names(names: Sequence[str]) -> str:
+    """Names with commas, of many the first."""
+    more = f" and {len(names) - _NAMES_TOLD} more" if len(names) > _NAMES_TOLD else ""
+    return ", ".join(names[:_NAMES_TOLD]) + more
 
 
 class Missing(NamedTuple):

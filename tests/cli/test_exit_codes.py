@@ -324,3 +324,15 @@ def test_landmarks_add_anatomical_angles(take: Path, capsys: pytest.CaptureFixtu
     code, _, err = run(capsys, "analyze", take, "--landmarks", toml, "--force")
     assert code == 4
     assert_one_line(err)
+
+
+def test_landmarks_of_markers_that_are_not_there_are_told_beside_those_that_are(
+    tmp_path: Path, samples: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    toml = tmp_path / "arm.toml"
+    toml.write_text(LANDMARKS.replace('"right"', '"left"').replace('{ body = "lab", mm = [352, 1105, -190] }', '"M5"'))
+    code, _, err = run(capsys, "analyze", samples / "elbow_left.csv", "--landmarks", toml, "-o", tmp_path / "out")
+    assert code == 4
+    assert_one_line(err)
+    assert "EL: there is no marker 'M5'" in err
+    assert all(f"Left {body}:Marker{k}" in err for body in ("Upper Arm", "Forearm") for k in (1, 2, 3, 4))

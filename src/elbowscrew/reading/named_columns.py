@@ -9,11 +9,11 @@ from itertools import islice
 from typing import Final, NamedTuple
 
 from elbowscrew.column_file import SECONDS, BodyColumns, ColumnFile, MarkerColumns
-from elbowscrew.errors import Missing, MissingStatementError, RecordingError, SettingError
+from elbowscrew.errors import Missing, MissingStatementError, RecordingError, SettingError, did_you_mean
 from elbowscrew.model import QualityWarning, Recording
 from elbowscrew.reading.cells import parse_number
 from elbowscrew.reading.clock import numbered
-from elbowscrew.reading.options import ASK_FOR_UNITS, ReadOptions, did_you_mean, nothing_wanted
+from elbowscrew.reading.options import ASK_FOR_UNITS, ReadOptions, nothing_wanted
 from elbowscrew.reading.source import TextSource
 from elbowscrew.reading.table import BodyCells, MarkerCells, TableCells, read_table
 

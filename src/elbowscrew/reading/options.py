@@ -2,14 +2,21 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
 from elbowscrew.column_file import ColumnFile
-from elbowscrew.errors import ElbowscrewError, Missing, MissingStatementError, NoBodiesError, SettingError
+from elbowscrew.errors import (
+    ElbowscrewError,
+    Missing,
+    MissingStatementError,
+    NoBodiesError,
+    SettingError,
+    did_you_mean,
+    told_names,
+)
 from elbowscrew.model import marker_matches
 from elbowscrew.quantities import METERS
 
@@ -21,7 +28,6 @@ _UNIT_NAMES: Final = {
 # Some systems keep only so many characters of the unit's name.
 _SHORTEST_CUT: Final = 4
 
-_NAMES_TOLD: Final = 24
 
 ASK_FOR_UNITS: Final = "--units m, cm or mm"
 ASK_FOR_MARKERS: Final = "give --proximal-markers and --distal-markers"
@@ -99,13 +105,6 @@ def _known_unit(stated: str) -> str | None:
     return found.pop() if len(found) == 1 else None
 
 
-def did_you_mean(wanted: str, names: Sequence[str]) -> str:
-    """Ask back by the names that are nearly the one wanted, in any case of letters; empty if there is none."""
-    known = {name.casefold(): name for name in names}
-    near = [known[name] for name in difflib.get_close_matches(wanted.casefold(), known, n=3)]
-    return f"; did you mean {' or '.join(map(repr, near))}?" if near else ""
-
-
 def check_patterns(path: Path, patterns: Sequence[str], names: Sequence[str]) -> None:
     """Check that each name or pattern of markers fits one of these names.
 
@@ -120,12 +119,6 @@ def check_patterns(path: Path, patterns: Sequence[str], names: Sequence[str]) ->
             told = told_names(names)
             msg = f"{path}: no marker fits {pattern}{did_you_mean(pattern, names)}; the file has {told or 'no markers'}"
             raise SettingError(msg)
-
-
-def told_names(names: Sequence[str]) -> str:
-    """Names with commas, of many the first."""
-    more = f" and {len(names) - _NAMES_TOLD} more" if len(names) > _NAMES_TOLD else ""
-    return ", ".join(names[:_NAMES_TOLD]) + more
 
 
 def nothing_wanted(path: Path, what: str, names: Sequence[str], options: ReadOptions) -> ElbowscrewError:

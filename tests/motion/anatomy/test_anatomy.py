@@ -21,6 +21,7 @@ from elbowscrew.geometry import quaternion as qn
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import JointMotion, Marker, QualityWarning
 from elbowscrew.model.anatomy import AnatomicalMotion, Landmark, LandmarkFrame, Landmarks, Side
+from elbowscrew.model.recording import Source
 from elbowscrew.motion.anatomy.anatomy import (
     anatomical_motion,
     angle_to_epicondyles,
@@ -385,13 +386,24 @@ def test_markers_that_cannot_be_found_are_named_together() -> None:
     with pytest.raises(SettingError) as caught:
         measured(landmarks, replace(recording, markers=(*twice, never)))
     message = str(caught.value)
-    assert message.startswith("arm.toml: EL: the recording has no marker 'elbow' (markers read: GH, EL, EM, US, RS, us")
+    assert message.startswith("arm.toml: EL: there is no marker 'elbow'; ")
+    assert "; the recording's markers: GH, EL, EM, US, RS, us, Us, never. Name others" in message
     assert "US: 3 markers of the recording are named 'uS'" in message
     assert "GH: marker 'never' is never seen together with the arm" in message
     assert "give coordinates" in message
     assert "\n" not in message
-    with pytest.raises(SettingError, match=r"\(markers read: none\)"):
+    with pytest.raises(SettingError, match="the recording's markers: none"):
         measured(by_markers(), replace(recording, markers=()))
+
+
+def test_all_markers_of_the_file_are_named_also_those_that_were_not_read() -> None:
+    of_file = Source(path="take.csv", sha256="", layout="", markers=("LatEpi", "MedEpi", "UlnSty", "C7"))
+    recording = replace(recorded(known_proximal(FLEX, 0 * FLEX, 0 * FLEX)), source=of_file)
+    with pytest.raises(SettingError) as caught:
+        measured(by_markers(EL=("lat_epi",)), recording)
+    message = str(caught.value)
+    assert "EL: there is no marker 'lat_epi'; did you mean 'LatEpi'?; " in message
+    assert "the recording's markers: LatEpi, MedEpi, UlnSty, C7. Name others" in message
 
 
 def test_a_marker_seen_only_while_its_body_is_lost_is_an_error() -> None:

@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from elbowscrew.errors import SettingError
+from elbowscrew.errors import SettingError, did_you_mean, told_names
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_quaternion import conjugate, multiply, transform_points
 from elbowscrew.model import JointMotion, Marker, QualityWarning, Recording, RigidBody
@@ -50,7 +50,8 @@ def landmark_points(
             faults.append(f"{name}: {error}")
     if faults:
         msg = (
-            f"{landmarks.source}: {'; '.join(faults)}: name other markers or give coordinates, "
+            f"{landmarks.source}: {'; '.join(faults)}; the recording's markers: "
+            f"{told_names(_names(recording)) or 'none'}. Name others of them, or give coordinates, "
             '{ body = "arm", mm = [x, y, z] }'
         )
         raise SettingError(msg)
@@ -94,6 +95,11 @@ def _marker(recording: Recording, wanted: str) -> Marker:
     if found:
         msg = f"{len(found)} markers of the recording are named {wanted!r}"
         raise SettingError(msg)
-    there = ", ".join(marker.name for marker in recording.markers[:8]) or "none"
-    msg = f"the recording has no marker {wanted!r} (markers read: {there})"
+    msg = f"there is no marker {wanted!r}{did_you_mean(wanted, _names(recording))}"
     raise SettingError(msg)
+
+
+def _names(recording: Recording) -> tuple[str, ...]:
+    """Names of all markers, of a file also of those that were not read."""
+    every = () if recording.source is None else recording.source.markers
+    return every or tuple(marker.name for marker in recording.markers)
