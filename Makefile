@@ -20,10 +20,11 @@ test-oldest:  ## all tests at the oldest versions allowed, in an environment of 
 	.venv-oldest/bin/pip install --quiet --constraint constraints-floor.txt ".[test]"
 	.venv-oldest/bin/pytest -q -n 2 --dist worksteal
 
-docs:  ## tables of the documents made anew, links and names in them checked
+docs:  ## the documentation in build/site, everything in it run; open build/site/index.html
+	$(BIN)/pip install --quiet -e ".[docs]"
 	$(BIN)/python docs/make_settings.py
 	$(BIN)/python docs/make_schemas.py
-	$(BIN)/pytest -q tests/test_docs.py
+	$(BIN)/sphinx-build -W --keep-going --quiet docs build/site
 
 bench:  ## every stage beside what one would use instead
 	$(BIN)/pip install --quiet -e ".[bench]"

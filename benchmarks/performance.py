@@ -148,8 +148,8 @@ def page(results: dict[str, Any]) -> str:
 
 INTRODUCTION = """# Performance
 
-Made by `python benchmarks/performance.py --docs docs/performance.md`; do not edit. Everything is measured beside what a
-user would take instead.
+Made by `python benchmarks/performance.py --docs docs/explanation/performance.md`; do not edit. Everything is measured
+beside what a user would take instead.
 
 elbowscrew {elbowscrew}, {cores} cores, {system}, Python {python}, {libraries}.
 Tasks take turns with their yardsticks; a ratio is that of the

@@ -1,4 +1,4 @@
-"""Make `docs/settings.md` from the declarations in `elbowscrew.settings`: ``python docs/make_settings.py``."""
+"""Make `docs/reference/settings.md` from what `elbowscrew.settings` declares: ``python docs/make_settings.py``."""
 
 from __future__ import annotations
 
@@ -41,4 +41,4 @@ def _row(setting: Setting) -> str:
 
 
 if __name__ == "__main__":
-    Path(__file__).with_name("settings.md").write_text(page(), encoding="utf-8")
+    (Path(__file__).parent / "reference" / "settings.md").write_text(page(), encoding="utf-8")

@@ -69,14 +69,14 @@ def test_the_notebook_example_runs(root: Path, tmp_path: Path) -> None:
 
 
 def test_every_column_is_documented(root: Path) -> None:
-    text = (root / "docs" / "outputs.md").read_text(encoding="utf-8")
+    text = (root / "docs" / "reference" / "outputs.md").read_text(encoding="utf-8")
     for column in (*SCREW_COLUMNS, *INTERPOLATION_COLUMNS):
         stem = column.name.rstrip("0123") if re.fullmatch(r"e\d", column.name) else column.name
         assert re.search(rf"`{re.escape(stem.removesuffix('_x').removesuffix('_y').removesuffix('_z'))}", text), column
 
 
 def test_every_column_of_a_study_is_documented(root: Path) -> None:
-    text = (root / "docs" / "batch.md").read_text(encoding="utf-8")
+    text = (root / "docs" / "reference" / "batch.md").read_text(encoding="utf-8")
     header = study_header("deg", "mm")
     for column in [*header, *FAILURE_COLUMNS]:
         told = re.sub(r"_y(_mm)?$", r"_x\1", column)  # of three components the first and the last are named
@@ -84,7 +84,7 @@ def test_every_column_of_a_study_is_documented(root: Path) -> None:
 
 
 def test_laws_and_columns_of_a_comparison_are_documented(root: Path) -> None:
-    text = (root / "docs" / "compare.md").read_text(encoding="utf-8")
+    text = (root / "docs" / "reference" / "compare.md").read_text(encoding="utf-8")
     laws = text[text.index("## Laws") : text.index("## Phases")]
     told = re.findall(r"`([a-z][a-z0-9-]+)`", laws[: laws.index("`--law-peak")])
     assert sorted(told) == sorted(CLOSED_LAWS)
@@ -104,7 +104,7 @@ def test_the_version_stands_in_changelog_and_citation(root: Path) -> None:
 
 
 def test_the_architecture_names_every_module_of_the_top_level(root: Path) -> None:
-    text = (root / "docs" / "architecture.md").read_text(encoding="utf-8")
+    text = (root / "docs" / "explanation" / "architecture.md").read_text(encoding="utf-8")
     for path in (root / "src" / "elbowscrew").iterdir():
         if path.is_dir() and path.name != "__pycache__":
             assert f"`{path.name}/`" in text, path.name
@@ -136,7 +136,7 @@ def test_the_readmes_pictures_are_figures_of_a_result(root: Path) -> None:
 
 def test_the_table_of_settings_is_current(root: Path) -> None:
     made = runpy.run_path(str(root / "docs" / "make_settings.py"))["page"]()
-    assert (root / "docs" / "settings.md").read_text(encoding="utf-8") == made
+    assert (root / "docs" / "reference" / "settings.md").read_text(encoding="utf-8") == made
 
 
 def test_the_drawing_of_the_cycles_is_current(root: Path) -> None:

@@ -51,7 +51,12 @@ def test_the_counterparts_of_its_figures_are_written(tmp_path: Path, capsys: pyt
 
 def test_no_equation_is_missing_and_every_function_is_there(root: Path) -> None:
     numbers = set()
-    for line in (root / "docs" / "equations.md").read_text(encoding="utf-8").partition("## Misprints")[0].splitlines():
+    for line in (
+        (root / "docs" / "reference" / "equations.md")
+        .read_text(encoding="utf-8")
+        .partition("## Misprints")[0]
+        .splitlines()
+    ):
         if not line.startswith("| ") or line.startswith(("| equation", "| ---")):
             continue
         equation, _, functions = (cell.strip() for cell in line.strip("| ").split(" | "))

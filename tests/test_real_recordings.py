@@ -129,7 +129,7 @@ def test_intervals_of_a_hinge_hold_in_the_robots_other_take(real_data: Path) -> 
             fit = analysis.joint_axis.hinge
             assert analysis.joint_axis.single
             assert fit is not None
-            assert fit.correlation > 50  # no white noise: see docs/joint-axis.md
+            assert fit.correlation > 50  # no white noise: see docs/explanation/joint-axis.md
             fits.append(fit)
         n, m = (fit.line.direction for fit in fits)
         angle.append(float(np.arcsin(np.linalg.norm(np.cross(n, m)))))
@@ -302,7 +302,7 @@ def test_gimbals_whose_files_lost_their_headers(
     real_data: Path, tmp_path: Path, name: str, proximal: tuple[int, ...], distal: tuple[int, ...], top: float,
     mean_deg: float, largest_deg: float, slide_mm: tuple[float, float], way: Callable[[Path, Path], Recording],
 ) -> None:  # fmt: skip
-    """The two recipes of docs/plain-table.md; the figures are of angles above 15 deg.
+    """The two recipes of docs/reference/plain-table.md; the figures are of angles above 15 deg.
 
     The index gives Abduction's slide along the line of the axis markers, -0.6 to 3.3 mm; here the angle is positive.
     """

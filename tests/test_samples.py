@@ -23,7 +23,9 @@ ALL = (*NAMES, "elbow_natural")
 def test_the_documented_command_makes_the_sample(
     samples: Path, root: Path, name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    lines = re.findall(r"^elbowscrew (simulate (\S+)\.csv .*)$", (root / "docs/simulate.md").read_text("utf-8"), re.M)
+    lines = re.findall(
+        r"^elbowscrew (simulate (\S+)\.csv .*)$", (root / "docs/reference/simulate.md").read_text("utf-8"), re.M
+    )
     assert {made for _, made in lines} == set(ALL) == {path.stem for path in samples.glob("*.csv")}
     monkeypatch.chdir(tmp_path)
     done = CliRunner().invoke(app, shlex.split({made: line for line, made in lines}[name]))

@@ -201,7 +201,7 @@ class ColumnFile(_Part):
 
 
 def read_column_file(path: Path) -> ColumnFile:
-    """Read a file of ``--columns``; ``docs/plain-table.md`` says how it looks.
+    """Read a file of ``--columns``; ``docs/reference/plain-table.md`` says how it looks.
 
     Raises
     ------
@@ -220,7 +220,7 @@ def read_column_file(path: Path) -> ColumnFile:
         return ColumnFile.model_validate({**given, "name": path.name, "sha256": digest})
     except ValidationError as error:
         faults = [_sentence(fault) for fault in error.errors()]
-        msg = f"{path}: {'; '.join(faults[:3])}; see docs/plain-table.md"
+        msg = f"{path}: {'; '.join(faults[:3])}; see docs/reference/plain-table.md"
         raise ValueError(msg) from error
 
 

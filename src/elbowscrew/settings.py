@@ -1,7 +1,8 @@
 """One `Settings`: each setting is declared here, once, with its name, type, default, bounds and text.
 
 The options of the command line and their help, the keys of TOML files and manifests, the list in the class's docstring
-and `docs/settings.md` are made from it (`SETTINGS`). `configuring.py` takes values from a TOML file and options.
+and `docs/reference/settings.md` are made from it (`SETTINGS`). `configuring.py` takes values from a TOML file
+and options.
 """
 
 from __future__ import annotations

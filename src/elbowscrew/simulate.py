@@ -184,7 +184,7 @@ class SimulatedTrial:
     markers : mapping of str to ndarray, shape (N, M, 3)
         The markers of each body, by the body's name, in the laboratory, meters; NaN where not seen.
     truth : dict
-        The joint's type, axes or center, and angles, ready for JSON; units in the names (`docs/simulate.md`).
+        The joint's type, axes or center, and angles, ready for JSON; units in the names (`docs/reference/simulate.md`).
     """
 
     recording: Recording

@@ -45,7 +45,7 @@ def test_names_and_coordinates(tmp_path: Path) -> None:
 
 
 def test_the_documents_example_is_one(root: Path, tmp_path: Path) -> None:
-    text = (root / "docs" / "anatomy.md").read_text(encoding="utf-8")
+    text = (root / "docs" / "explanation" / "anatomy.md").read_text(encoding="utf-8")
     (tmp_path / "arm.toml").write_text(text.split("```toml\n")[1].split("```")[0], encoding="utf-8")
     found = read_landmarks(tmp_path / "arm.toml")
     assert found.markers == ("lateral_epicondyle", "radial_styloid", "shoulder_front", "shoulder_back")

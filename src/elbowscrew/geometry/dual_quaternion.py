@@ -2,7 +2,7 @@
 
 A pose is ``Q = q + eps 1/2 d q`` and maps body coordinates to the frame's, ``x = R(q) X + d``. `Q` and `-Q` are the
 same pose. Lines are Plücker vectors, shape (..., 6): unit direction ``h``, then moment ``m = p x h``.
-The conventions are stated in ``docs/conventions.md``.
+The conventions are stated in ``docs/reference/conventions.md``.
 """
 
 from __future__ import annotations

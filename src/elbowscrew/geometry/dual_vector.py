@@ -65,7 +65,7 @@ def cross(left: ArrayLike, right: ArrayLike) -> Float:
 
 
 def norm(vector: ArrayLike) -> DualNumber:
-    """Norm, a dual number ``|a| + eps <a, b>/|a|``; its dual part is the pitch times |a|.
+    """Norm, a dual number ``|a| + eps <a, b>/|a|``; its dual part is the pitch times ``|a|``.
 
     Parameters
     ----------

@@ -48,7 +48,7 @@ def exp(dual_quat: ArrayLike) -> Float:
     Parameters
     ----------
     dual_quat : array_like, shape (..., 8)
-        Any dual quaternions; |v| in radians.
+        Any dual quaternions; ``|v|`` in radians.
 
     Returns
     -------

@@ -52,9 +52,9 @@ def screw_from_dual_quat(dual_quat: ArrayLike) -> Screw:
     -------
     Screw, shape (...)
         The angle is ``2 atan2(|v|, w)`` in [0, 2 pi], never an arccosine or arcsine; ``-Q`` gives ``2 pi - angle``
-        about the opposite axis. Without rotation (|v| = 0) the motion is a translation: angle 0 (or 2 pi), slide |d|,
-        direction d/|d|, and the *position* of the axis is not defined: NaN. For the identity the direction is NaN too.
-        The moment loses digits as ``|d|/theta``, which is the conditioning of the axis itself.
+        about the opposite axis. Without rotation (``|v| = 0``) the motion is a translation: angle 0 (or 2 pi), slide
+        ``|d|``, direction ``d/|d|``, and the *position* of the axis is not defined: NaN. For the identity the direction
+        is NaN too. The moment loses digits as ``|d|/theta``, which is the conditioning of the axis itself.
 
     References
     ----------

@@ -22,7 +22,7 @@ _EXPECTED: Final = 'a marker\'s name, a list of names, or { body = "arm", mm = [
 
 
 def read_landmarks(path: str | os.PathLike[str]) -> Landmarks:
-    """Read the landmarks of an arm; ``docs/anatomy.md`` says how the file looks.
+    """Read the landmarks of an arm; ``docs/explanation/anatomy.md`` says how the file looks.
 
     Parameters
     ----------

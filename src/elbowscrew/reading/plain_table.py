@@ -108,6 +108,6 @@ def _columns_by_body(
         if set(parts) not in (set(_POSE), set(_ORIENTATION), set("xyz")):
             faults.append(f"{name!r} has only {', '.join(sorted(parts))}: expected e0..e3, x, y, z, or either alone")
     if faults:
-        msg = f"{source.path}:{line}: {'; '.join(faults[:5])}; see docs/plain-table.md"
+        msg = f"{source.path}:{line}: {'; '.join(faults[:5])}; see docs/reference/plain-table.md"
         raise RecordingError(msg)
     return columns, units

@@ -246,13 +246,13 @@ def _refusal(source: TextSource, cells: list[str]) -> str:
         return (
             f"{source.path}:1: no format that is read: expected 'Format Version', a row tag such as 'comment', or "
             f"'frame,time_s' in the first cells, found {cells[0][:40]!r}; any table is read once --columns FILE.toml "
-            "says what its columns are (docs/plain-table.md)"
+            "says what its columns are (docs/reference/plain-table.md)"
         )
     angles = " (x, y, z, yaw, pitch, roll of Autoscoper?)" if len(numbers) == _POSE_NUMBERS else ""
     return (
         f"{source.path}:1: the header is missing (the file begins with a number), so nothing says what the "
         f"{len(numbers)} columns are{angles}; export the take again with the header on, or say what they are by "
-        "--columns FILE.toml (docs/plain-table.md)"
+        "--columns FILE.toml (docs/reference/plain-table.md)"
     )
 
 

@@ -225,7 +225,7 @@ class _Table:
         missing += [] if any(f"d_x_{unit}" in names for unit in METERS) else ["d_x_mm, d_y_mm, d_z_mm"]
         if missing or len(set(names)) < len(names):
             fault = f"missing columns {', '.join(missing)}" if missing else "a column stands twice"
-            msg = f"{path}:1: expected the columns of keyframes.csv, found {fault}; see docs/compare.md"
+            msg = f"{path}:1: expected the columns of keyframes.csv, found {fault}; see docs/reference/compare.md"
             raise RecordingError(msg)
         for line, row in rows[1:]:
             if len(row) != len(names):

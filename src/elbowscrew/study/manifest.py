@@ -38,7 +38,7 @@ def is_manifest(path: Path) -> bool:
 
 
 def read_manifest(path: Path) -> list[Trial]:
-    """Read a manifest; ``docs/batch.md`` says how it looks.
+    """Read a manifest; ``docs/reference/batch.md`` says how it looks.
 
     Parameters
     ----------

@@ -136,7 +136,7 @@ def test_gaps_in_the_angle_leave_the_cycles_around_them() -> None:
 
 
 # The robot starts and stops abruptly, which the feet of a minimum-jerk movement miss by up to a quarter of a second
-# (docs/outputs.md); where it only creeps on, the end of the movement is not a time that can be read off.
+# (docs/reference/outputs.md); where it only creeps on, the end of the movement is not a time that can be read off.
 # Two standard deviations of the Gaussian under which it is read off: so far it spreads an abrupt end.
 READ_OFF_S = 0.08
 

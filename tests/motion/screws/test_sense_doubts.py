@@ -98,7 +98,7 @@ def test_a_jump_is_told_with_its_size_and_frame(jumps: int, steps: str) -> None:
 
 @pytest.mark.parametrize(("degrees", "is_told"), [(19.9, False), (20.1, True)])
 def test_a_jump_is_one_over_20_degrees(degrees: float, is_told: bool) -> None:
-    """docs/conventions.md says the limit."""
+    """docs/reference/conventions.md says the limit."""
     found = told(sense(largest_jump=np.radians(degrees), jump_row=3, jumps=1))
     assert ("theta-jumps" in found) == is_told
 
@@ -113,7 +113,7 @@ def test_whole_turns_over_gaps_are_told_with_the_first_gap(rows: tuple[int, ...]
 
 @pytest.mark.parametrize(("amplitude", "tied"), [(60.0, True), (55.0, True), (54.0, False)])
 def test_excursions_that_differ_by_less_than_five_percent_of_their_sum_are_tied(amplitude: float, tied: bool) -> None:
-    """docs/conventions.md: of two that differ by less than 5 % of their sum the first is positive."""
+    """docs/reference/conventions.md: of two that differ by less than 5 % of their sum the first is positive."""
     wave = np.sin(np.linspace(0.0, 4.0 * np.pi, 401))
     degrees = np.where(wave > 0.0, amplitude, 60.0) * wave
     found = sense_of(about([0.0, 0.0, 1.0], degrees), np.arange(401) / 100.0, 0)

@@ -3,8 +3,8 @@
 The model of frame i is ``J_i = A Z(theta_i, s_0 + p theta_i) F^-1 exp(e_i)``: A is a pose whose z axis is the line in
 the proximal body, F one whose z axis is the line in the distal body, Z the screw motion along z. All frames share the
 two lines (four parameters each), s_0 and the pitch p; each has its own angle, which is eliminated. No pose is the
-reference, so that no pose's noise is shared by all. ``docs/joint-axis.md`` derives the bound that the covariance
-attains.
+reference, so that no pose's noise is shared by all. ``docs/explanation/joint-axis.md`` derives the bound
+that the covariance attains.
 """
 
 from __future__ import annotations

@@ -3,7 +3,8 @@
 The model of frame i is a pose ``J_i(shared, own_i)``; the measured one is ``J_i exp(e_i)`` with ``e_i`` normal. Shared
 numbers (lines, centers) are the same in all frames, own numbers (angles) belong to one. At a point of the search the
 whitened residual of a frame is ``r - G d - D f``: projecting it off the columns of D eliminates the frame's numbers
-(Schur's complement), what is left is a small problem for the shared ones. ``docs/joint.md`` names the types.
+(Schur's complement), what is left is a small problem for the shared ones. The types are named
+in ``docs/explanation/joint.md``.
 """
 
 from __future__ import annotations

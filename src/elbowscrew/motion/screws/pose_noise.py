@@ -50,7 +50,7 @@ def pose_noise(body: RigidBody, rate_hz: float, settings: Settings) -> PoseNoise
     settings : Settings
         ``marker_noise_mm`` is the user's word and the strongest; else ``noise`` says the source. By itself it is the
         residuals of the markers, then the error column of the file, then a still stretch of the take, which tells of
-        jitter only (``docs/joint-axis.md``).
+        jitter only (``docs/explanation/joint-axis.md``).
 
     Returns
     -------
