@@ -156,6 +156,10 @@ class RigidBody(ArrayRecord):
     shape_deviation: Float | None = None
     coarse_step: float | None = None
 
+    def __repr__(self) -> str:
+        tracked = int(self.tracked.sum())
+        return f"RigidBody({self.name!r}; tracked in {tracked} of {self.loss.size} frames)"
+
     @classmethod
     def from_quaternions(
         cls,
@@ -317,6 +321,10 @@ class Recording(ArrayRecord):
     source: Source | None = None
     warnings: tuple[QualityWarning, ...] = ()
     ordered: bool = False
+
+    def __repr__(self) -> str:
+        named = ", ".join(repr(body.name) for body in self.bodies)
+        return f"Recording({self.frame.size} frames at {self.rate_hz:g} Hz; bodies {named})"
 
     @classmethod
     def from_bodies(cls, bodies: Sequence[RigidBody], *, rate_hz: float) -> Recording:

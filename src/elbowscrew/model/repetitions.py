@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from elbowscrew import tables
+from elbowscrew.choices import AngleUnit, LengthUnit
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.model.array_record import ArrayRecord
 from elbowscrew.model.table_record import TableRecord
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -134,3 +138,11 @@ class CycleCurves(TableRecord):
     cycle: NDArray[np.int64]
     percent: Float
     angle: Float
+
+    def to_xarray(self, angle_unit: AngleUnit = "deg", length_unit: LengthUnit = "mm") -> xr.Dataset:
+        """Return the curves as an xarray Dataset over ``cycle`` and ``percent``; see `TableRecord.to_xarray`."""
+        flat = super(CycleCurves, self).to_xarray(angle_unit, length_unit)  # a class with slots is made twice
+        shape = np.unique(self.cycle).size, -1
+        curves = flat["theta"].to_numpy().reshape(shape)
+        coords = {"cycle": np.unique(self.cycle), "percent": self.percent[: curves.shape[1]]}
+        return type(flat)({"theta": (("cycle", "percent"), curves, flat["theta"].attrs)}, coords)

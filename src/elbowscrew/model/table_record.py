@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import html
 from abc import ABC, abstractmethod
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +16,10 @@ from elbowscrew.tables import Column
 
 if TYPE_CHECKING:
     import pandas as pd
+    import xarray as xr
+
+_ROWS_SHOWN: Final = 10
+_COLUMNS_TOLD: Final = 5
 
 
 class TableRecord(ArrayRecord, ABC):
@@ -26,6 +31,19 @@ class TableRecord(ArrayRecord, ABC):
     @abstractmethod
     def table(self) -> tuple[Column, ...]:
         """Columns of this result, in order."""
+
+    def __len__(self) -> int:
+        return len(self.table[0].values(self))
+
+    def __repr__(self) -> str:
+        names = [*self.columns(rows=slice(0))]
+        more = ", …" if len(names) > _COLUMNS_TOLD else ""
+        told = f"{len(self)} rows of {len(names)} columns"
+        return f"{type(self).__name__}({told}: {', '.join(names[:_COLUMNS_TOLD])}{more})"
+
+    def _repr_html_(self) -> str:
+        name = html.escape(type(self).__name__)
+        return f"<div><b>{name}</b>{self.to_frame().to_html(max_rows=_ROWS_SHOWN)}</div>"
 
     def columns(
         self, angle_unit: AngleUnit = "deg", length_unit: LengthUnit = "mm", rows: slice = slice(None)
@@ -51,3 +69,17 @@ class TableRecord(ArrayRecord, ABC):
                 for name, values in self.columns(angle_unit, length_unit).items()
             }
         )
+
+    def to_xarray(self, angle_unit: AngleUnit = "deg", length_unit: LengthUnit = "mm") -> xr.Dataset:
+        """Return the table as an xarray Dataset: along its first column, units as attributes, vectors whole.
+
+        Names are those of the CSV without unit and component. Over frames there is ``time`` beside ``frame``.
+
+        Raises
+        ------
+        UsageError
+            If xarray is not installed.
+        """
+        from elbowscrew.model.labeled import dataset_from_table
+
+        return dataset_from_table(self, angle_unit, length_unit)

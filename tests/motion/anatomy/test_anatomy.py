@@ -501,4 +501,4 @@ def test_without_a_single_axis_its_angle_is_not_known() -> None:
     motion, _ = measured(by_coordinates(proximal), recorded(proximal))
     assert np.isnan([motion.joint_axis_angle, motion.joint_axis_distance]).all()
     assert np.isnan(motion.axis_angle).all()
-    assert "flexion=<array 120>" in repr(motion)
+    assert "120 rows" in repr(motion)
