@@ -10,7 +10,7 @@ from __future__ import annotations
 from typing import Final, Literal
 
 import numpy as np
-from scipy.special import multigammaln
+from scipy.special import gammaln
 
 from elbowscrew.geometry.arrays import Float, Index
 from elbowscrew.motion.joint.influence import Influence
@@ -30,6 +30,7 @@ _PAIR_BINS: Final = 5  # of each of two angles
 _ALIKE: Final = 3.0
 _RANK: Final = 1e-6
 _LEAST_POWER: Final = 1e-12
+_UNLIKELY: Final = 1e-9  # beside the likeliest
 
 
 def nonrigid_covariance(
@@ -166,18 +167,16 @@ def _worth_of_model(z: Float, angle: Float, model: _Stationary, *, own_shape: bo
     relative = np.linalg.solve(np.linalg.cholesky(expected), basis.T @ (z / np.sqrt(scale)))
     square = relative @ relative.T
     worth = _WORTH if model.flat >= 0.5 else _WORTH[_WORTH <= _WORTH_IF_COLORED]
-    prior = worth + rank + 1.0
-    evidence = np.array(
-        [
-            multigammaln(0.5 * (m + nu), rank)
-            - multigammaln(0.5 * m, rank)
-            + 0.5 * m * rank * np.log(v)
-            - 0.5 * (m + nu) * np.linalg.slogdet(v * np.eye(rank) + square)[1]
-            for m, v in zip(prior, worth, strict=True)
-        ]
+    prior = 0.5 * (worth + rank + 1.0)
+    less = 0.5 * np.arange(rank)[:, None]
+    evidence = (
+        np.sum(gammaln(prior + 0.5 * nu - less) - gammaln(prior - less), axis=0)
+        + prior * rank * np.log(worth)
+        - (prior + 0.5 * nu) * np.sum(np.log(worth + np.linalg.eigvalsh(square)[:, None]), axis=0)
     )
     weight = np.exp(evidence - evidence.max())
-    return worth, weight / weight.sum()
+    likely = weight > _UNLIKELY
+    return worth[likely], weight[likely] / weight[likely].sum()
 
 
 def _bins_of(angles: Float) -> tuple[Index, int]:

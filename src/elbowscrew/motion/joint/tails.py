@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -9,7 +10,7 @@ from scipy.special import fdtrc, fdtri
 
 from elbowscrew.geometry.arrays import Float
 
-_BISECTIONS: Final = 40
+_CLOSE: Final = 1e-13
 _MANY: Final = 1e6  # degrees of freedom from which on a t is a normal distribution
 
 
@@ -74,11 +75,32 @@ class Mixture(NamedTuple):
         extent = trace**2 / square[used]
         freedom = np.minimum(self.freedom[used], _MANY)
         each = np.sqrt(trace * fdtri(extent, freedom, level))
-        low, high = float(each.min()), float(each.max())
-        for _ in range(_BISECTIONS):
-            middle = 0.5 * (low + high)
-            if weight @ fdtrc(extent, freedom, middle**2 / trace) > 1.0 - level:
-                low = middle
-            else:
-                high = middle
-        return high
+        return _falls_to_zero(
+            lambda radius: float(weight @ fdtrc(extent, freedom, radius**2 / trace)) - (1.0 - level),
+            float(each.min()),
+            float(each.max()),
+        )
+
+
+def _falls_to_zero(function: Callable[[float], float], low: float, high: float) -> float:
+    """Where a falling function that is smooth is zero between two points.
+
+    References
+    ----------
+    Dowell and Jarratt 1971 (the Illinois method: a secant, whose end that stays is drawn in by half).
+    """
+    at_low, at_high, kept = function(low), function(high), 0
+    if at_low <= 0.0:
+        return low
+    while at_high < 0.0 and high - low > _CLOSE * high:
+        middle = high - at_high * (high - low) / (at_high - at_low)
+        value = function(middle)
+        if value > 0.0:
+            low, at_low = middle, value
+            at_high *= 0.5 if kept > 0 else 1.0
+            kept = 1
+        else:
+            high, at_high = middle, value
+            at_low *= 0.5 if kept < 0 else 1.0
+            kept = -1
+    return high
