@@ -7,14 +7,17 @@ import logging
 import re
 from pathlib import Path
 
+import numpy as np
 import pytest
 from drawn_trials import drawn_trial
+from matplotlib.figure import Figure
 from PIL import Image
 
 from elbowscrew import Settings, analyze, save_analysis, simulate_trial
 from elbowscrew.cli import main
 from elbowscrew.errors import UsageError
-from elbowscrew.report.figure_files import figure_files
+from elbowscrew.plots.style import new_figure, publication_style, settle
+from elbowscrew.report.figure_files import figure_files, files_of
 from elbowscrew.view.figure_names import FIGURE_ENTRIES, USUAL_FIGURES, chosen_figures
 
 
@@ -70,3 +73,24 @@ def test_all_figures_are_every_one() -> None:
     assert chosen_figures(None) == USUAL_FIGURES
     with pytest.raises(ValueError, match="figures"):
         Settings.model_validate({"figures": ("thta",)})
+
+
+def test_a_png_has_the_pixels_that_matplotlib_writes() -> None:
+    def drawing() -> Figure:
+        figure = new_figure(40.0, 20.0)
+        figure.add_subplot().plot([0.0, 1.0, 0.5], color="#D55E00")
+        return figure
+
+    content = files_of({"line": drawing}, ["png"])["line.png"]
+    with publication_style(None):
+        figure = drawing()
+        settle(figure)
+        stream = io.BytesIO()
+        figure.savefig(stream, format="png")
+    with Image.open(io.BytesIO(content)) as found, Image.open(stream) as expected:
+        found.verify()  # the checksums
+        assert found.info["dpi"] == pytest.approx((300.0, 300.0), abs=0.02)
+        expected_pixels = np.asarray(expected.convert("RGB"))
+    with Image.open(io.BytesIO(content)) as found:
+        assert found.mode == "RGB"
+        assert np.array_equal(np.asarray(found), expected_pixels)
