@@ -261,6 +261,33 @@ def test_the_stated_uncertainty_covers_minimum_jerk() -> None:
     assert found.told.mean() < 0.1
 
 
+def test_the_stated_uncertainty_covers_strokes_back_at_another_speed() -> None:
+    found = coverage(80, first=900, uneven=True)
+    inside = (np.abs(found.error) <= 1.96 * found.sd) | (np.abs(found.error) < 1e-3)
+    assert inside.mean(axis=0).min() >= 0.9, inside.mean(axis=0)
+
+
+@pytest.mark.parametrize("back", [0.12, 0.2, 0.4])
+def test_a_fast_stroke_moves_no_cut_of_the_slow_one_beside_it(back: float) -> None:
+    motion = Motion().hold(0.5)
+    for _ in range(3):
+        motion.cycle(110.0, 1.2, 0.1, back).hold(0.5)
+    for rate_hz in (100.0, 250.0):
+        found = cuts_of(motion, 0.15, rate_hz).cycles
+        assert np.abs(found.times_s - np.array(motion.cycles)).max() < 0.012
+
+
+@pytest.mark.parametrize(("top", "rate_hz", "noise"), [(8.0, 60.0, 0.8), (6.0, 100.0, 0.6)])
+def test_noise_on_a_long_top_does_not_move_its_middle(top: float, rate_hz: float, noise: float) -> None:
+    motion = Motion().hold(0.5)
+    for _ in range(3):
+        motion.cycle(top, 0.3, 1.0).hold(0.6)
+    for seed in range(10, 20):
+        found = motion.trial(rate_hz, noise, np.random.default_rng([5, seed])).found().cycles
+        off = np.abs(found.inversion_s - np.array(motion.cycles)[:, 1])
+        assert (off < 3.0 * found.inversion_sd_s).all(), (off, found.inversion_sd_s)
+
+
 @pytest.mark.parametrize("law", LAWS)
 def test_a_foot_by_another_law_is_right_or_in_doubt(law: str) -> None:
     found = coverage(60, first=300, law=LAWS[law])

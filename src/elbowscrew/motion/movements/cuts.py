@@ -19,8 +19,9 @@ from elbowscrew.motion.movements.boundaries import (
     no_movements,
 )
 from elbowscrew.motion.movements.cycles import Flanks, cycles_of, flanks_of
+from elbowscrew.motion.movements.pace import paced_swings_of
 from elbowscrew.motion.movements.rests import Strokes, strokes_of
-from elbowscrew.motion.movements.swings import fast_content, noise_of, swings_of
+from elbowscrew.motion.movements.swings import fast_content, noise_of
 from elbowscrew.motion.movements.unseen import hidden_stretches
 from elbowscrew.motion.tracking.inserted import recorded_rows
 
@@ -81,7 +82,7 @@ def cut(
         )
     even = _even(twist, elapsed, rate_hz, known)
     sigma = _white_noise(twist) if noise is None else noise
-    swings = swings_of(even, rate_hz, sigma, least_swing)
+    swings = paced_swings_of(even, rate_hz, sigma, least_swing)
     gaps = long_gaps(elapsed, known)
     strokes = strokes_of(swings, gaps)
     flanks = flanks_of(swings, strokes)

@@ -10,6 +10,7 @@ from elbowscrew.geometry.arrays import Float, Index
 from elbowscrew.motion.movements.boundaries import REASONS, Cycles, Reasons, duration_of, gap_at
 from elbowscrew.motion.movements.feet import (
     GAP_SD,
+    HIGHEST_SHARE,
     LAW_SD,
     LOW_SHARE,
     Feet,
@@ -299,21 +300,25 @@ def _inversion(swings: Swings, flanks: Flanks, k: int) -> tuple[float, float]:
     smooth, index = swings.smooth, int(flanks.tops[k])
     top = int(flanks.reversals[index])
     rise, fall = float(flanks.rising.half[k]), float(flanks.falling.half[k])
-    scale = foot_scale(LOW_SHARE)
-    depth = LOW_SHARE * (flanks.values[index] - flanks.values[[index - 1, index + 1]])
-    before = crossing(smooth, top, int(rise), float(smooth[top] - depth[0]))
-    after = crossing(smooth, top, int(np.ceil(fall)), float(smooth[top] - depth[1]))
-    out, out_gain = unsmoothed(scale * (before - rise), swings.cutoff)
-    back, back_gain = unsmoothed(scale * (fall - after), swings.cutoff)
+    rises = flanks.values[index] - flanks.values[[index - 1, index + 1]]
+    # From a long top the noise alone may lead down by as much as its largest swing.
+    shares = np.minimum(LOW_SHARE + swings.noise_swing / rises, HIGHEST_SHARE)
+    scales = [foot_scale(share) for share in shares.tolist()]
+    levels = (smooth[top] - shares * rises).tolist()
+    before = crossing(smooth, top, int(rise), levels[0])
+    after = crossing(smooth, top, int(np.ceil(fall)), levels[1])
+    out, out_gain = unsmoothed(scales[0] * (before - rise), swings.cutoff)
+    back, back_gain = unsmoothed(scales[1] * (fall - after), swings.cutoff)
     top_feet = flanks.top_feet[k].tolist()
     out = top_feet[0] - rise if np.isfinite(top_feet[0]) else out
     back = fall - top_feet[1] if np.isfinite(top_feet[1]) else back
     # What is unknown of the law, alike on both sides, leaves the middle between them where it is.
     half_vars = float(flanks.rising.half_var[k]), float(flanks.falling.half_var[k])
     variance = 0.25 * LAW_SD**2 * (out - back) ** 2
-    for gain, at, half_var in zip((out_gain, back_gain), (before, after), half_vars, strict=True):
+    gains = out_gain * scales[0], back_gain * scales[1]
+    for gain, at, half_var in zip(gains, (before, after), half_vars, strict=True):
         slope = max(slope_at(smooth, at), 1e-12)
-        variance += 0.25 * ((gain * scale * swings.smooth_noise / slope) ** 2 + (gain * scale - 1.0) ** 2 * half_var)
+        variance += 0.25 * ((gain * swings.smooth_noise / slope) ** 2 + (gain - 1.0) ** 2 * half_var)
     if rise + out <= fall - back:
         return 0.5 * (rise + out + fall - back), variance
     return rise + (fall - rise) * out / max(out + back, 1e-12), variance

@@ -10,7 +10,7 @@ from elbowscrew.geometry.arrays import Float, Index
 
 # The foot is told from the height of 10 % of the rise, or from five times the noise, but from 30 % at most.
 LOW_SHARE: Final = 0.1
-_HIGHEST_SHARE: Final = 0.3
+HIGHEST_SHARE: Final = 0.3
 _OVER_NOISE: Final = 5.0
 # The filter stills the ends of the record: whether the joint moves there is seen over so many periods of its cut-off.
 _PERIODS_AT_AN_END: Final = 0.75
@@ -99,7 +99,7 @@ def feet_of(
     ends = zip(lows.tolist(), tops.tolist(), low_values.tolist(), top_values.tolist(), strict=True)
     for k, (low, top, base, peak) in enumerate(ends):
         rise = max(peak - base, _LEAST_SLOPE)
-        share = min(max(LOW_SHARE, _OVER_NOISE * noise / rise), _HIGHEST_SHARE)
+        share = min(max(LOW_SHARE, _OVER_NOISE * noise / rise), HIGHEST_SHARE)
         half = crossing(smooth, top, low, base + 0.5 * rise)
         inner = int(half) if low < top else int(np.ceil(half))
         foot = crossing(smooth, inner, low, base + share * rise)

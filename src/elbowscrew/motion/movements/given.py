@@ -9,7 +9,7 @@ import numpy as np
 from elbowscrew.errors import SettingError
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.motion.movements.boundaries import Cycles
-from elbowscrew.motion.movements.swings import swings_of
+from elbowscrew.motion.movements.pace import paced_swings_of
 
 # Times that differ by less are the same: they may have been written with six decimals.
 _SAME_S: Final = 1e-6
@@ -54,7 +54,7 @@ def given_cycles(times: Float, first_s: float, course: Float, elapsed: Float, ra
         before = end
     known = np.flatnonzero(np.isfinite(course))
     even = np.arange(round(span * rate_hz) + 1) / rate_hz
-    swings = swings_of(np.interp(even, elapsed[known] - elapsed[0], course[known]), rate_hz)
+    swings = paced_swings_of(np.interp(even, elapsed[known] - elapsed[0], course[known]), rate_hz)
     turns, senses = np.empty(len(times)), np.zeros(len(times))
     for k, (start, end) in enumerate((times - first_s).tolist()):
         inside = slice(int(np.searchsorted(even, start)), int(np.searchsorted(even, end, side="right")))

@@ -91,7 +91,13 @@ class Swings(NamedTuple):
         return self.cutoff_hz / self.rate_hz
 
 
-def swings_of(twist: Float, rate_hz: float, noise: float | None = None, least_swing: float | None = None) -> Swings:
+def swings_of(
+    twist: Float,
+    rate_hz: float,
+    noise: float | None = None,
+    least_swing: float | None = None,
+    cutoff_hz: float | None = None,
+) -> Swings:
     """Smooth a rotation and find where it turns.
 
     Parameters
@@ -103,6 +109,8 @@ def swings_of(twist: Float, rate_hz: float, noise: float | None = None, least_sw
         Standard deviation of its white noise, radians; by third differences if not given.
     least_swing : float, optional
         Swing (rad) that is known to count: it takes the place of the threshold and of the local rule.
+    cutoff_hz : float, optional
+        Of the filter; by the motion's own rhythm if not given.
 
     References
     ----------
@@ -110,14 +118,13 @@ def swings_of(twist: Float, rate_hz: float, noise: float | None = None, least_sw
     The zero-phase filter: Winter 2009.
     """
     sigma = noise_of(twist) if noise is None else noise
-    cutoff_hz = _cutoff(twist, rate_hz, sigma)
+    cutoff_hz = _cutoff(twist, rate_hz, sigma) if cutoff_hz is None else cutoff_hz
     level = twist.copy()
     reach = round(_END_SHARE * rate_hz / cutoff_hz)
     level[0], level[-1] = _end_level(twist, reach), _end_level(twist[::-1], reach)
     smooth = lowpass_series(level, rate_hz, cutoff_hz)
     smooth_noise = sigma * float(np.sqrt(noise_gain(rate_hz, cutoff_hz)))
-    draws = max(2.0 * cutoff_hz * twist.size / rate_hz, _FEWEST_DRAWS)
-    noise_swing = 2.0 * float(np.sqrt(2.0 * np.log(draws))) * smooth_noise
+    noise_swing = largest_noise_swing(sigma, twist.size, rate_hz, cutoff_hz)
     least = max(noise_swing, _LEAST_SWING, _RANGE_SHARE * float(np.ptp(smooth))) if least_swing is None else least_swing
     every = turning_points(smooth, least)
     kept, close = every, np.empty(0, dtype=np.int64)
@@ -141,6 +148,12 @@ def swings_of(twist: Float, rate_hz: float, noise: float | None = None, least_sw
         small_rad=_small_strokes(every, kept, smooth),
         fast_rad=_left_out(level, smooth, rate_hz, cutoff_hz),
     )
+
+
+def largest_noise_swing(noise: float, count: int, rate_hz: float, cutoff_hz: float) -> float:
+    """Twice the largest deviation that white noise reaches in so many samples under the filter, in its unit."""
+    draws = max(2.0 * cutoff_hz * count / rate_hz, _FEWEST_DRAWS)
+    return 2.0 * float(np.sqrt(2.0 * np.log(draws) * noise_gain(rate_hz, cutoff_hz))) * noise
 
 
 def noise_of(series: Float) -> float:
