@@ -112,7 +112,7 @@ def prepared(trials: int) -> None:
                     **chosen,
                 )
                 measured = measure(seen, settings)
-                found = measured_joint_axis(measured, measured_mean_axis(measured), settings).hinge
+                found = measured_joint_axis(measured, measured_mean_axis(measured), settings).axis.hinge
                 assert found is not None
                 assert measured.proximal is not None
                 assert measured.proximal.marker_offsets is not None

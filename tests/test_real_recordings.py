@@ -84,7 +84,7 @@ def axis_of_part(measured: Measurement, mean: MeanAxis, rows: slice) -> JointAxi
     gain = measured.noise_gain[rows]
     axis = estimate_joint_axis(
         part, measured.course[rows], line, measured.noise, gain, express_in="proximal", robust=False, markers=markers
-    )
+    ).axis
     _, poses, covariance = fitted_frames(part, measured.noise, gain)
     kind = identify_joint(poses, covariance, joint.reference, noise_known=True, one=axis.preferred)
     return axis_of_type(axis, kind)

@@ -10,13 +10,24 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 from typer.testing import CliRunner
 
-from elbowscrew import Settings, analyze, read_recording, simulate_trial
+from elbowscrew import Settings, analyze, read_landmarks, read_recording, simulate_trial
 from elbowscrew.cli.app import app
+from elbowscrew.geometry.arrays import Float
 
 NAMES = ("elbow_paper", "elbow_moving_arm_mm", "elbow_row_tagged", "knee", "elbow_left")
 ALL = (*NAMES, "elbow_natural")
+# Of a right elbow at rest in the arm's frame, mm.
+AT_REST = {
+    "EL": np.array([37.6, -128.1, 7.5]),
+    "EM": np.array([-25.6, -130.9, 17.5]),
+    "GH": np.array([12.0, 140.0, -94.0]),
+    "US": np.array([24.0, -368.0, 60.0]),
+    "RS": np.array([58.0, -366.0, 22.0]),
+}
+WITH_LANDMARKS = ("elbow_left", "elbow_natural")
 
 
 @pytest.mark.parametrize("name", ALL)
@@ -35,6 +46,10 @@ def test_the_documented_command_makes_the_sample(
     mine, theirs = (json.loads((folder / f"{name}.truth.json").read_text("utf-8")) for folder in (samples, tmp_path))
     assert mine["settings"] == theirs["settings"]
     assert _numbers(mine) == pytest.approx(_numbers(theirs), abs=1e-9)
+    landmarks = [folder / f"{name}.landmarks.toml" for folder in (samples, tmp_path)]
+    assert [path.is_file() for path in landmarks] == [name in WITH_LANDMARKS] * 2
+    if name in WITH_LANDMARKS:
+        assert landmarks[0].read_text("utf-8") == landmarks[1].read_text("utf-8")
 
 
 def _numbers(value: Any) -> list[float]:
@@ -103,3 +118,59 @@ def test_the_natural_elbow_has_two_axes_within_the_noise(samples: Path) -> None:
         assert np.sqrt(np.mean(error**2)) < 0.6  # the reference frame's own error among them
     ranges = [np.ptp(truth["joint_angles"][name]) for name in ("angle1_deg", "angle2_deg")]
     assert ranges == pytest.approx([130.0, 60.0], abs=0.1)
+
+
+@pytest.mark.parametrize("name", WITH_LANDMARKS)
+def test_the_bones_of_a_sample_turn_as_its_truth_says(samples: Path, name: str) -> None:
+    """By matrices: the frames of humerus and forearm at rest, then the truth's rotations between them."""
+    truth = json.loads((samples / f"{name}.truth.json").read_text())
+    landmarks = read_landmarks(samples / f"{name}.landmarks.toml")
+    analysis = analyze(read_recording(samples / f"{name}.csv"), landmarks=landmarks)
+    assert analysis.anatomy is not None
+    assert not {warning.code for warning in analysis.warnings if warning.code.startswith("landmark")}
+    left = landmarks.side == "left"
+    mirror = np.diag([-1.0 if left else 1.0, 1.0, 1.0])
+    points = {mark: mirror @ AT_REST[mark] for mark in AT_REST}
+    humerus = bone(points["GH"] - (points["EL"] + points["EM"]) / 2, points["EL"] - points["EM"], left=left)
+    forearm = bone((points["EL"] + points["EM"]) / 2 - points["US"], points["RS"] - points["US"], left=left)
+    axes = [truth["two_axes"][f"axis{k}"] for k in (1, 2)] if "two_axes" in truth else [truth["axis"]]
+    turn = Rotation.identity()
+    for k, axis in enumerate(axes, start=1):
+        angle = np.radians(truth["joint_angles"][f"angle{k}_deg"])
+        turn = turn * Rotation.from_rotvec(np.outer(angle, axis["proximal"]["direction"]))
+    expected = (Rotation.from_matrix(humerus).inv() * turn * Rotation.from_matrix(forearm)).as_euler("ZXY")
+    expected = expected * ([1.0, -1.0, -1.0] if left else [1.0, 1.0, 1.0])
+    found = analysis.anatomy
+    for angle, column in zip((found.flexion, found.carrying_angle, found.pronation), expected.T, strict=True):
+        assert np.degrees(angle) == pytest.approx(np.degrees(column), abs=1.5)  # the reference's noise among them
+        assert np.degrees(np.sqrt(np.mean((angle - column) ** 2))) < 0.7
+    line = points["EL"] - points["EM"]
+    cosine = abs(line @ axes[0]["proximal"]["direction"]) / np.linalg.norm(line)
+    limits = found.functional_axis_angle
+    assert 2.0 * limits.low - limits.value <= np.arccos(cosine) <= 2.0 * limits.high - limits.value
+
+
+def test_a_mirrored_motion_has_the_same_anatomy() -> None:
+    right, left = (
+        simulate_trial(
+            side=side, joint_type="two-axes", marker_noise_mm=0.0, frames=100, inversion=45, proximal="moving"
+        )
+        for side in ("right", "left")
+    )
+    found = [analyze(trial.recording, landmarks=trial.landmarks).anatomy for trial in (right, left)]
+    assert found[0] is not None
+    assert found[1] is not None
+    for name in ("flexion", "carrying_angle", "pronation"):
+        assert getattr(found[1], name) == pytest.approx(getattr(found[0], name), abs=1e-9)
+        assert np.ptp(getattr(found[0], name)) > np.radians(10.0)
+    assert found[1].functional_axis_angle.value == pytest.approx(found[0].functional_axis_angle.value, abs=1e-6)
+    mirror = [-1.0, 1.0, 1.0]
+    assert found[1].joint_center_distal == pytest.approx(mirror * found[0].joint_center_distal, abs=1e-12)
+
+
+def bone(proximal: Float, radial: Float, *, left: bool) -> Float:
+    """The ISB's frame of a bone: Y along it, X forward, Z to the subject's right."""
+    y = proximal / np.linalg.norm(proximal)
+    x = np.cross(y, -radial if left else radial)
+    x = x / np.linalg.norm(x)
+    return np.stack([x, y, np.cross(x, y)], axis=1)

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from elbowscrew import Settings, Simulation, analyze, read_recording, simulate_trial
+from elbowscrew import Settings, Simulation, analyze, read_landmarks, read_recording, simulate_trial
 from elbowscrew.choices import JOINT_NAMES, JointName
 from elbowscrew.errors import OutputError, UsageError
 from elbowscrew.geometry.quaternion import rotation_matrix_from_quat
@@ -320,3 +320,19 @@ def _pose(dual_quat: Any) -> tuple[Any, Any]:
 def _relative(recording: Any) -> tuple[Any, Any]:
     (A, a), (F, f) = (_pose(body.dual_quat_lab_body) for body in recording.bodies)
     return np.swapaxes(A, 1, 2) @ F, np.einsum("nji,nj->ni", A, f - a)
+
+
+def test_an_elbows_landmarks_are_written_as_they_are_read(tmp_path: Path) -> None:
+    trial = simulate_trial(side="left", **SHORT)
+    *_, path = save_simulation(trial, tmp_path / "t.csv", landmarks=True)
+    found, made = read_landmarks(path), trial.landmarks
+    assert path.name == "t.landmarks.toml"
+    assert made is not None
+    assert found.side == made.side == "left"
+    for name, mark in made.by_name.items():
+        assert found.by_name[name].frame == mark.frame
+        assert found.by_name[name].point == pytest.approx(mark.point, abs=5.1e-6)
+    save_simulation(trial, tmp_path / "t.csv", landmarks=True, force=True)
+    with pytest.raises(UsageError, match="only an elbow has landmarks"):
+        save_simulation(simulate_trial(joint="knee", **SHORT), tmp_path / "k.csv", landmarks=True)
+    assert not list(tmp_path.glob("k.*"))

@@ -92,6 +92,8 @@ KEYFRAME_SOURCES: Final[tuple[KeyframeSource, ...]] = get_args(KeyframeSource)
 NOISE_SOURCES: Final[tuple[NoiseSource, ...]] = get_args(NoiseSource)
 JOINT_NAMES: Final[tuple[JointName, ...]] = get_args(JointName)
 STATED_JOINTS: Final[tuple[StatedJoint, ...]] = get_args(StatedJoint)
+FUNCTIONAL_AXIS_WORDS: Final[dict[str, str]] = {"joint_axis": "joint axis", "axis1": "first of the two axes"}
+"""What the axis that a joint flexes about is called, by the joint's type, after "the"."""
 JOINT_TYPE_WORDS: Final[dict[str, str]] = {
     "rigid": "a rigid joint",
     "hinge": "a hinge",

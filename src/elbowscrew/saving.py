@@ -178,8 +178,9 @@ def save_simulation(
     *,
     layout: Literal["motive", "row-tagged"] = "motive",
     length_unit: Literal["m", "cm", "mm"] = "m",
+    landmarks: bool = False,
     force: bool = False,
-) -> tuple[Path, Path]:
+) -> tuple[Path, ...]:
     """Write a synthetic trial in an OptiTrack layout, and the truth about it beside it.
 
     Parameters
@@ -192,18 +193,20 @@ def save_simulation(
         Motive's columns 1.23, or the row-tagged layout 1.1.
     length_unit : {"m", "cm", "mm"}
         Unit in the export; the row-tagged layout has meters always.
+    landmarks : bool
+        Write the elbow's landmarks, too, to the same name with ``.landmarks.toml``.
     force : bool
         Replace files of an earlier simulation.
 
     Returns
     -------
     tuple of Path
-        The export and the truth.
+        The export, the truth and, if asked for, the landmarks.
 
     Raises
     ------
     UsageError
-        If the layout does not have the unit, or the path is no name of a file.
+        If the layout does not have the unit, the joint has no landmarks, or the path is no name of a file.
     OutputError
         If a file exists, or the disk does not take it.
 
@@ -215,6 +218,7 @@ def save_simulation(
     ...     [path.name for path in save_simulation(trial, f"{folder}/trial.csv")]
     ['trial.csv', 'trial.truth.json']
     """
+    from elbowscrew.results.landmarks_writer import landmarks_lines
     from elbowscrew.results.optitrack_writer import motive_columns_lines, row_tagged_lines
 
     export = Path(path)
@@ -235,8 +239,14 @@ def save_simulation(
         export.name: lines,
         truth.name: [json.dumps(statement, indent=1)],
     }
+    if landmarks:
+        if trial.landmarks is None:
+            msg = "--landmarks: only an elbow has landmarks; leave the option out, or give --joint elbow"
+            raise UsageError(msg)
+        about = "landmarks of a synthetic elbow, in the frames of its two bodies"
+        contents[export.with_suffix(".landmarks.toml").name] = landmarks_lines(trial.landmarks, about)
     write_files(export.parent, contents, replaceable=("synthetic",) if force else None)
-    return export, truth
+    return tuple(export.parent / name for name in contents)
 
 
 def save_paper_figures(folder: str | os.PathLike[str]) -> tuple[Path, ...]:

@@ -14,9 +14,18 @@ from elbowscrew.geometry import pose_from_points, quaternion
 from elbowscrew.geometry.arrays import Bool, Float
 from elbowscrew.geometry.dual_quaternion import dual_quat_from_pose, multiply, transform_points
 from elbowscrew.joints import joints_of
-from elbowscrew.model import Recording, RigidBody, TrackingLoss
+from elbowscrew.model import Landmarks, Recording, RigidBody, TrackingLoss
 from elbowscrew.motion.interpolation.laws import LAWS
-from elbowscrew.simulated_joint import Geometry, JointCourse, ball, mirrors, odd_course, one_axis, two_axes
+from elbowscrew.simulated_joint import (
+    Geometry,
+    JointCourse,
+    ball,
+    elbow_landmarks,
+    mirrors,
+    odd_course,
+    one_axis,
+    two_axes,
+)
 
 _ARM_POSITION: Final = np.array([0.31, 1.24, -0.18])
 _ARM_TURN: Final = np.array([0.12, 0.55, -0.2])
@@ -185,11 +194,14 @@ class SimulatedTrial:
         The markers of each body, by the body's name, in the laboratory, meters; NaN where not seen.
     truth : dict
         The joint's type, axes or center, and angles, ready for JSON; units in the names (`docs/reference/simulate.md`).
+    landmarks : Landmarks or None
+        Of an elbow: where its bones are.
     """
 
     recording: Recording
     markers: Mapping[str, Float]
     truth: dict[str, Any]
+    landmarks: Landmarks | None = None
 
 
 def simulate_trial(simulation: Simulation | None = None, **settings: Any) -> SimulatedTrial:
@@ -258,7 +270,8 @@ def simulate_trial(simulation: Simulation | None = None, **settings: Any) -> Sim
         truth["slide_mm"] = (1000.0 * course.slide).tolist()
     if wanted.skin_mm > 0.0:
         truth["skin"] = {name: moved.truth for name, moved in zip(names, skin, strict=True)}
-    return SimulatedTrial(recording=recording, markers=markers, truth=truth)
+    landmarks = elbow_landmarks(wanted.side or "right") if wanted.joint == "elbow" else None
+    return SimulatedTrial(recording=recording, markers=markers, truth=truth, landmarks=landmarks)
 
 
 def _course(

@@ -34,7 +34,21 @@ def _study_vector(stem: str, quantity: Quantity, *keys: str) -> tuple[StudyColum
 _MEAN: Final = ("motion", "mean_axis")
 _JOINT: Final = ("motion", "joint_axis")
 _TWO: Final = ("motion", "joint_numbers", "two_axes")
+_BONES: Final = ("motion", "anatomy")
 _MODEL: Final = "interpolation"
+
+
+def _study_range(name: str) -> tuple[StudyColumn, ...]:
+    """Range of an anatomical angle."""
+    kinds = ("start", "min", "max", "range")
+    return tuple(_study(Quantity.ANGLE, *_BONES, name, f"{kind}_deg", name=f"{name}_{kind}") for kind in kinds)
+
+
+def _study_limits(quantity: Quantity, name: str, key: str) -> tuple[StudyColumn, ...]:
+    """Put a number of the axis against the bones beside its 95 % limits."""
+    ends = ("", "_low", "_high")
+    return tuple(_study(quantity, *_BONES, f"{key}{end}", name=f"{name}{end}") for end in ends)
+
 
 STUDY_COLUMNS: Final = (
     _study(Quantity.INTEGER, "trial", "frames"),
@@ -88,6 +102,14 @@ STUDY_COLUMNS: Final = (
     _study(Quantity.ANGLE, *_JOINT, "axis_cone95_deg", name="joint_axis_cone95"),
     _study(Quantity.LENGTH, *_JOINT, "point_radius95_mm", name="joint_point_radius95"),
     _study(Quantity.LENGTH, *_JOINT, "pitch_mm_per_rad", name="joint_pitch", suffix="_per_rad"),
+    _study(Quantity.LABEL, *_BONES, "side", name="landmarks_side"),
+    *_study_range("flexion"),
+    *_study_range("carrying_angle"),
+    *_study_range("pronation"),
+    _study(Quantity.LABEL, *_BONES, "axis", name="epicondyle_axis"),
+    *_study_limits(Quantity.ANGLE, "epicondyle_angle", "axis_angle_deg"),
+    *_study_limits(Quantity.LENGTH, "epicondyle_distance", "axis_distance_mm"),
+    *_study_vector("joint_center", Quantity.LENGTH, *_BONES, "joint_center_in_proximal_mm"),
     _study(Quantity.NUMBER, _MODEL, "covered_share"),
     _study(Quantity.ANGLE, _MODEL, "rmse_theta_deg"),
     _study(Quantity.ANGLE, _MODEL, "max_theta_error_deg"),

@@ -122,7 +122,9 @@ def rows_after(told: Told, first: str) -> list[list[str]]:
     """Rows of the table whose head begins with a word."""
     rows = told.page.rows
     (start,) = (k for k, row in enumerate(rows) if row and row[0] == first)
-    heads = {"Estimate", "Type tried", "Axis", "Frame", "No.", "Phase", "Error of the model", "Body", "Option"}
+    heads = {
+        "Estimate", "Type tried", "Axis", "Frame", "No.", "Angle, deg", "Phase", "Error of the model", "Body", "Option",
+    }  # fmt: skip
     found = []
     for row in rows[start + 1 :]:
         if row[0] in heads:
@@ -251,6 +253,21 @@ def test_tables_of_the_model(told: Told) -> None:
         ["Screw axis, mm", dec(model["rms_axis_distance_mm"]), dec(model["max_axis_distance_mm"])],
         ["RMS displacement, mm", dec(model["rms_displacement_mm"]), dec(model["max_rms_displacement_mm"])],
     ]
+
+
+def test_table_of_the_bones_angles(told: Told) -> None:
+    anatomy = told.summary["motion"]["anatomy"]
+    if anatomy is None:
+        assert "Angle, deg" not in told.page.text
+        return
+    rows = rows_after(told, "Angle, deg")
+    assert [[row[0], *row[2:]] for row in rows] == [
+        [name, *(dec(anatomy[key][f"{kind}_deg"], 1) for kind in ("start", "min", "max", "range"))]
+        for name, key in (("Flexion", "flexion"), ("Carrying angle", "carrying_angle"), ("Pronation", "pronation"))
+    ]
+    assert any(
+        text.startswith(f"{anatomy['side'].capitalize()} arm. Angles of the forearm") for text in told.page.texts
+    )
 
 
 def test_table_of_the_tracking(told: Told) -> None:
@@ -399,7 +416,11 @@ def texts_with_numbers(told: Told) -> Iterator[tuple[str, list[str]]]:
     )
     if joint["anatomy"] is not None:
         anatomy = joint["anatomy"]
-        yield "Left arm. The joint axis lies", [dec(anatomy["axis_angle_deg"], 1), dec(anatomy["axis_distance_mm"], 1)]
+        ends = [f"{name}{end}" for name in ("axis_angle_deg", "axis_distance_mm") for end in ("", "_low", "_high")]
+        yield "The joint axis lies", [dec(anatomy[end]) for end in ends]
+        yield "In brackets stand", ["95", dec(anatomy["landmark_sensitivity_deg_per_mm"])]
+        centers = [vec(anatomy[f"joint_center_in_{body}_mm"], 1) for body in ("proximal", "distal")]
+        yield "The joint’s center is the point midway", centers[0] + centers[1]
     severe = sum(warning["severity"] == "warning" for warning in summary["warnings"])
     yield r"\d+ warnings?|\d+ notes?|No warnings", [str(n) for n in (severe, len(summary["warnings"]) - severe) if n]
     yield "elbowscrew, version", []
@@ -412,7 +433,7 @@ def test_every_other_number_on_the_page_is_looked_at(told: Told) -> None:
     for text in told.page.texts:
         # Two badges side by side have no blank between them.
         found = numbers(re.sub(r"warnings?(?=\d)", r"\g<0> ", text), "BSD-3", *names_of(told))
-        if not found or text.startswith(("Poses of the segments", "Pennestrì", "e0 to e3")) or "→" in text:
+        if not found or text.startswith(("Poses of the segments", "Pennestrì", "Wu G,", "e0 to e3")) or "→" in text:
             continue
         if any(text.startswith(message) for message in messages):
             continue
@@ -455,6 +476,7 @@ def test_terminal(told: Told) -> None:
         "Mean axis": [*vec(motion["mean_axis"]["direction"], 4), *vec(motion["mean_axis"]["point_mm"], 1)],
         "Joint": numbers(told.joint["joint_type"]["reason"]),
         "Joint axis": joint_axis_numbers(told),
+        **anatomy_numbers(motion["anatomy"]),
         "Dispersion": [
             dec(motion["axis_dispersion_deg"]),
             dec(motion["axis_dispersion_all_frames_deg"]),
@@ -479,6 +501,19 @@ def test_terminal(told: Told) -> None:
     assert "still" in said["Bodies"] or trial["proximal"] is not None
     for name in ("filled", "lost"):
         assert (name in said["Frames"]) == any(text.endswith(name) for text in said["Frames"].split(", "))
+
+
+def anatomy_numbers(anatomy: Any) -> dict[str, list[str]]:
+    if anatomy is None:
+        return {}
+    angles = [anatomy[name] for name in ("flexion", "carrying_angle", "pronation")]
+    ends = [f"{name}{end}" for name in ("axis_angle_deg", "axis_distance_mm") for end in ("", "_low", "_high")]
+    return {
+        "Anatomy": [dec(angle[f"{kind}_deg"]) for angle in angles for kind in ("min", "max", "start")],
+        "Epicondyles": [
+            *(dec(anatomy[end]) for end in ends), "95", f"{anatomy['landmark_sensitivity_deg_per_mm']:.2g}"
+        ],
+    }  # fmt: skip
 
 
 def joint_axis_numbers(told: Told) -> list[str]:

@@ -47,6 +47,7 @@ NOT_IN_TABLES_OF_JOINT = {
     r"noise\.(proximal|distal)(\..*)?": (
         "tests/motion/screws/test_uncertainty.py::test_each_source_finds_the_noise_there_is"
     ),
+    r"anatomy\.axis_(angle_deg|distance_mm)_(low|high)": "tests/motion/anatomy/test_functional_axis.py",
     r"unexplained_share": "tests/motion/joint/test_joint_axis.py",
     r"wander(\..*)?|mean_axis(\..*)?": "tests/motion/joint/test_told_wander.py",
 }

@@ -15,6 +15,7 @@ from motive_files import write_columns
 
 from elbowscrew.cli import main
 
+BONES = ("motion", "anatomy")
 # Names that say where they come from otherwise than by their key.
 NAMED: dict[str, tuple[str | int, ...]] = {
     "proximal_body": ("trial", "proximal", "name"),
@@ -42,6 +43,16 @@ NAMED: dict[str, tuple[str | int, ...]] = {
     },
     "center_radius95": ("motion", "joint_numbers", "ball", "radius95_mm"),
     "axis_wander": ("motion", "joint_numbers", "wander", "size_deg"),
+    "landmarks_side": (*BONES, "side"),
+    **{
+        f"{angle}_{kind}": (*BONES, angle, f"{kind}_deg")
+        for angle in ("flexion", "carrying_angle", "pronation")
+        for kind in ("start", "min", "max", "range")
+    },
+    "epicondyle_axis": (*BONES, "axis"),
+    **{f"epicondyle_angle{end}": (*BONES, f"axis_angle_deg{end}") for end in ("", "_low", "_high")},
+    **{f"epicondyle_distance{end}": (*BONES, f"axis_distance_mm{end}") for end in ("", "_low", "_high")},
+    **{f"joint_center_{x}": (*BONES, "joint_center_in_proximal_mm", k) for k, x in enumerate("xyz")},
     "elbowscrew": ("elbowscrew",),
     **{f"axis_{x}": ("motion", "mean_axis", "direction", k) for k, x in enumerate("xyz")},
     **{f"point_{x}": ("motion", "mean_axis", "point_mm", k) for k, x in enumerate("xyz")},
@@ -77,7 +88,10 @@ def test_cells_are_those_of_the_results(
     for name in ("elbow_left.csv", "knee.csv"):
         shutil.copy(root / "sample_data" / name, data / name)
     write_columns(data / "ball.csv", two_rotations)
-    (data / "trials.csv").write_text("path,distal,proximal\nelbow_left.csv,,\nknee.csv,,\nball.csv,Thigh,none\n")
+    (data / "trials.csv").write_text(
+        "path,distal,proximal,landmarks\nelbow_left.csv,,,arm.toml\nknee.csv,,,\nball.csv,Thigh,none,\n"
+    )
+    shutil.copy(root / "sample_data" / "elbow_left.landmarks.toml", data / "arm.toml")
     units = ["--angle-unit", angle, "--length-unit", length]
     asked = ["batch", str(data / "trials.csv"), "-o", str(out), "-q", "--figure-format", "none"]
     assert main([*asked, *units]) == 0, capsys.readouterr().err
@@ -87,7 +101,7 @@ def test_cells_are_those_of_the_results(
     for _, row in table.iterrows():
         summary = json.loads((out / row["trial"] / "summary.json").read_text(encoding="utf-8"))
         assert row["path"].endswith(summary["source"]["name"])
-        for column in table.columns.drop(["trial", "path", "distal", "proximal"]):
+        for column in table.columns.drop(["trial", "path", "distal", "proximal", "landmarks"]):
             match = UNIT.search(column)
             value = found(summary, column[: match.start()] if match else column)
             cell = row[column]
@@ -102,5 +116,6 @@ def test_cells_are_those_of_the_results(
                 assert match is None or match[1] in (angle, length), column
     assert {"", "screw_hinge"} <= set(table["joint_model"])
     assert {0, 1} == set(table["signed"])
+    assert list(table["landmarks_side"]) == ["", "left", ""]
     sides = set(zip(table["joint_name"], table["joint_side"], strict=True))
     assert sides == {("joint", ""), ("elbow", "left"), ("knee", "")}

@@ -323,9 +323,8 @@ def of_anatomy(told: Told) -> set[str]:
     C, J = change_of(told), pose_of(told.joint["bodies"]["distal_in_proximal"])
     R, t = composed(J, (C[0].T, -C[0].T @ C[1]))
     axis, point = vectors(screw, "axis") @ R.T, vectors(screw, "point", "_mm") @ R.T + t
-    line, middle = (
-        np.array(anatomy[f"epicondyle_{name}"]) for name in ("direction_in_proximal", "midpoint_in_proximal_mm")
-    )
+    line = np.array(anatomy["epicondyle_direction_in_proximal"])
+    middle = np.array(anatomy["joint_center_in_proximal_mm"])
     off = angle_between(axis, np.broadcast_to(line, axis.shape))
     seen = near(table, ["axis_angle_deg"], np.minimum(off, 180.0 - off))
     foot = pierced(axis, point, line, middle)

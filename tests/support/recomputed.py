@@ -383,6 +383,7 @@ def _motion(told: Told) -> dict[str, Any]:
         "single_axis": joint["single_axis"],
         "joint_type": joint["joint_type"],
         "joint_numbers": {name: joint[name] for name in ("two_axes", "ball", "second_rotation", "wander")},
+        "anatomy": _angles_of_bones(told),
         "joint_axis": None
         if best is None
         else {
@@ -904,14 +905,33 @@ def _anatomy(told: Told) -> dict[str, Any]:
         places[name] = R.T @ (place - t) if marks[name]["body"] == "lab" else place
     line = (places["EL"] - places["EM"]) / np.linalg.norm(places["EL"] - places["EM"])
     middle = 0.5 * (places["EL"] + places["EM"])
-    fit = joint[joint["preferred"]]
+    fit = joint["mean_axis"] or joint[joint["preferred"]]
     n, p = np.array(fit["direction_in_proximal"]), np.array(fit["point_in_proximal_mm"])
     off = float(angle_between(n, line))
+    J, j = pose_of(joint["bodies"]["distal_in_proximal"])
     return {
         "side": marks["side"],
+        "axis": "joint_axis",
         "axis_angle_deg": min(off, 180.0 - off),
         "axis_distance_mm": float(np.linalg.norm(np.cross(middle - p, n))),
+        "landmark_sensitivity_deg_per_mm": float(np.degrees(1.0 / np.linalg.norm(places["EL"] - places["EM"]))),
+        "joint_center_in_proximal_mm": middle,
+        "joint_center_in_distal_mm": J.T @ (middle - j),
         "epicondyle_direction_in_proximal": line,
-        "epicondyle_midpoint_in_proximal_mm": middle,
         "landmarks_mm": places,
     }
+
+
+def _angles_of_bones(told: Told) -> dict[str, Any] | None:
+    """Ranges of the anatomical angles over the measured frames; the axis against the bones is that of joint.json."""
+    found = told.joint["anatomy"]
+    if found is None:
+        return None
+    table = told.table("anatomy")[told.screw["valid"] == 1]
+    ranges = {}
+    for name, column in (("flexion", "flexion"), ("carrying_angle", "carrying"), ("pronation", "pronation")):
+        angle = table[f"{column}_deg"].dropna()
+        low, high = angle.min(), angle.max()
+        ranges[name] = {"start_deg": angle.iloc[0], "min_deg": low, "max_deg": high, "range_deg": high - low}
+    own = ("epicondyle_direction_in_proximal", "landmarks_mm")
+    return {**{key: value for key, value in found.items() if key not in own}, **ranges}

@@ -11,7 +11,7 @@ from rich.console import Console, RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from elbowscrew.cli.render_joint import joint_axis_text, joint_text, place_text
+from elbowscrew.cli.render_joint import anatomy_rows, joint_axis_text, joint_text, place_text
 from elbowscrew.cli.text import emit, one_line, printable, rounded, tell, vector_text
 
 if TYPE_CHECKING:
@@ -86,6 +86,7 @@ def analysis_table(summary: Summary, folder: Path) -> None:
         ),
         ("Joint", joint_text(motion["joint_type"])),
         ("Joint axis", joint_axis_text(motion, located=trial["positions"])),
+        *anatomy_rows(motion["anatomy"]),
         (
             "Dispersion",
             f"median {motion['axis_dispersion_deg']:.2f} deg by equal steps of the angle, "

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Literal
 
-from elbowscrew.cli.text import vector_text
+from elbowscrew.choices import FUNCTIONAL_AXIS_WORDS
+from elbowscrew.cli.text import rounded, vector_text
 
 if TYPE_CHECKING:
     from elbowscrew.model.joint_summary_types import (
@@ -14,7 +16,7 @@ if TYPE_CHECKING:
         Vector,
         WanderSummary,
     )
-    from elbowscrew.model.summary_types import MotionSummary
+    from elbowscrew.model.summary_types import AngleRange, AnglesOfBones, MotionSummary
 
 
 def joint_text(found: JointTypeSummary) -> str:
@@ -44,6 +46,39 @@ def joint_axis_text(motion: MotionSummary, *, located: bool) -> str:
         f"each degree that a {whose_body} turns on its bone with the motion turns this axis by up to "
         f"{axis['sensitivity_deg_per_deg']:.2g} deg){beside}"
     )
+
+
+def anatomy_rows(found: AnglesOfBones | None) -> Iterator[tuple[str, str]]:
+    """Tell the bones' angles, and the axis against the line of the epicondyles."""
+    if found is None:
+        return
+    angles = ", ".join(_range_text(name, found[name]) for name in ("flexion", "carrying_angle", "pronation"))
+    yield "Anatomy", f"{found['side']} side: {angles}"
+    if found["axis"] is None:
+        yield "Epicondyles", "the motion shows no axis to hold against their line"
+        return
+    angle, distance = found["axis_angle_deg"], found["axis_distance_mm"]
+    known = "no interval can be given" if found["axis_angle_deg_low"] is None else "95 %, for the clusters' frames"
+    yield (
+        "Epicondyles",
+        f"the {FUNCTIONAL_AXIS_WORDS[found['axis']]} is {rounded(angle)} deg"
+        f"{_limits(found['axis_angle_deg_low'], found['axis_angle_deg_high'])} off their line and passes "
+        f"{rounded(distance)} mm{_limits(found['axis_distance_mm_low'], found['axis_distance_mm_high'])} from the "
+        f"point midway between them ({known}, without the error of the landmarks: each mm that one of them is off "
+        f"turns the line by up to {found['landmark_sensitivity_deg_per_mm']:.2g} deg)",
+    )
+
+
+def _range_text(name: str, found: AngleRange) -> str:
+    word = name.replace("_", " ")
+    if found["start_deg"] is None:
+        return f"{word} not known"
+    low, high, start = (rounded(found[key]) for key in ("min_deg", "max_deg", "start_deg"))
+    return f"{word} {low} to {high} deg ({start} at the start)"
+
+
+def _limits(low: float | None, high: float | None) -> str:
+    return "" if low is None or high is None else f" ({rounded(low)} to {rounded(high)})"
 
 
 def _wander(found: WanderSummary | None) -> str:

@@ -96,6 +96,10 @@ def simulate(
     length_unit: Annotated[
         FileUnit, typer.Option(rich_help_panel=_OUTPUT, help="Unit of length in the file (row-tagged: m).")
     ] = "m",
+    landmarks: Annotated[
+        bool,
+        typer.Option("--landmarks", rich_help_panel=_OUTPUT, help="Write an elbow's landmarks: <OUT>.landmarks.toml."),
+    ] = False,
     force: Annotated[
         bool, typer.Option("--force", rich_help_panel=_OUTPUT, help="Replace an earlier simulation.")
     ] = False,
@@ -135,6 +139,11 @@ def simulate(
         seed=seed,
     )
     for path in save_simulation(
-        simulate_trial(simulation), output, layout=layout, length_unit=length_unit, force=force
+        simulate_trial(simulation),
+        output,
+        layout=layout,
+        length_unit=length_unit,
+        landmarks=landmarks,
+        force=force,
     ):
         emit(f"{printable(str(path))}\n")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import ClassVar, Final, Literal
+from typing import ClassVar, Final, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +16,7 @@ from elbowscrew.model.table_record import TableRecord
 
 Side = Literal["right", "left"]
 LandmarkFrame = Literal["proximal", "distal", "lab"]
+FunctionalAxisName = Literal["joint_axis", "axis1"]
 
 LANDMARKS: Final[Mapping[str, str]] = {
     "EL": "lateral epicondyle",
@@ -25,6 +26,14 @@ LANDMARKS: Final[Mapping[str, str]] = {
     "GH": "glenohumeral center",
 }
 """The names of the landmarks (Wu and others 2005), and what they are."""
+LANDMARK_BODIES: Final[Mapping[str, Literal["proximal", "distal"]]] = {
+    "EL": "proximal",
+    "EM": "proximal",
+    "US": "distal",
+    "RS": "distal",
+    "GH": "proximal",
+}
+"""The body that each rests in."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -88,6 +97,17 @@ class Landmarks(ArrayRecord):
         return tuple(dict.fromkeys(marker for landmark in self.by_name.values() for marker in landmark.markers))
 
 
+class Limits(NamedTuple):
+    """A size with the limits that hold it with 95 %; NaN where they are not known."""
+
+    value: float
+    low: float
+    high: float
+
+
+NO_LIMITS: Final = Limits(np.nan, np.nan, np.nan)
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class AnatomicalMotion(TableRecord):
     """The elbow's angles by the ISB's sequence, and its screw axes beside the epicondyle line.
@@ -102,12 +122,16 @@ class AnatomicalMotion(TableRecord):
     axis_angle, axis_distance : ndarray, shape (N,)
         Angle (rad, 0 to pi/2) between each frame's screw axis and the epicondyle line, and distance (m) of the axis
         from the point midway between the epicondyles; NaN where there is no axis.
-    joint_axis_angle, joint_axis_distance : float
-        The same of the joint's axis as a whole; NaN where it has no single one.
+    functional_axis : {"joint_axis", "axis1"} or None
+        What the elbow flexes about: the joint's axis as a whole, its mean where it wanders, or the first of two axes;
+        None where the motion shows none.
+    functional_axis_angle, functional_axis_distance : Limits
+        Its angle (rad) to the epicondyle line and its distance (m) from the midpoint, with 95 % limits for the
+        clusters' frames, without the error of the landmarks; NaN without such an axis.
     epicondyle_line : ndarray, shape (6,)
         Plücker vector in the arm's frame, from the medial to the lateral epicondyle.
-    epicondyle_midpoint : ndarray, shape (3,)
-        In the arm's frame, meters.
+    joint_center_proximal, joint_center_distal : ndarray, shape (3,)
+        The point midway between the epicondyles, in the arm's frame, and in the forearm's at the reference, meters.
     dual_quat_proximal_humerus, dual_quat_distal_isb : ndarray, shape (8,)
         The ISB's frames of humerus and forearm, as poses in the frames of the two bodies.
     points : mapping of str to ndarray, shape (3,)
@@ -130,11 +154,18 @@ class AnatomicalMotion(TableRecord):
     pronation: Float
     axis_angle: Float
     axis_distance: Float
-    joint_axis_angle: float
-    joint_axis_distance: float
+    functional_axis: FunctionalAxisName | None
+    functional_axis_angle: Limits
+    functional_axis_distance: Limits
     epicondyle_line: Float
-    epicondyle_midpoint: Float
+    joint_center_proximal: Float
+    joint_center_distal: Float
     dual_quat_proximal_humerus: Float
     dual_quat_distal_isb: Float
     points: Mapping[str, Float]
     landmarks: Landmarks
+
+    @property
+    def epicondyle_width(self) -> float:
+        """Distance between the epicondyles, meters."""
+        return float(np.linalg.norm(self.points["EL"] - self.points["EM"]))

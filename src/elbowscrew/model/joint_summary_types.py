@@ -12,6 +12,7 @@ from pydantic import Field
 from typing_extensions import TypedDict
 
 from elbowscrew.choices import ExpressIn
+from elbowscrew.model.anatomy import FunctionalAxisName, Side
 from elbowscrew.model.joint_type import JointTypeName
 
 Vector = Annotated[list[float], Field(min_length=3, max_length=3)]
@@ -284,16 +285,36 @@ class RepeatabilitySummary(TypedDict):
     """Standard deviation of the largest angle."""
 
 
-class AnatomySummary(TypedDict):
-    """The joint's axis against the bones."""
+class AxisAgainstBones(TypedDict):
+    """The axis that the elbow flexes about, against the bones.
 
-    side: str
+    Low and high are 95 % limits for the clusters' frames; the error of the landmarks themselves is not in them.
+    """
+
+    side: Side
+    axis: FunctionalAxisName | None
+    """The joint's axis, its mean where it wanders, or the first of two axes; None where the motion shows none."""
     axis_angle_deg: float | None
-    """Between the joint axis and the line of the epicondyles."""
+    """Between that axis and the line of the epicondyles."""
+    axis_angle_deg_low: float | None
+    axis_angle_deg_high: float | None
     axis_distance_mm: float | None
-    """Of the joint axis from the point midway between the epicondyles."""
+    """Of that axis from the joint's center."""
+    axis_distance_mm_low: float | None
+    axis_distance_mm_high: float | None
+    landmark_sensitivity_deg_per_mm: float
+    """Degrees that the line of the epicondyles turns for each millimeter by which one of them is off across it."""
+    joint_center_in_proximal_mm: Vector
+    """The point midway between the epicondyles."""
+    joint_center_in_distal_mm: Vector
+    """The same point at the reference, in the distal body."""
+
+
+class AnatomySummary(AxisAgainstBones):
+    """The axis against the bones, and where these are."""
+
     epicondyle_direction_in_proximal: Vector
-    epicondyle_midpoint_in_proximal_mm: Vector
+    """From the medial to the lateral epicondyle."""
     landmarks_mm: dict[str, list[float]]
     """The landmarks by name, each in the frame of its segment."""
 

@@ -13,7 +13,14 @@ from typing_extensions import TypedDict
 
 from elbowscrew.choices import BlendName, ExpressIn, KnotName, LawName, MethodName
 from elbowscrew.model.anatomy import LandmarkFrame, Side
-from elbowscrew.model.joint_summary_types import FitName, JointTypeSummary, LineSummary, NumbersOfType, Vector
+from elbowscrew.model.joint_summary_types import (
+    AxisAgainstBones,
+    FitName,
+    JointTypeSummary,
+    LineSummary,
+    NumbersOfType,
+    Vector,
+)
 
 
 class OtherFileSummary(TypedDict):
@@ -185,6 +192,25 @@ class JointAxisSummary(LineSummary):
     """Degrees that the axis turns for each degree that a cluster turns on its bone with the motion."""
 
 
+class AngleRange(TypedDict):
+    """An angle over the measured frames."""
+
+    start_deg: float | None
+    """In the first frame that has it."""
+    min_deg: float | None
+    max_deg: float | None
+    range_deg: float | None
+
+
+class AnglesOfBones(AxisAgainstBones):
+    """The elbow's angles by the landmarks, and the axis that it flexes about against the bones."""
+
+    flexion: AngleRange
+    carrying_angle: AngleRange
+    """Varus positive, so that a valgus elbow's is negative."""
+    pronation: AngleRange
+
+
 class MotionSummary(TypedDict):
     """The measured motion."""
 
@@ -226,6 +252,8 @@ class MotionSummary(TypedDict):
     """Those of `joint_type`."""
     joint_axis: JointAxisSummary | None
     """None where the motion has no single axis."""
+    anatomy: AnglesOfBones | None
+    """None without landmarks."""
 
 
 class LawErrorSummary(TypedDict):

@@ -11,6 +11,7 @@ from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat
 from elbowscrew.model import Analysis, InterpolatedMotion, Landmarks, QualityWarning, Recording
 from elbowscrew.model.without_places import without_places
 from elbowscrew.motion.anatomy.anatomy import anatomical_motion, joint_of_landmarks, proximal_lines, side_doubts
+from elbowscrew.motion.anatomy.functional_axis import functional_axis
 from elbowscrew.motion.axes.measured import (
     lines_one_way,
     mean_axis_warnings,
@@ -87,9 +88,9 @@ def analyze(recording: Recording, settings: Settings | None = None, *, landmarks
     wanted = wanted.model_copy(update={"express_in": measured.express_in})
     elapsed = measured.elapsed
     mean = measured_mean_axis(measured)
-    joint_axis = measured_joint_axis(measured, mean, wanted)
-    joint_type = measured_joint_type(measured, joint_axis, wanted)
-    joint_axis = axis_of_type(joint_axis, joint_type)
+    estimated = measured_joint_axis(measured, mean, wanted)
+    joint_type = measured_joint_type(measured, estimated.axis, wanted)
+    joint_axis = axis_of_type(estimated.axis, joint_type)
     instantaneous, axes_doubts = measured_instantaneous_motion(measured, wanted)
     velocity, near = instantaneous.angular_velocity, pose_from_dual_quat(measured.change)[1]
     cuts = measured_cuts(measured, wanted, joint_type)
@@ -141,7 +142,7 @@ def analyze(recording: Recording, settings: Settings | None = None, *, landmarks
             measured.distal,
             joint,
             axis_lines=proximal_lines(measured.line, joint, measured.express_in),
-            joint_line=None if joint_axis.headline is None else joint_axis.headline.line,
+            functional=functional_axis(estimated, joint_axis, joint_type),
         )
         warnings += doubts
     interpolated = _compared(model, measured, wanted)

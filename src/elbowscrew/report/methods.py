@@ -7,6 +7,7 @@ from typing import Final
 
 from elbowscrew.model.joint_summary_types import JointSummary, NoiseOfBodies
 from elbowscrew.model.summary_types import ModelSummary, TrialSummary
+from elbowscrew.report.bones_words import bones_methods
 from elbowscrew.results.joint_summary import preferred_fit
 from elbowscrew.view.trial_view import TrialView
 
@@ -36,6 +37,12 @@ PAPER: Final = (
     "application to biomechanics. The Archive of Mechanical Engineering 57 (2010). doi:10.2478/v10180-010-0010-2"
 )
 
+ISB: Final = (
+    "Wu G, van der Helm FCT, Veeger HEJ, and others. ISB recommendation on definitions of joint coordinate systems of "
+    "various joints for the reporting of human joint motion, part II: shoulder, elbow, wrist and hand. Journal of "
+    "Biomechanics 38 (2005) 981-992. doi:10.1016/j.jbiomech.2004.05.042"
+)
+
 
 def methods_of(trial: TrialView) -> str:
     """Describe what was done to this trial, in sentences that can be published.
@@ -54,7 +61,8 @@ def methods_of(trial: TrialView) -> str:
 
 def citations_of(trial: TrialView) -> tuple[str, ...]:
     """Say what to cite."""
-    return (f"elbowscrew, version {trial.summary['elbowscrew']} (BSD-3-Clause).", PAPER)
+    of_bones = () if trial.summary["landmarks"] is None else (ISB,)
+    return (f"elbowscrew, version {trial.summary['elbowscrew']} (BSD-3-Clause).", PAPER, *of_bones)
 
 
 def _sentences(trial: TrialView) -> Iterator[str]:
@@ -99,6 +107,7 @@ def _sentences(trial: TrialView) -> Iterator[str]:
         yield f"Axes are given where the standard deviation of their direction is {settings.axis_sd_deg:g}° or less."
     yield from _noise(trial.joint_summary["noise"], located=trial.located)
     yield from _joint_axis(trial)
+    yield from bones_methods(trial)
     yield from _model(trial)
     yield f"Computations were made with elbowscrew {summary['elbowscrew']} (Pennestrì and Valentini 2010)."
 

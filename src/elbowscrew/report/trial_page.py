@@ -13,6 +13,7 @@ from elbowscrew.choices import JOINT_TYPE_WORDS
 from elbowscrew.geometry._blocks import evenly_thinned
 from elbowscrew.joints import Joint
 from elbowscrew.model.joint_summary_types import EstimateSummary, JointSummary
+from elbowscrew.report.bones_words import bones_sentences
 from elbowscrew.report.captions import caption_of
 from elbowscrew.report.joint_words import joint_sentences
 from elbowscrew.report.methods import citations_of, methods_of
@@ -121,6 +122,7 @@ def trial_page(trial: TrialView, folder: Path) -> str:
         "estimates": _estimates(joint),
         "joint_sentences": joint_sentences(trial),
         "joint_words": JOINT_TYPE_WORDS,
+        "bones_sentences": bones_sentences(trial),
         "axis_rows": _axis_rows(trial),
         "repetitions": _repetition_rows(trial),
         "settings": _settings(trial.settings),

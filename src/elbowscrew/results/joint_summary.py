@@ -10,7 +10,6 @@ from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat
 from elbowscrew.model import (
     Analysis,
-    AnatomicalMotion,
     FittedJoint,
     LineEstimate,
     MeanLine,
@@ -18,7 +17,6 @@ from elbowscrew.model import (
     RigidBody,
 )
 from elbowscrew.model.joint_summary_types import (
-    AnatomySummary,
     BodiesSummary,
     DispersionSummary,
     EstimateSummary,
@@ -32,6 +30,7 @@ from elbowscrew.model.joint_summary_types import (
     Vector,
 )
 from elbowscrew.motion.screws.frames import frame_called
+from elbowscrew.results.anatomy_summary import anatomy_summary
 from elbowscrew.results.joint_type_summary import INTERVAL_METHODS, joint_type_summary, numbers_of_type
 from elbowscrew.results.statistics import known, known_vector, rms, statistic
 
@@ -56,7 +55,7 @@ def joint_summary(analysis: Analysis) -> JointSummary:
         "dispersion": dispersion_summary(analysis),
         "noise": {"proximal": _noise(axis.noise["proximal"]), "distal": _noise(axis.noise["distal"])},
         "repeatability": _repeatability(analysis),
-        "anatomy": _anatomy(analysis.anatomy),
+        "anatomy": anatomy_summary(analysis.anatomy),
         "bodies": _bodies(analysis),
     }
 
@@ -154,19 +153,6 @@ def _repeatability(analysis: Analysis) -> RepeatabilitySummary:
         "axis_sd_deg": known(np.degrees(found.axis_sd)),
         "point_sd_mm": known(1000.0 * found.point_sd),
         "theta_max_sd_deg": known(np.degrees(found.top_sd)),
-    }
-
-
-def _anatomy(motion: AnatomicalMotion | None) -> AnatomySummary | None:
-    if motion is None:
-        return None
-    return {
-        "side": motion.side,
-        "axis_angle_deg": known(np.degrees(motion.joint_axis_angle)),
-        "axis_distance_mm": known(1000.0 * motion.joint_axis_distance),
-        "epicondyle_direction_in_proximal": motion.epicondyle_line[:3].tolist(),
-        "epicondyle_midpoint_in_proximal_mm": (1000.0 * motion.epicondyle_midpoint).tolist(),
-        "landmarks_mm": {name: (1000.0 * point).tolist() for name, point in motion.points.items()},
     }
 
 

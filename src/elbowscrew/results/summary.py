@@ -30,6 +30,7 @@ from elbowscrew.model.summary_types import (
     TrialSummary,
 )
 from elbowscrew.motion.screws.frames import frame_called
+from elbowscrew.results.anatomy_summary import angles_of_bones
 from elbowscrew.results.joint_type_summary import INTERVAL_METHODS, joint_type_summary, numbers_of_type
 from elbowscrew.results.recording_summary import quality_summary, recording_summary, source_summary, warnings_summary
 from elbowscrew.results.statistics import known, known_vector, rms, statistic
@@ -171,6 +172,7 @@ def _motion(analysis: Analysis) -> MotionSummary:
         "joint_type": joint_type_summary(analysis),
         "joint_numbers": numbers_of_type(analysis),
         "joint_axis": _joint_axis(analysis.joint_axis),
+        "anatomy": angles_of_bones(analysis.anatomy, screw.valid),
     }
 
 

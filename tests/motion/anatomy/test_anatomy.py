@@ -29,7 +29,6 @@ from elbowscrew.motion.anatomy.anatomy import (
     distance_from_point,
     elbow_angles,
     humerus_frame,
-    proximal_lines,
 )
 from elbowscrew.motion.screws.relative import joint_from_bodies
 
@@ -39,7 +38,7 @@ ON_ARM = ("EL", "EM", "GH")
 N = 120
 REACH = np.linspace(0.0, np.pi, N)
 FLEX = np.radians(145.0) * np.sin(REACH)
-NO_AXES: dict[str, Any] = {"axis_lines": np.full((N, 6), np.nan), "joint_line": None}
+NO_AXES: dict[str, Any] = {"axis_lines": np.full((N, 6), np.nan), "functional": None}
 
 # A right arm that hangs down: X forward, Y up, Z to the right, meters. Neither styloid is beneath its epicondyle.
 STANDING = {
@@ -470,35 +469,31 @@ def test_the_screw_axes_of_an_analysis_beside_the_epicondyles(express_in: Any, p
     }
     marks: dict[str, Any] = {name: Landmark(point=point, frame="lab") for name, point in points.items()}
     settings = Settings(express_in=express_in, proximal="none" if proximal == "still" else None)
-    analysis = analyze(trial.recording, settings)
-    screw, best = analysis.screw, analysis.joint_axis.best
-    assert best is not None
-    lines = np.concatenate([screw.axis_direction, np.cross(screw.axis_point, screw.axis_direction)], axis=1)
-    motion, warnings = anatomical_motion(
-        Landmarks(side="right", **marks),
-        analysis.recording,
-        analysis.proximal,
-        analysis.distal,
-        analysis.joint,
-        axis_lines=proximal_lines(lines, analysis.joint, express_in),
-        joint_line=best.line,
-    )
-    assert not warnings
+    analysis = analyze(trial.recording, settings, landmarks=Landmarks(side="right", **marks))
+    screw, motion = analysis.screw, analysis.anatomy
+    assert motion is not None
+    assert not {warning.code for warning in analysis.warnings if warning.code.startswith("landmark")}
     known = screw.axis_known
     assert np.isnan(motion.axis_angle).tolist() == (~known).tolist()
     assert motion.axis_angle[known] == pytest.approx(np.full(known.sum(), tilt), abs=1e-8)
     assert motion.axis_distance[known] == pytest.approx(np.full(known.sum(), aside), abs=1e-8)
-    assert motion.joint_axis_angle == pytest.approx(tilt, abs=1e-7)
-    assert motion.joint_axis_distance == pytest.approx(aside, abs=1e-7)
-    middle_in_proximal = dq.transform_points(dq.conjugate(analysis.joint.dual_quat_lab_proximal), middle)
-    assert motion.epicondyle_midpoint == pytest.approx(middle_in_proximal, abs=1e-12)
-    assert distance_from_point(motion.epicondyle_line, middle_in_proximal) == pytest.approx(0.0, abs=1e-12)
+    assert motion.functional_axis == "joint_axis"
+    assert motion.functional_axis_angle.value == pytest.approx(tilt, abs=1e-7)
+    assert motion.functional_axis_distance.value == pytest.approx(aside, abs=1e-7)
+    lab_proximal, at_reference = analysis.joint.dual_quat_lab_proximal, analysis.joint.reference
+    center = dq.transform_points(dq.conjugate(lab_proximal), middle)
+    assert motion.joint_center_proximal == pytest.approx(center, abs=1e-12)
+    lab_distal = dq.multiply(lab_proximal, at_reference)
+    assert dq.transform_points(lab_distal, motion.joint_center_distal) == pytest.approx(middle, abs=1e-12)
+    assert distance_from_point(motion.epicondyle_line, center) == pytest.approx(0.0, abs=1e-12)
+    assert motion.epicondyle_width == pytest.approx(0.07, abs=1e-12)
     assert motion.frame is analysis.recording.frame
 
 
 def test_without_a_single_axis_its_angle_is_not_known() -> None:
     proximal = known_proximal(FLEX, 0 * FLEX, 0 * FLEX)
     motion, _ = measured(by_coordinates(proximal), recorded(proximal))
-    assert np.isnan([motion.joint_axis_angle, motion.joint_axis_distance]).all()
+    assert motion.functional_axis is None
+    assert np.isnan([motion.functional_axis_angle, motion.functional_axis_distance]).all()
     assert np.isnan(motion.axis_angle).all()
     assert "120 rows" in repr(motion)

@@ -53,7 +53,7 @@ def told(hinge: Hinge, express_in: ExpressIn, seed: int, size: float) -> JointAx
     start = dq.transform_lines(dq.conjugate(joint.reference), true_line(0.5 * TOP))
     angle = hinge.angle - hinge.angle[AT]
     noise = JointNoise(proximal, distal, 1.0, 1.0)
-    return estimate_joint_axis(joint, angle, start, noise, np.ones(count), express_in=express_in, robust=False)
+    return estimate_joint_axis(joint, angle, start, noise, np.ones(count), express_in=express_in, robust=False).axis
 
 
 def poses_of(hinge: Hinge) -> Float:

@@ -26,8 +26,9 @@ from elbowscrew.geometry.dual_quaternion import (
 )
 from elbowscrew.geometry.quaternion import quat_from_rotation_matrix, rotation_matrix_from_quat
 from elbowscrew.joints import ELBOW, GENERIC, Joint, side_between, side_of
-from elbowscrew.model import JointMotion, LineEstimate, QualityWarning, Recording, RigidBody
-from elbowscrew.model.anatomy import AnatomicalMotion, Landmarks, Side
+from elbowscrew.model import JointMotion, QualityWarning, Recording, RigidBody
+from elbowscrew.model.anatomy import NO_LIMITS, AnatomicalMotion, Landmarks, Side
+from elbowscrew.motion.anatomy.functional_axis import FunctionalAxis
 from elbowscrew.motion.anatomy.landmarks import landmark_points
 from elbowscrew.motion.difference import angle_of_lines
 from elbowscrew.motion.screws.relative import frame_change
@@ -176,7 +177,7 @@ def anatomical_motion(
     joint: JointMotion,
     *,
     axis_lines: Float,
-    joint_line: LineEstimate | None,
+    functional: FunctionalAxis | None,
 ) -> tuple[AnatomicalMotion, tuple[QualityWarning, ...]]:
     """Angles of the elbow in every frame, and its screw axes beside the epicondyle line.
 
@@ -194,8 +195,8 @@ def anatomical_motion(
     joint : JointMotion
     axis_lines : ndarray, shape (N, 6)
         Finite helical axis of each frame in the arm's frame (`proximal_lines`); NaN where there is none.
-    joint_line : LineEstimate or None
-        The axis of the joint as a whole; None if it has no single one.
+    functional : FunctionalAxis or None
+        What the elbow flexes about; None if the motion shows no such axis.
 
     Returns
     -------
@@ -220,8 +221,7 @@ def anatomical_motion(
         multiply(multiply(conjugate(humerus), joint.dual_quat_proximal_distal), distal_isb), landmarks.side
     )
     line = line_through(points["EM"], points["EL"] - points["EM"])
-    midpoint = 0.5 * (points["EL"] + points["EM"])
-    joint_axis = np.full(6, np.nan) if joint_line is None else _proximal_line(joint_line)
+    center = 0.5 * (points["EL"] + points["EM"])
     motion = AnatomicalMotion(
         side=landmarks.side,
         frame=recording.frame,
@@ -230,11 +230,13 @@ def anatomical_motion(
         carrying_angle=angles.carrying_angle,
         pronation=_continuous(angles.pronation),
         axis_angle=angle_to_epicondyles(axis_lines[:, :3], line),
-        axis_distance=distance_from_point(axis_lines, midpoint),
-        joint_axis_angle=float(angle_to_epicondyles(joint_axis[:3], line)),
-        joint_axis_distance=float(distance_from_point(joint_axis, midpoint)),
+        axis_distance=distance_from_point(axis_lines, center),
+        functional_axis=None if functional is None else functional.name,
+        functional_axis_angle=NO_LIMITS if functional is None else functional.angle_to(line[:3]),
+        functional_axis_distance=NO_LIMITS if functional is None else functional.distance_from(center),
         epicondyle_line=line,
-        epicondyle_midpoint=midpoint,
+        joint_center_proximal=center,
+        joint_center_distal=0.5 * (EL + EM),
         dual_quat_proximal_humerus=humerus,
         dual_quat_distal_isb=distal_isb,
         points=points,
@@ -315,10 +317,6 @@ def _continuous(angle: Float) -> Float:
     unwrapped = angle.copy()
     unwrapped[known] = np.unwrap(angle[known])
     return unwrapped
-
-
-def _proximal_line(line: LineEstimate) -> Float:
-    return np.concatenate([line.direction_proximal, np.cross(line.point_proximal, line.direction_proximal)])
 
 
 def _doubts(motion: AnatomicalMotion, landmarks: Landmarks) -> tuple[QualityWarning, ...]:

@@ -10,12 +10,10 @@ from elbowscrew.errors import SettingError, did_you_mean, told_names
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_quaternion import conjugate, multiply, transform_points
 from elbowscrew.model import JointMotion, Marker, QualityWarning, Recording, RigidBody
-from elbowscrew.model.anatomy import Landmark, Landmarks
+from elbowscrew.model.anatomy import LANDMARK_BODIES, Landmark, Landmarks
 from elbowscrew.motion.screws.relative import IDENTITY
 
 _LARGEST_RMS: Final = 0.020
-_BODY_OF: Final = {"EL": "proximal", "EM": "proximal", "GH": "proximal", "US": "distal", "RS": "distal"}
-
 _SPOKEN: Final = {"proximal": "arm", "distal": "forearm"}
 
 
@@ -38,7 +36,7 @@ def landmark_points(
     faults: list[str] = []
     warnings: list[QualityWarning] = []
     for name, landmark in landmarks.by_name.items():
-        role = _BODY_OF[name]
+        role = LANDMARK_BODIES[name]
         if landmark.point is not None and landmark.frame is not None:
             change = multiply(conjugate(proximal_from[role]), proximal_from[landmark.frame])
             points[name] = transform_points(change, landmark.point)

@@ -91,7 +91,9 @@ def compare(
     wanted, plan = settings or Settings(), plan or ComparisonPlan()
     raw = wanted.model_copy(update={"lowpass_hz": None, "resample_hz": None, "keyframes": None, "tolerance_mm": None})
     measured = measure(recording, raw)
-    joint_type = measured_joint_type(measured, measured_joint_axis(measured, measured_mean_axis(measured), raw), raw)
+    joint_type = measured_joint_type(
+        measured, measured_joint_axis(measured, measured_mean_axis(measured), raw).axis, raw
+    )
     course = course_of_frames(measured, joint_type)
     movements = measured_cuts(measured, raw, joint_type).movements
     phases = phases_of(measured, course, movements, raw)

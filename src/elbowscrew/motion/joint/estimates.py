@@ -9,7 +9,13 @@ import numpy as np
 from elbowscrew.choices import ExpressIn
 from elbowscrew.geometry import point_nearest_origin
 from elbowscrew.geometry.arrays import Float
-from elbowscrew.geometry.dual_quaternion import multiply, pose_from_dual_quat, transform_lines
+from elbowscrew.geometry.dual_quaternion import (
+    conjugate,
+    multiply,
+    pose_from_dual_quat,
+    transform_lines,
+    transform_points,
+)
 from elbowscrew.geometry.sensitivity import confidence_radius
 from elbowscrew.model import JointMotion, LineEstimate
 from elbowscrew.motion.joint.interval import JointInterval, pose_radii
@@ -32,6 +38,52 @@ class LineErrors(NamedTuple):
     point_sd: float
     skin_cone: float
     skin_radius: float
+
+
+class Reach(NamedTuple):
+    """How far a line may go, 95 %: along one way across it, and any way. Radians of a direction, meters of a place."""
+
+    along: float
+    circle: float
+
+
+class ProximalErrors(NamedTuple):
+    """Errors of a line in the proximal body, towards what rests there.
+
+    Attributes
+    ----------
+    interval : JointInterval
+        Of P numbers.
+    tilt, shift : ndarray, shape (2, P)
+        The line's tilts about x and y of its pose, and its shifts along them at the origin, by these numbers.
+    pose : ndarray, shape (8,)
+        Whose z axis the line is.
+    known : bool
+        Whether the errors are known at all; else how far the line may go is NaN.
+    """
+
+    interval: JointInterval
+    tilt: Float
+    shift: Float
+    pose: Float
+    known: bool = True
+
+    def towards_direction(self, direction: Float) -> Reach:
+        """How far the line's direction may go towards, or away from, a direction (3,)."""
+        ahead = transform_lines(conjugate(self.pose), np.concatenate([direction, np.zeros(3)]))[:2]
+        # A tilt (a, b) moves the z axis by (b, -a).
+        return self._reach(np.stack([self.tilt[1], -self.tilt[0]]), ahead)
+
+    def towards_point(self, point: Float) -> Reach:
+        """How far the line may go, where it passes a point (3,) nearest, towards or away from it."""
+        ahead = transform_points(conjugate(self.pose), point)
+        return self._reach(self.shift + ahead[2] * np.stack([self.tilt[1], -self.tilt[0]]), ahead[:2])
+
+    def _reach(self, across: Float, ahead: Float) -> Reach:
+        if not self.known:
+            return Reach(np.nan, np.nan)
+        size, circle = float(np.hypot(*ahead)), self.interval.radius(across)
+        return Reach(self.interval.radius((ahead / size @ across)[None]) if size > 0.0 else circle, circle)
 
 
 def line_estimate(proximal: Float, distal: Float, joint: JointMotion, express_in: ExpressIn) -> LineEstimate:

@@ -14,7 +14,7 @@ from elbowscrew.geometry.dual_quaternion import conjugate, pose_from_dual_quat, 
 from elbowscrew.geometry.sensitivity import NORMAL_95
 from elbowscrew.model import FittedJoint, JointAxis, JointMotion, MarkerMotion
 from elbowscrew.motion.joint.direction_fit import fit_direction
-from elbowscrew.motion.joint.estimates import line_errors, line_estimate
+from elbowscrew.motion.joint.estimates import ProximalErrors, line_errors, line_estimate
 from elbowscrew.motion.joint.influence import influence_of_fit
 from elbowscrew.motion.joint.interval import (
     SURE,
@@ -37,6 +37,13 @@ LARGEST_UNEXPLAINED: Final = 0.25
 """Share of its rotation that a joint with a single axis may leave, RMS over RMS."""
 
 
+class EstimatedAxis(NamedTuple):
+    """The joint's axis by all estimators, and the errors of the headline; None where there is no single axis."""
+
+    axis: JointAxis
+    errors: ProximalErrors | None
+
+
 def estimate_joint_axis(
     joint: JointMotion,
     angle: Float,
@@ -49,7 +56,7 @@ def estimate_joint_axis(
     markers: tuple[BodyMarkers, ...] = (),
     skin: tuple[SkinMotion, ...] = (),
     stated: Literal["hinge", "screw_hinge"] | None = None,
-) -> JointAxis:
+) -> EstimatedAxis:
     """Estimate the joint's axis from all measured frames.
 
     Parameters
@@ -89,10 +96,13 @@ def estimate_joint_axis(
     influences = {screw: influence_of_fit(fit, poses, covariance) for screw, fit in fits.items()}
     reference = {screw: _reference_angle(fit, rows, joint) for screw, fit in fits.items()}
     fitted: dict[bool, FittedJoint] = {}
+    errors: dict[bool, ProximalErrors] = {}
     for screw, influence in influences.items():
         fit = fits[screw]
         interval = joint_interval(influence, clusters, skin=skin, reference_angle=reference[screw], noise_known=told)
         fitted[screw] = _fitted_joint(fit, interval, joint, rows, express_in, start, noise, noise_known=told)
+        shared, known = np.eye(len(fitted[screw].covariance)), bool(np.isfinite(fitted[screw].covariance).all())
+        errors[screw] = ProximalErrors(interval, shared[:2], shared[2:4], fit.proximal, known)
     proximal_line, distal_line = sara_lines(poses, angle[rows])
     found = JointAxis(
         single=single,
@@ -105,15 +115,16 @@ def estimate_joint_axis(
         stated=stated,
     )
     if found.best is None:
-        return found
+        return EstimatedAxis(found, None)
     screw = found.preferred == "screw_hinge"
     wander = wander_of_axis(
         fits[screw], influences[screw], clusters, skin=skin, reference_angle=reference[screw], noise_known=told
     )
     if wander is None or not np.isfinite(found.best.covariance).all():
-        return found
+        return EstimatedAxis(found, errors[screw])
     away = told_wander(wander, fits[screw], reference[screw], joint, noise, start, express_in=express_in)
-    return replace(found, wander=away.wander, mean_axis=away.mean_axis, path=away.path)
+    found = replace(found, wander=away.wander, mean_axis=away.mean_axis, path=away.path)
+    return EstimatedAxis(found, away.errors or errors[screw])
 
 
 def fitted_frames(joint: JointMotion, noise: JointNoise, noise_gain: Float) -> tuple[Index, Float, Float]:

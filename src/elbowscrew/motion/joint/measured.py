@@ -18,6 +18,7 @@ from elbowscrew.motion.joint.interval import SkinMotion
 from elbowscrew.motion.joint.joint_axis import (
     LARGEST_UNEXPLAINED,
     BodyMarkers,
+    EstimatedAxis,
     clusters_of,
     distal_line,
     estimate_joint_axis,
@@ -43,7 +44,7 @@ _FOUND: Final = {
 }
 
 
-def measured_joint_axis(measured: Measurement, mean: MeanAxis, settings: Settings) -> JointAxis:
+def measured_joint_axis(measured: Measurement, mean: MeanAxis, settings: Settings) -> EstimatedAxis:
     """Estimate the joint's axis, starting from the mean of the finite axes.
 
     Raises

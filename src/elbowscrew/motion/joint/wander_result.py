@@ -14,7 +14,7 @@ from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.sensitivity import NORMAL_95
 from elbowscrew.model import JointMotion
 from elbowscrew.model.joint_axis import AxisPath, AxisWander, LineEstimate, MeanLine
-from elbowscrew.motion.joint.estimates import LineErrors, line_errors, line_estimate
+from elbowscrew.motion.joint.estimates import LineErrors, ProximalErrors, line_errors, line_estimate
 from elbowscrew.motion.joint.joint_fit import LineFit
 from elbowscrew.motion.joint.lines import Z_LINE, line_twist
 from elbowscrew.motion.joint.wander import Wander
@@ -24,11 +24,12 @@ _PARTS: Final = 15
 
 
 class Told(NamedTuple):
-    """What `JointAxis` says of an axis' wander; no mean and no path where it is not sure that it does."""
+    """What `JointAxis` says of an axis' wander; no mean, its errors and no path where it is not sure that it does."""
 
     wander: AxisWander
     mean_axis: MeanLine | None
     path: AxisPath | None
+    errors: ProximalErrors | None
 
 
 def told_wander(
@@ -67,7 +68,7 @@ def told_wander(
         unseen_shift=found.unseen_shift,
     )
     if not found.significant:
-        return Told(wander, None, None)
+        return Told(wander, None, None, None)
     sense = 1.0 if dq.transform_lines(fit.proximal, Z_LINE)[:3] @ towards[:3] >= 0.0 else -1.0
     in_distal = express_in == "distal"
     base = fit.distal if in_distal else fit.proximal
@@ -99,6 +100,7 @@ def told_wander(
     own = sense * dq.transform_lines(_moved(fit.distal, found.mean_distal_rows @ found.step), Z_LINE)
     tilt = (found.reference_rows(np.array(found.middle), reference_angle) if in_distal else found.mean_rows)[:2]
     known = bool(np.isfinite(mean_errors.axis_cone))
+    rows = found.mean_rows
     return Told(
         wander,
         MeanLine(
@@ -107,6 +109,7 @@ def told_wander(
             decided_by=found.interval.decided_by(tilt) if known else None,
         ),
         path,
+        ProximalErrors(found.interval, rows[:2], rows[2:], _moved(fit.proximal, rows @ found.step), known),
     )
 
 

@@ -1,0 +1,92 @@
+"""The axis against the bones in sentences: for the page, and for a paper's methods section."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from elbowscrew.choices import FUNCTIONAL_AXIS_WORDS
+from elbowscrew.joints import Joint
+from elbowscrew.model.anatomy import LANDMARKS
+from elbowscrew.model.joint_summary_types import AnatomySummary
+from elbowscrew.model.summary_types import LandmarksSummary
+from elbowscrew.report.pages import number, vector
+from elbowscrew.view.trial_view import TrialView
+
+
+def bones_sentences(view: TrialView) -> tuple[str, ...]:
+    """Say how the axis stands to the epicondyles, and where the joint's center is; nothing without landmarks."""
+    found = view.joint_summary["anatomy"]
+    return () if found is None else tuple(_sentences(found, view.named_joint, _method(view)))
+
+
+def _sentences(found: AnatomySummary, joint: Joint, method: str) -> Iterator[str]:
+    if found["axis"] is None:
+        yield "The motion shows no axis to hold against the line of the epicondyles."
+    else:
+        angle = _limits(found["axis_angle_deg_low"], found["axis_angle_deg_high"])
+        distance = _limits(found["axis_distance_mm_low"], found["axis_distance_mm_high"])
+        yield (
+            f"The {FUNCTIONAL_AXIS_WORDS[found['axis']]} lies {number(found['axis_angle_deg'])} deg{angle} off the "
+            f"line of the epicondyles and passes {number(found['axis_distance_mm'])} mm{distance} from the joint’s "
+            "center."
+        )
+        yield (
+            f"{_standing(angle, method)} the error of the landmarks themselves is not included: each millimeter by "
+            "which one epicondyle is off turns their line by up to "
+            f"{number(found['landmark_sensitivity_deg_per_mm'])} deg."
+        )
+    yield (
+        "The joint’s center is the point midway between the epicondyles: "
+        f"({vector(found['joint_center_in_proximal_mm'])}) mm in the frame of the {joint.proximal.name}, and "
+        f"({vector(found['joint_center_in_distal_mm'])}) mm in that of the {joint.distal.name} at the reference."
+    )
+
+
+def _standing(limits: str, method: str) -> str:
+    if not limits:
+        return "No interval can be given;"
+    return f"In brackets stand 95 % limits for the clusters’ frames, {method};"
+
+
+def _limits(low: float | None, high: float | None) -> str:
+    return "" if low is None or high is None else f" ({number(low)} to {number(high)})"
+
+
+def _method(view: TrialView) -> str:
+    return view.joint_summary["joint_type"]["interval_method"] or ""
+
+
+def bones_methods(view: TrialView) -> Iterator[str]:
+    """Describe how the bones' angles were found, and what the axis is against them."""
+    found, marks = view.joint_summary["anatomy"], view.summary["landmarks"]
+    if found is None or marks is None:
+        return
+    yield (
+        "Flexion, carrying angle (varus positive) and pronation (0 in supination) were computed by the sequence Z-X-Y "
+        "of the International Society of Biomechanics (Wu and others 2005) from landmarks of the "
+        f"{found['side']} arm ({_sources(marks)}); signs mean the same on both sides."
+    )
+    if found["axis"] is None:
+        return
+    angle, distance = (
+        _interval(found["axis_angle_deg_low"], found["axis_angle_deg_high"], "°"),
+        _interval(found["axis_distance_mm_low"], found["axis_distance_mm_high"], " mm"),
+    )
+    without = ", without the error of the landmarks" if angle else ""
+    yield (
+        f"The {FUNCTIONAL_AXIS_WORDS[found['axis']]} lies {found['axis_angle_deg']:.1f}°{angle} off the line of the "
+        f"epicondyles and passes {found['axis_distance_mm']:.1f} mm{distance} from the point midway between "
+        f"them{without}."
+    )
+
+
+def _sources(marks: LandmarksSummary) -> str:
+    """Which landmarks are of markers, and which were given as coordinates."""
+    by_markers = [name for name in LANDMARKS if "markers" in marks[name]]  # type: ignore[literal-required]
+    given = [name for name in LANDMARKS if name not in by_markers]
+    told = [f"{', '.join(by_markers)} from markers"] if by_markers else []
+    return "; ".join([*told, *([f"{', '.join(given)} by coordinates"] if given else [])])
+
+
+def _interval(low: float | None, high: float | None, unit: str) -> str:
+    return "" if low is None or high is None else f" (95 % interval {low:.1f} to {high:.1f}{unit})"
