@@ -9,10 +9,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from drawn_trials import drawn_trial
 
 from elbowscrew import Settings, __version__, analyze, save_analysis, save_simulation, simulate_trial
 from elbowscrew.cli import main, render
 from elbowscrew.errors import ResultError
+from elbowscrew.report.joint_words import joint_sentences
 from elbowscrew.report.methods import methods_of
 from elbowscrew.results.proof import proof_of
 from elbowscrew.results.summary_reading import read_summary
@@ -134,3 +136,18 @@ def test_a_result_of_before_is_refused_in_one_line_with_both_versions(tmp_path: 
     assert "0.1.0" in told
     assert __version__ in told
     assert "\n" not in told
+
+
+@pytest.mark.parametrize(("turn", "told"), [(0.0, False), (3.0, True)])
+def test_only_a_turn_is_told_of_sensors(turn: float, told: bool) -> None:
+    """Millimeters say nothing of orientations without positions."""
+    view = drawn_trial("wandering")
+    skin = {"mm": 5.0, "deg": turn, "part_deg": 0.1, "part_mm": 0.2}
+    summary: Any = {**view.joint_summary, "skin_motion": skin}
+    sensors = replace(view, located=False, joint_summary=summary)
+    assert ("A turn of the sensors on the bone of 3° was stated" in methods_of(sensors)) == told
+    words = " ".join(joint_sentences(sensors))
+    assert ("Stated and included is a turn of each sensor on its bone of 3" in words) == told
+    assert ("millimeters of motion that --skin-motion states have no effect" in words) != told
+    clusters = methods_of(replace(view, joint_summary=summary))
+    assert f"on the bone of 5 mm{' and 3°' if told else ''} was stated" in clusters

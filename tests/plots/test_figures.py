@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -12,11 +12,15 @@ from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
+from matplotlib.patches import Circle
+from mpl_toolkits.mplot3d.axes3d import Axes3D
 from numpy.typing import NDArray
 
 from elbowscrew import Analysis, Settings, analyze, plots, simulate_trial
 from elbowscrew.choices import METHOD_LABELS, METHOD_NAMES
+from elbowscrew.model import Selection
 from elbowscrew.plots import comparison, style
+from elbowscrew.results.trial_views import view_of
 
 
 @pytest.fixture(scope="module")
@@ -95,6 +99,60 @@ def test_the_joints_axis_is_drawn_with_its_cone_or_without(analysis: Analysis, s
     if single and best is not None:
         circle: Any = end_on.patches[1]
         assert circle.radius == pytest.approx(best.point_radius)
+
+
+def zorders(ax: Axes) -> dict[str, float]:
+    return {str(one.get_label()): one.get_zorder() for one in ax.collections}
+
+
+@pytest.mark.parametrize(("known", "behind"), [(0.01, "95 % of the frames' axes"), (0.4, "95 % confidence")])
+def test_the_wider_of_two_regions_is_drawn_behind_the_other(analysis: Analysis, known: float, behind: str) -> None:
+    view = replace(view_of(analysis), spread95=(0.1, 0.02), confidence95=(known, 0.05 * known))
+    side = zorders(plots.plot_axis_from_the_side(Figure().add_subplot(), view, 0))
+    drawn = {label: order for label, order in side.items() if label.startswith("95 %")}
+    assert min(drawn, key=lambda label: drawn[label]).startswith(behind)
+    circles = [one for one in plots.plot_axis_end_on(Figure().add_subplot(), view).patches if isinstance(one, Circle)]
+    assert [one.zorder for one in sorted(circles, key=lambda one: -one.radius)] == sorted(one.zorder for one in circles)
+
+
+def test_a_cone_is_drawn_in_space_where_it_can_be_told_from_the_axis_and_stays_in_the_box(analysis: Analysis) -> None:
+    for angle, drawn in ((0.003, False), (0.2, True), (1.2, False)):
+        view = replace(view_of(analysis), spread95=(np.nan, np.nan), confidence95=(angle, 1e-4))
+        ax = plots.plot_joint_axis_in_space(new_space(), view)
+        told = [str(one.get_label()) for one in ax.collections]
+        assert ("95 % confidence of the joint axis" in told) == drawn, angle
+        (axis,) = (one for one in ax.get_lines() if one.get_label() == "joint axis")
+        assert axis.get_zorder() > 2.0 + len(ax.collections) + 10
+
+
+def test_the_axes_of_the_frames_lie_in_the_box(analysis: Analysis) -> None:
+    view = view_of(analysis)
+    away = replace(view, axis_point=view.axis_point + np.array([0.0, 0.0, 0.4]))
+    ax = plots.plot_joint_axis_in_space(new_space(), away)
+    segments = np.asarray(ax.collections[0]._segments3d)
+    for k, limits in enumerate((ax.get_xlim(), ax.get_ylim(), ax.get_zlim())):
+        assert segments[..., k].min() >= limits[0] - 1e-9
+        assert segments[..., k].max() <= limits[1] + 1e-9
+
+
+def new_space() -> Axes3D:
+    return cast(Axes3D, Figure().add_subplot(projection="3d"))
+
+
+def test_selections_are_explained_where_the_first_trial_has_none() -> None:
+    selection = Selection(
+        row=np.array([0, 3, 6, 10]),
+        count=np.array([2, 3, 4]),
+        largest=np.array([0.01, 0.004, 0.001]),
+        rms=np.array([0.01, 0.004, 0.001]),
+        frames=11,
+        tolerance=0.002,
+        as_angle=False,
+        complete=True,
+    )
+    ax = comparison.plot_selections(Figure().add_subplot(), [{}, {"dlb": selection}], Settings())
+    assert [one.get_text() for one in ax.texts] == ["tolerance 2 mm"]
+    assert ax.get_legend() is not None
 
 
 def test_errors_and_euler_parameters(analysis: Analysis) -> None:

@@ -42,6 +42,23 @@ def test_nothing_is_cut_off_or_drawn_over(name: str) -> None:
     assert not {at: faults for at, faults in found.items() if faults}
 
 
+def test_a_power_of_ten_stands_in_the_unit_and_not_over_the_panels_letter() -> None:
+    with publication_style():
+        figure = new_figure(85.0, 60.0)
+        upper, lower = figure.subplots(2, 1)
+        upper.plot([0.0, 1.0], [1e-6, 4e-6])
+        upper.set_ylabel("Error (deg)")
+        lower.plot([0.0, 1e9], [0.0, 3.0])
+        lower.set_xlabel("Time (s)")
+        lower.set_ylabel("e (–)")
+        letter(upper, lower)
+        settle(figure)
+        assert faults_of(figure) == []
+    assert (upper.get_ylabel(), lower.get_xlabel(), lower.get_ylabel()) == ("Error (10⁻⁶ deg)", "Time (10⁹ s)", "e (–)")
+    ticks = {float(tick.get_text().replace("−", "-")) for tick in upper.get_yticklabels()}
+    assert ticks & {1.0, 2.0, 3.0, 4.0}
+
+
 def test_nor_are_trials_and_models_beside_each_other() -> None:
     curves = [mean_curve(drawn_trial(kind)) for kind in ("short", "multi-cycle", "two axes")]
     plan = ComparisonPlan(laws=("linear", "cycloidal"), counts=(2, 3), data=("raw", "decimated"))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -74,6 +75,32 @@ def test_of_a_long_trial_the_slides_medians_are_drawn() -> None:
     assert inside.mean() == pytest.approx(0.9, abs=0.03)
 
 
+def test_of_fast_cycles_the_medians_have_no_holes() -> None:
+    """Cycles of 40 frames that are all at the same angles: in the middle these are 10 deg apart."""
+    view = drawn_trial("long")
+    time = np.arange(view.frame.size)
+    angle = np.radians(65.0) * (1.0 - np.cos(2.0 * np.pi * time / 40.0))
+    ax = kinematics.plot_slide_span(Figure().add_subplot(), replace(view, angle=angle, slide=0.001 * np.sin(angle)))
+    for label in ("median, angle rising", "median, angle falling"):
+        assert np.isfinite(line(ax, label)[1]).all(), label
+
+
+def test_the_band_of_slides_is_drawn_where_frames_go_both_ways() -> None:
+    """Every cycle rises to 120 deg by steps, and falls from there at once to 60 deg."""
+    view = drawn_trial("long")
+    time = np.arange(view.frame.size)
+    share = time % 400 / 400.0
+    high = np.where(share < 0.75, 60.0 + 80.0 * share, 120.0)
+    low = 60.0 * np.where(share < 0.9, (0.9 - share) / 0.15, (share - 0.9) / 0.1)
+    angle = np.radians(np.where(share < 0.75, high, low))
+    ax = kinematics.plot_slide_span(Figure().add_subplot(), replace(view, angle=angle, slide=0.001 * np.sin(time)))
+    (band,) = (one for one in ax.collections if one.get_label() == "90 % of the frames")
+    there = np.concatenate([np.asarray(path.vertices)[:, 0] for path in band.get_paths()])
+    assert not ((there > 65.0) & (there < 115.0)).any()  # at the top itself frames turn back
+    assert (there < 60.0).any()
+    assert np.isfinite(line(ax, "median, angle rising")[1][-5:]).all()
+
+
 def test_velocities_over_time(trial: Analysis) -> None:
     moving = trial.instantaneous
     turning = kinematics.plot_angular_velocity(Figure().add_subplot(), trial)
@@ -132,3 +159,6 @@ def test_losses_are_drawn_where_frames_were_lost(trial: Analysis) -> None:
 
 def test_the_quality_has_a_panel_for_all_that_is_known(trial: Analysis) -> None:
     assert len(FIGURES["quality"](trial).axes) == 4
+    assert [ax.get_ylabel() for ax in FIGURES["quality"](drawn_trial("orientations")).axes[1:]] == [
+        "Residual\nrotation (deg)"
+    ]

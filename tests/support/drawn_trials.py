@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from elbowscrew import Settings, analyze, simulate_trial
-from elbowscrew.model import Landmark, Landmarks
+from elbowscrew.model import Landmark, Landmarks, Recording, RigidBody
 from elbowscrew.results.trial_views import view_of
 from elbowscrew.view.trial_view import TrialView
 
@@ -20,6 +20,8 @@ SIMULATED: dict[str, dict[str, Any]] = {
     "gappy": {"frames": 300, "inversion": 140, "repetitions": 2, "gaps": 9, "gap_frames": 17, "proximal": "moving"},
     "two axes": {"frames": 240, "inversion": 110, "repetitions": 3, "joint_type": "two-axes", "proximal": "moving"},
     "wandering": {"frames": 150, "inversion": 70, "joint_type": "hinge", "wander_deg": 12.0, "proximal": "moving"},
+    "noise-free": {"frames": 120, "inversion": 55, "joint_type": "hinge", "marker_noise_mm": 0.0},
+    "orientations": {"frames": 150, "inversion": 70, "joint_type": "two-axes", "proximal": "moving"},
     "ball": {"frames": 200, "inversion": 90, "joint_type": "ball", "joint": "hip", "top_deg": 70.0},
 }
 SETTINGS: dict[str, dict[str, Any]] = {
@@ -35,6 +37,11 @@ KINDS = tuple(SIMULATED)
 def drawn_trial(kind: str) -> TrialView:
     """What is shown of a trial of a kind; the long one has 22,500 frames."""
     recording = simulate_trial(**{"seed": 7, **SIMULATED[kind]}).recording
+    if kind == "orientations":
+        turning = [
+            RigidBody.from_quaternions(one.name, one.dual_quat_lab_body[:, :4], None) for one in recording.bodies
+        ]
+        recording = Recording.from_bodies(turning, rate_hz=100.0)
     landmarks = elbow_landmarks() if kind in ("two axes", "multi-cycle", "long") else None
     return view_of(analyze(recording, Settings(**SETTINGS.get(kind, {})), landmarks=landmarks))
 

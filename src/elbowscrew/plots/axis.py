@@ -29,7 +29,10 @@ from elbowscrew.view.trial_view import TrialView
 
 _MOST_POINTS: Final = 4000
 _AROUND: Final = 32
-_LEAST_SEEN: Final = 0.008
+_LEAST_SEEN: Final = 0.025  # of the axis' length: a narrower cone's lines run into one bar at a column's width
+_MOST_SEEN: Final = 0.5  # a wider one runs out of the space
+IN_FRONT: Final = 50.0
+"""Where the axes of joints are drawn: matplotlib would put all collections in a space before its lines."""
 
 
 class _MeanFrame(NamedTuple):
@@ -85,7 +88,7 @@ def plot_axes_in_space(ax: Axes3D, analysis: Analysis | TrialView) -> Axes3D:
     colors = color_scale(view).to_rgba(angle_in(view.angle[rows], view.settings.angle_unit))
     ax.add_collection3d(Line3DCollection(list(segments), colors=colors, linewidths=0.7))
     ends = length_in(mean.center + 1.3 * half * np.outer([-1.0, 1.0], mean.direction), unit)
-    ax.plot(*ends.T, linewidth=1.6, label="mean axis", **style.AXES[0])
+    ax.plot(*ends.T, linewidth=1.6, zorder=IN_FRONT, label="mean axis", **style.AXES[0])
     words = view.named_joint
     plot_path(ax, bodies.path, unit, f"{words.distal.name} path")
     shown = [segments.reshape(-1, 3), ends, length_in(bodies.corners, unit)]
@@ -122,9 +125,10 @@ def plot_body(
 def plot_cone(ax: Axes3D, center: Float, direction: Float, along: Float, reach: Float, color: str, label: str) -> None:
     """Draw what surrounds an axis, `reach` (K,) from it at `along` (K,), by its rings and by lines from end to end.
 
-    Where it would be no wider than the axis itself it is left to the panels that enlarge it.
+    Where it would be hardly wider than the axis itself, or wider than the space, it is left to the panels that show it
+    at a scale of its own.
     """
-    if reach.max() < _LEAST_SEEN * np.ptp(along):
+    if not _LEAST_SEEN <= reach.max() / np.ptp(along) <= _MOST_SEEN:
         return
     u, v = directions_across(direction)[0]
     turn = np.linspace(0.0, 2.0 * np.pi, _AROUND + 1)

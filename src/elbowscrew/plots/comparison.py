@@ -17,6 +17,7 @@ from elbowscrew.model import ComparedModels, ComparedOverTrials, Comparison, Sel
 from elbowscrew.plots import style
 from elbowscrew.quantities import angle_in, length_in
 from elbowscrew.settings import Settings
+from elbowscrew.view.comparisons import has_displacements
 
 _WIDTH_MM: Final = 170.0
 _BETWEEN_TWO: Final = {
@@ -52,10 +53,9 @@ class _Errors(NamedTuple):
     def of(cls, models: ComparedModels | ComparedOverTrials, settings: Settings) -> _Errors:
         """RMS displacements, or of orientations alone, which have none, the angles."""
         mean = "" if isinstance(models, ComparedModels) else "_mean"
-        value: Float = getattr(models, f"rms_displacement{mean}")
-        of_length = bool(np.isfinite(value).any())
+        of_length = has_displacements(models)
         kind = "rms_displacement" if of_length else "rms_angle_error"
-        value = getattr(models, f"{kind}{mean}")
+        value: Float = getattr(models, f"{kind}{mean}")
         spread = getattr(models, f"{kind}_sd") if mean else np.full(models.rank.size, np.nan)
         known = np.isfinite(value)
         if of_length:
@@ -103,8 +103,7 @@ def comparison_figure(found: Comparison | TrialsComparison) -> Figure:
     plot_keyframe_sources(panels[2], errors)
     trials = [found.selections] if isinstance(found, Comparison) else [one.selections for one in found.trials]
     plot_selections(panels[3], trials, found.settings)
-    for ax, letter in zip(panels, "abcd", strict=True):
-        ax.set_title(letter, loc="left")
+    style.letter(*panels)
     return figure
 
 
@@ -178,7 +177,8 @@ def plot_selections(ax: Axes, trials: Sequence[dict[str, Selection]], settings: 
     """
     chosen = [found for selections in trials for found in selections.values()]
     of_angles = bool(chosen) and all(found.as_angle for found in chosen)
-    trials = [{name: one for name, one in found.items() if one.as_angle == of_angles} for found in trials]
+    alike = [{name: one for name, one in found.items() if one.as_angle == of_angles} for found in trials]
+    trials = [found for found in alike if found]
     unit = settings.angle_unit if of_angles else settings.length_unit
 
     def told(values: Float) -> Float:
@@ -195,7 +195,7 @@ def plot_selections(ax: Axes, trials: Sequence[dict[str, Selection]], settings: 
                 "markersize": 3.0,
             }
             ax.plot(selection.count, told(selection.largest), label=label, **look)
-    if trials and trials[0]:
+    if trials:
         tolerance = float(told(np.array(next(iter(trials[0].values())).tolerance)))
         ax.axhline(tolerance, **style.LEVEL)
         ax.annotate(

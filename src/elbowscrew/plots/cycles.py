@@ -13,9 +13,8 @@ from elbowscrew.plots import style
 from elbowscrew.plots.figures import NARROW_MM, WIDTH_MM
 from elbowscrew.quantities import angle_in
 from elbowscrew.results.trial_views import view_of
+from elbowscrew.view.long_trials import MOST_CYCLES
 from elbowscrew.view.trial_view import TrialView
-
-_MOST_CURVES: Final = 20
 
 
 def cycles_figure(analysis: Analysis | TrialView, *, width_mm: float = WIDTH_MM) -> Figure:
@@ -37,7 +36,7 @@ def plot_cycles(ax: Axes, analysis: Analysis | TrialView) -> Axes:
     percent = table["percent"].reshape(count, -1)[0]
     curves = angle_in(table["angle"].reshape(count, -1), unit)
     name = f"{count} cycle{'s' if count > 1 else ''}"
-    if count > _MOST_CURVES:
+    if count > MOST_CYCLES:
         known = np.isfinite(curves).any(axis=0)
         low, high = np.fmin.reduce(curves), np.fmax.reduce(curves)
         ax.fill_between(percent[known], low[known], high[known], label=f"range of {name}", **_RANGE)

@@ -35,8 +35,7 @@ def theta_figure(analysis: Analysis | TrialView, *, width_mm: float = WIDTH_MM) 
     figure = style.new_figure(width_mm, 62.0 if width_mm < NARROW_MM else 76.0)
     panels = series.overview_grid(figure, view, stretch, 1)
     series.plot_theta(panels[-1], shown)
-    if stretch is not None:
-        style.letter(*panels)
+    style.letter(*panels)
     style.legend(figure, *panels)
     return figure
 

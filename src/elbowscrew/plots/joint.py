@@ -14,7 +14,7 @@ from mpl_toolkits.mplot3d.axes3d import Axes3D
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import Analysis
 from elbowscrew.plots import style
-from elbowscrew.plots.axis import color_scale, equal_aspect, label_space, plot_cone, plot_path
+from elbowscrew.plots.axis import IN_FRONT, color_scale, equal_aspect, label_space, plot_cone, plot_path
 from elbowscrew.quantities import angle_in, length_in
 from elbowscrew.results.trial_views import view_of
 from elbowscrew.view.scene import Bundle, Region, bodies_in_space, directions_across, joint_bundle
@@ -32,13 +32,13 @@ def plot_joint_axis_in_space(ax: Axes3D, analysis: Analysis | TrialView) -> Axes
     colors = color_scale(view).to_rgba(angle_in(view.angle[bundle.rows], view.settings.angle_unit))
     ax.add_collection3d(Line3DCollection(list(bundle.segments), colors=colors, linewidths=0.6))
     ends = _ends(bundle)
-    ax.plot(*ends.T, linewidth=1.6, label=bundle.name, **style.AXES[0])
+    ax.plot(*ends.T, linewidth=1.6, zorder=IN_FRONT, label=bundle.name, **style.AXES[0])
     along = np.linspace(-bundle.half, bundle.half, _ALONG_IN_SPACE)
-    for region, label, look in _regions(bundle):
+    for region, label, look in _regions(bundle, bundle.half):
         plot_cone(ax, bundle.center, bundle.direction, along, region.reach(along), look["edgecolor"], label)
     bodies = bodies_in_space(view)
     plot_path(ax, bodies.path, unit, f"{view.named_joint.distal.name} path")
-    equal_aspect(ax, np.concatenate([ends, length_in(bodies.corners, unit)]))
+    equal_aspect(ax, np.concatenate([ends, bundle.segments.reshape(-1, 3), length_in(bodies.corners, unit)]))
     label_space(ax, unit)
     return ax
 
@@ -55,7 +55,7 @@ def plot_axis_from_the_side(ax: Axes, analysis: Analysis | TrialView, side: int)
     offset = bundle.segments - bundle.center
     _add_segments(ax, view, bundle, np.stack([offset @ bundle.direction, offset @ directions[side]], axis=2))
     along = np.linspace(-bundle.half, bundle.half, _ALONG)
-    for region, label, look in _regions(bundle):
+    for region, label, look in _regions(bundle, bundle.half):
         reach = region.reach(along)
         ax.fill_between(along, -reach, reach, label=label, **look)
     ax.plot([-bundle.half, bundle.half], [0.0, 0.0], linewidth=1.3, zorder=4, label=bundle.name, **style.AXES[0])
@@ -75,7 +75,7 @@ def plot_axis_end_on(ax: Axes, analysis: Analysis | TrialView) -> Axes:
     directions, names = directions_across(bundle.direction)
     offset = bundle.segments - bundle.center
     _add_segments(ax, view, bundle, np.stack([offset @ direction for direction in directions], axis=2))
-    for region, _, look in _regions(bundle):
+    for region, _, look in _regions(bundle, 0.0):
         ax.add_patch(Circle((0.0, 0.0), region.radius, **look))
     ax.plot(0.0, 0.0, "+", color=style.AXES[0]["color"], markersize=8, markeredgewidth=1.2, zorder=4)
     reach = 1.25 * bundle.reach_across(np.inf)
@@ -111,12 +111,17 @@ def _bundle(view: TrialView) -> Bundle:
     return joint_bundle(view).scaled(float(length_in(np.array(1.0), view.settings.length_unit)))
 
 
-def _regions(bundle: Bundle) -> list[tuple[Region, str, dict[str, Any]]]:
+def _regions(bundle: Bundle, along: float) -> list[tuple[Region, str, dict[str, Any]]]:
+    """What is drawn about the axis, the one that is wider so far along it behind the other."""
     told = {
         "spread": ("95 % of the frames' axes", style.SPREAD),
-        "confidence": ("95 % confidence of the joint axis", {**style.BAND, "zorder": 1.5}),
+        "confidence": ("95 % confidence of the joint axis", style.BAND),
     }
-    return [(region, *told[name]) for name, region in bundle.regions.items()]
+    widest_first = sorted(bundle.regions.items(), key=lambda item: -float(item[1].reach(np.array(along))))
+    return [
+        (region, told[name][0], {**told[name][1], "zorder": 1.0 + 0.5 * k})
+        for k, (name, region) in enumerate(widest_first)
+    ]
 
 
 def _ends(bundle: Bundle) -> Float:

@@ -16,6 +16,7 @@ from elbowscrew.plots.figures import NARROW_MM, WIDTH_MM
 from elbowscrew.plots.series import band, line, mark_tracking, over_time, overview_grid, span_line
 from elbowscrew.quantities import angle_in, length_in
 from elbowscrew.results.trial_views import view_of
+from elbowscrew.view.bands import span_of
 from elbowscrew.view.decimation import drawn_rows
 from elbowscrew.view.joint_space import ANGLE_NAMES
 from elbowscrew.view.long_trials import shown_part
@@ -66,9 +67,10 @@ def plot_joint_angles(ax: Axes, analysis: Analysis | TrialView) -> Axes:
     view, angles = _with_angles(analysis)
     unit = view.settings.angle_unit
     names = ANGLE_NAMES[angles.angle.shape[1]]
+    span = span_of(angle_in(angles.angle, unit))
     for k, name in enumerate(names):
         values, reach = angle_in(angles.angle[:, k], unit), angle_in(NORMAL_95 * angles.angle_sd[:, k], unit)
-        band(ax, angles.time_s, values, reach)
+        band(ax, angles.time_s, values, reach, span)
         line(ax, angles.time_s, values, label=name, linewidth=1.2, zorder=2, **style.AXES[k])
     mark_tracking(ax, view)
     ax.set_ylabel(f"{names[0] if len(names) == 1 else 'Angles'} ({unit})")

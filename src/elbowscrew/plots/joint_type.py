@@ -15,7 +15,7 @@ from elbowscrew.choices import JOINT_TYPE_WORDS
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import Analysis
 from elbowscrew.plots import style
-from elbowscrew.plots.axis import equal_aspect, label_space, plot_body, plot_cone
+from elbowscrew.plots.axis import IN_FRONT, equal_aspect, label_space, plot_body, plot_cone
 from elbowscrew.plots.figures import NARROW_MM, WIDTH_MM
 from elbowscrew.quantities import angle_in, length_in
 from elbowscrew.results.trial_views import view_of
@@ -51,7 +51,7 @@ def joint_figure(analysis: Analysis | TrialView, *, width_mm: float = WIDTH_MM) 
         else:
             plot_axis_known(ax, view, seen[k], k)
     style.letter(*spaces, *panels)
-    style.legend(figure, *spaces, *panels, below=True)
+    style.legend(figure, *panels, *spaces, below=True)
     return figure
 
 
@@ -80,7 +80,7 @@ def plot_joint_in_body(ax: Axes3D, analysis: Analysis | TrialView, body: JointIn
     shown = []
     for k, axis in enumerate(body.axes):
         ends = length_in(axis.ends(half), unit)
-        ax.plot(*ends.T, linewidth=1.5, label=_called(axis), **style.AXES[k])
+        ax.plot(*ends.T, linewidth=1.5, zorder=IN_FRONT, label=_called(axis), **style.AXES[k])
         shown.append(ends)
         if axis.lines.size:
             pieces = [
@@ -127,7 +127,7 @@ def plot_axis_known(ax: Axes, analysis: Analysis | TrialView, body: JointInBody,
     axis, half = body.axes[number], body.half
     along = np.linspace(-half, half, _ALONG)
     ax.plot(length_in(along[[0, -1]], unit), [0.0, 0.0], linewidth=1.3, **style.AXES[number])
-    ax.set_xlabel(f"Along {'the ' if axis.name == 'axis' else ''}{_called(axis)} ({unit})")
+    ax.set_xlabel(f"Along {'the ' if axis.name == 'axis' else ''}{_called(axis)},\n{body.word}'s frame ({unit})")
     ax.set_ylabel(f"Across ({unit})")
     if axis.known is None:
         text = "not determined"
@@ -167,6 +167,6 @@ def plot_center(ax: Axes, analysis: Analysis | TrialView, body: JointInBody, sid
     ax.set_box_aspect(1.0)
     ax.xaxis.set_major_locator(MaxNLocator(3))
     ax.yaxis.set_major_locator(MaxNLocator(4))
-    ax.set_xlabel(f"{'xyz'[first]} from the center ({unit})")
-    ax.set_ylabel(f"{'xyz'[second]} ({unit})")
+    ax.set_xlabel(f"{'xyz'[first]} from the center,\n{body.word}'s frame ({unit})")
+    ax.set_ylabel(f"{'xyz'[second]} from the center ({unit})")
     return ax

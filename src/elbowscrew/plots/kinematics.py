@@ -24,6 +24,7 @@ from elbowscrew.view.trial_view import TrialView, fitted_pitch_mm
 
 _BINS: Final = 60
 _LEAST_IN_BIN: Final = 10
+_STEPS_IN_BIN: Final = 2.0
 
 
 def slide_figure(analysis: Analysis | TrialView, *, width_mm: float = WIDTH_MM) -> Figure:
@@ -86,31 +87,42 @@ def plot_slide_span(ax: Axes, analysis: Analysis | TrialView) -> Axes:
     angle_unit, unit = view.settings.angle_unit, view.settings.length_unit
     with np.errstate(invalid="ignore"):
         way = np.sign(np.gradient(view.angle))
-    for mask, label, look in (
-        (np.ones(way.size, dtype=bool), "90 % of the frames", None),
-        (way > 0.0, "median, angle rising", style.MEASURED),
-        (way < 0.0, "median, angle falling", {**style.MEASURED, "linestyle": (0, (5, 2))}),
-    ):
-        angle, spans = _spans(view, mask)
-        low, middle, high = length_in(spans, unit).T
-        if look is None:
-            ax.fill_between(angle_in(angle, angle_unit), low, high, label=label, **style.SPREAD)
-        else:
-            ax.plot(angle_in(angle, angle_unit), middle, label=label, **look)
+    edges = _edges(view)
+    angle = angle_in(0.5 * (edges[:-1] + edges[1:]), angle_unit)
+    both, _ = _spans(view, np.ones(way.size, dtype=bool), edges)
+    rising, risen = _spans(view, way > 0.0, edges)
+    falling, fallen = _spans(view, way < 0.0, edges)
+    seen = (risen | ~risen.any()) & (fallen | ~fallen.any())  # of a motion that goes one way alone, that way
+    low, _, high = length_in(np.where(seen[:, None], both, np.nan), unit).T
+    ax.fill_between(angle, low, high, label="90 % of the frames", **style.SPREAD)
+    dashes = {"linestyle": (0, (5, 2))}
+    for spans, label, look in ((rising, "rising", {}), (falling, "falling", dashes)):
+        ax.plot(angle, length_in(spans[:, 1], unit), label=f"median, angle {label}", **{**style.MEASURED, **look})
     return _with_slope(ax, view)
 
 
-def _spans(view: TrialView, mask: Bool) -> tuple[Float, Float]:
-    """Angles (K,), and of the slides of frames near each 5 %, 50 % and 95 %, shape (K, 3)."""
-    known = np.isfinite(view.slide) & np.isfinite(view.angle)
-    reach = np.percentile(view.angle[known], [0.0, 100.0]) if known.any() else np.array([0.0, 1.0])
-    edges = np.linspace(reach[0], reach[1], _BINS + 1)
-    angle, slide = view.angle[known & mask], view.slide[known & mask]
+def _edges(view: TrialView) -> Float:
+    """Angles that part the frames: no closer than fast frames are to each other, which would leave parts empty."""
+    known = view.angle[np.isfinite(view.slide) & np.isfinite(view.angle)]
+    low, high = np.percentile(known, [0.0, 100.0]) if known.size else (0.0, 1.0)
+    step = np.abs(np.diff(view.angle))
+    step = step[np.isfinite(step)]
+    narrowest = _STEPS_IN_BIN * float(np.percentile(step, 95.0)) if step.size else 0.0
+    count = _BINS if narrowest * _BINS <= high - low else max(int((high - low) / narrowest), 1)
+    return np.linspace(low, high, count + 1)
+
+
+def _spans(view: TrialView, mask: Bool, edges: Float) -> tuple[Float, Bool]:
+    """Of the slides of frames between two angles 5 %, 50 % and 95 %, shape (K, 3), NaN and false where they are few."""
+    known = np.isfinite(view.slide) & np.isfinite(view.angle) & mask
+    angle, slide = view.angle[known], view.slide[known]
     of_bin = np.clip(np.digitize(angle, edges) - 1, 0, edges.size - 2)
     parts = [slide[of_bin == k] for k in range(edges.size - 1)]
-    nothing = [np.nan] * 3
-    spans = [np.percentile(part, [5.0, 50.0, 95.0]) if part.size >= _LEAST_IN_BIN else nothing for part in parts]
-    return 0.5 * (edges[:-1] + edges[1:]), np.array(spans)
+    enough = np.array([part.size >= _LEAST_IN_BIN for part in parts])
+    spans = np.full((edges.size - 1, 3), np.nan)
+    for k in np.flatnonzero(enough):
+        spans[k] = np.percentile(parts[k], [5.0, 50.0, 95.0])
+    return spans, enough
 
 
 def velocity_figure(analysis: Analysis | TrialView, *, width_mm: float = WIDTH_MM) -> Figure:

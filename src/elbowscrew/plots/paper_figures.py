@@ -38,6 +38,7 @@ def _angle_figure(analysis: Analysis | TrialView, *, width_mm: float = WIDTH_MM,
     ax.set_ylabel(f"Angle θ ({unit})")
     _alike(ax, angle_in(view.angle, unit), angle_in(view.modeled_angle, unit))
     series.over_time(ax, time_s)
+    style.letter(*panels)
     style.legend(figure, *panels)
     return figure
 
@@ -59,6 +60,7 @@ def _euler_figure(analysis: Analysis | TrialView, *, width_mm: float = WIDTH_MM,
     ax.set_ylabel("Modeled $e_k$ (–)" if modeled else "Measured $e_k$ (–)")
     _alike(ax, view.euler_parameters, view.modeled_euler_parameters)
     series.over_time(ax, time_s)
+    style.letter(*panels)
     style.legend(figure, *panels)
     return figure
 

@@ -29,7 +29,8 @@ def quality_figure(analysis: Analysis | TrialView, *, width_mm: float = WIDTH_MM
     view = view_of(analysis)
     rows = _losses(view)
     draw = [plot_losses, *([plot_angle_sd] if np.isfinite(view.angle_sd).any() else [])]
-    draw += [] if view.joint_angles is None else [plot_residual_rotation, plot_residual_translation]
+    draw += [] if view.joint_angles is None else [plot_residual_rotation]
+    draw += [] if view.joint_angles is None or not view.located else [plot_residual_translation]
     heights = [10.0 + _ROW_MM * len(rows), *[36.0] * (len(draw) - 1)]
     figure = style.new_figure(width_mm, sum(heights) + 10.0)
     panels = figure.subplots(len(draw), 1, sharex=True, squeeze=False, height_ratios=heights).ravel()

@@ -10,7 +10,6 @@ from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.gridspec import SubplotSpec
 
-from elbowscrew.choices import METHOD_LABELS
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.sensitivity import NORMAL_95
 from elbowscrew.model import Analysis
@@ -21,7 +20,7 @@ from elbowscrew.results.trial_views import view_of
 from elbowscrew.view.bands import is_seen
 from elbowscrew.view.decimation import drawn_band, drawn_rows
 from elbowscrew.view.long_trials import Stretch, envelope, stretch_of
-from elbowscrew.view.trial_view import TrialView
+from elbowscrew.view.trial_view import TrialView, model_label
 
 OVERVIEW_MM: Final = 24.0
 _KEYFRAMES: Final = 20  # more are drawn smaller
@@ -37,7 +36,7 @@ def plot_theta(ax: Axes, analysis: Analysis | TrialView) -> Axes:
     time_s = view.time_s
     band(ax, time_s, angle, reach)
     line(ax, time_s, angle, label="measured", **style.MEASURED)
-    line(ax, time_s, angle_in(view.modeled_angle, unit), label=_model_label(view), **style.MODELED)
+    line(ax, time_s, angle_in(view.modeled_angle, unit), label=model_label(view), **style.MODELED)
     mark_keyframes(ax, view, angle)
     mark_movements(ax, view)
     mark_tracking(ax, view)
@@ -52,7 +51,7 @@ def plot_euler_parameter(ax: Axes, analysis: Analysis | TrialView, component: in
     measured = view.euler_parameters[:, component]
     line(ax, time_s, measured, label="measured", **style.MEASURED)
     modeled = view.modeled_euler_parameters[:, component]
-    line(ax, time_s, modeled, label=_model_label(view), **style.MODELED)
+    line(ax, time_s, modeled, label=model_label(view), **style.MODELED)
     mark_keyframes(ax, view, measured)
     mark_tracking(ax, view)
     ax.set_ylabel(f"e{'₀₁₂₃'[component]} (–)")
@@ -194,9 +193,9 @@ def _plot_error(ax: Axes, view: TrialView, values: Float, name: str, unit: str) 
     return over_time(ax, time_s)
 
 
-def band(ax: Axes, time_s: Float, values: Float, reach: Float) -> Axes:
-    """Draw the 95 % interval about a curve, where it can be seen beside the curve's own width."""
-    if is_seen(values, reach):
+def band(ax: Axes, time_s: Float, values: Float, reach: Float, span: float | None = None) -> Axes:
+    """Draw the 95 % interval about a curve, where it can be seen on a panel that spans `span`, by default its range."""
+    if is_seen(values, reach, span):
         rows, low, high = drawn_band(values - reach, values + reach)
         ax.fill_between(time_s[rows], low, high, label="95 % interval", **style.BAND)
     return ax
@@ -222,8 +221,3 @@ def over_time(ax: Axes, time_s: Float) -> Axes:
     ax.set_xlim(time_s[0] - margin, time_s[-1] + margin)
     ax.set_xlabel("Time (s)")
     return ax
-
-
-def _model_label(view: TrialView) -> str:
-    method = METHOD_LABELS.get(view.settings.model_method, view.settings.model_method)
-    return f"{method} through {len(view.summary['interpolation']['keyframes'])} poses"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from contextlib import AbstractContextManager
 from difflib import get_close_matches
 from itertools import pairwise
@@ -64,6 +65,9 @@ DOTS_PER_INCH: Final = 300
 _TEXT: Final = 7.5
 _SETTLED: Final = 4  # layouts at most
 _LEAST_AIR: Final = 2.0  # pixels
+_RAISED: Final = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+_POWER: Final = re.compile(r"1e(.+)")
+_UNIT: Final = re.compile(r"(.*)\(([^()]*)\)", re.DOTALL)
 _RC: Final[dict[Any, Any]] = {
     "font.size": 8.0,
     "axes.labelsize": 8.0,
@@ -135,8 +139,8 @@ def new_figure(width_mm: float, height_mm: float) -> Figure:
 
 
 def letter(*panels: Axes) -> None:
-    """Name the panels of a figure a, b, ..."""
-    for ax, name in zip(panels, "abcdefgh", strict=False):
+    """Name the panels of a figure a, b, ...; one alone needs no name."""
+    for ax, name in zip(panels if len(panels) > 1 else (), "abcdefgh", strict=False):
         ax.set_title(name, loc="left")
 
 
@@ -183,19 +187,49 @@ def settle(figure: Figure) -> None:
     The layout's solver leaves last digits that differ from run to run, and with them the bytes of a file. It works
     here once: as the figure's own engine it would do so, and draw all for it, each time the figure is saved.
     """
-    for _ in range(_SETTLED):
+    for attempt in range(_SETTLED):
         ConstrainedLayoutEngine().execute(figure)
         for ax in figure.axes:
             _place(ax, ax.get_position(original=True).bounds)
         figure.draw_without_rendering()
         _place_spaces(figure)
-        if not _thinned(figure) and not _cut_off(figure):
+        if _multiplied(figure) or _thinned(figure):
+            continue
+        if not _cut_off(figure):
             return
+        if attempt > 0:
+            _keep_ticks(figure)
+
+
+def _multiplied(figure: Figure) -> bool:
+    """Write powers of ten by which ticks are multiplied into the units, and keep them; tell whether there were any.
+
+    Matplotlib would write them above the axes, over the panel's letter.
+    """
+    found = False
+    for axis in (axis for ax in figure.axes for axis in cast(Any, ax)._axis_map.values()):
+        formatter = axis.get_major_formatter()
+        told = _POWER.fullmatch(formatter.get_offset())
+        if told and axis.get_offset_text().get_visible():
+            power = int(told[1].replace("\N{MINUS SIGN}", "-"))
+            formatter.set_powerlimits((power, power))
+            axis.get_offset_text().set_visible(False)
+            axis.set_label_text(_multiplied_label(axis.get_label_text(), f"10{str(power).translate(_RAISED)}"))
+            found = True
+    return found
+
+
+def _multiplied_label(label: str, factor: str) -> str:
+    """Put a factor before the unit in parentheses at the end of a label; an empty one stays so."""
+    found = _UNIT.fullmatch(label)
+    name, unit = found.groups() if found else (f"{label} ", "–")
+    return f"{name}({factor}{'' if unit == '–' else f' {unit}'})" if label else ""
 
 
 def _place(ax: Axes, bounds: tuple[float, float, float, float]) -> None:
     left, bottom, width, height = (round(float(value), 6) for value in bounds)
     ax.set_position((left, bottom, width, height), which="both")
+    ax.set_in_layout(True)  # which it is no more when it was placed by hand
 
 
 def _place_spaces(figure: Figure) -> None:
@@ -250,6 +284,13 @@ def _thinned(figure: Figure) -> bool:
                 axis.set_major_locator(MaxNLocator(max(len(labels) - 2, 2), steps=[1, 2, 2.5, 5, 10]))
                 found = True
     return found
+
+
+def _keep_ticks(figure: Figure) -> None:
+    """Keep the ticks as they are: others, at another width, ask for a room in which these come back."""
+    for axis in (axis for ax in figure.axes if ax.name != "3d" for axis in (ax.xaxis, ax.yaxis)):
+        if axis.get_scale() == "linear":
+            axis.set_major_locator(FixedLocator(axis.get_majorticklocs().tolist()))
 
 
 def _labels(axis: Any) -> list[Bbox]:

@@ -7,16 +7,27 @@ from typing import Final
 
 import numpy as np
 
-from elbowscrew.choices import JOINT_TYPE_WORDS, METHOD_LABELS, AngleUnit
-from elbowscrew.geometry.arrays import Float
+from elbowscrew.choices import JOINT_TYPE_WORDS, AngleUnit
 from elbowscrew.geometry.sensitivity import NORMAL_95
 from elbowscrew.model import Comparison, TrialsComparison
-from elbowscrew.quantities import angle_in, length_in
-from elbowscrew.view.bands import is_seen
-from elbowscrew.view.long_trials import Stretch, stretch_of
-from elbowscrew.view.trial_view import TrialView, fitted_pitch_mm
-
-_MANY_CYCLES: Final = 20
+from elbowscrew.report.caption_words import (
+    KEYFRAMES,
+    PARTS,
+    angle,
+    filtered,
+    interval,
+    intervals_of_angles,
+    length,
+    letters_of_panels,
+    measured_and_model,
+    overview,
+    shading,
+    trial,
+)
+from elbowscrew.view.comparisons import has_displacements
+from elbowscrew.view.joint_space import JointInBody, joint_in_body
+from elbowscrew.view.long_trials import MOST_CYCLES, shown_part, stretch_of
+from elbowscrew.view.trial_view import TrialView, fitted_pitch_mm, model_label
 
 
 def caption_of(name: str, view: TrialView) -> str:
@@ -33,7 +44,7 @@ def caption_of(name: str, view: TrialView) -> str:
     str
         One line of plain text; names in it are the file's own.
     """
-    return " ".join(" ".join([*_CAPTIONS[name](view), *_trial(view)]).split())
+    return " ".join(" ".join([*_CAPTIONS[name](view), *trial(view)]).split())
 
 
 def overlay_caption(trials: int, cycles: int, unit: AngleUnit) -> str:
@@ -47,9 +58,6 @@ def overlay_caption(trials: int, cycles: int, unit: AngleUnit) -> str:
     )
 
 
-_DISPLACEMENT: Final = {True: "rms_displacement", False: "rms_displacement_mean"}
-
-
 def comparison_caption(found: Comparison | TrialsComparison) -> str:
     """Describe the figure of a comparison of models."""
     of = (
@@ -57,11 +65,10 @@ def comparison_caption(found: Comparison | TrialsComparison) -> str:
         if isinstance(found, Comparison)
         else f"{len(found.trials)} trials (mean, bars: standard deviation)"
     )
-    located = bool(np.isfinite(getattr(found.models, _DISPLACEMENT[isinstance(found, Comparison)])).any())
     settings = found.settings
     error = (
         f"RMS displacement of the distal body's points, {settings.length_unit}"
-        if located
+        if has_displacements(found.models)
         else f"angle between modeled and measured orientation, {settings.angle_unit}"
     )
     return (
@@ -75,52 +82,73 @@ def comparison_caption(found: Comparison | TrialsComparison) -> str:
 
 
 def _theta(view: TrialView) -> Iterator[str]:
+    shown, stretch = shown_part(view)
     yield (
         f"Rotation angle θ of the {view.named_joint.distal.name} against the {view.named_joint.proximal.name} over "
         "time."
     )
-    yield from _long(view, "the range of θ in each part of the recording")
-    yield _model(view)
-    yield _interval(view, "θ", view.angle, view.angle_sd, is_angle=True)
-    yield from _shading(view, moving=True)
+    yield from overview(stretch)
+    yield measured_and_model(view)
+    yield interval(shown, "θ", shown.angle, shown.angle_sd, is_angle=True)
+    yield from shading(shown, moving=True)
 
 
 def _euler_parameters(view: TrialView) -> Iterator[str]:
+    shown, stretch = shown_part(view)
     yield "Euler parameters e0 to e3 of the displacement since the reference over time."
-    yield from _long(view, "the range of θ in each part of the recording")
-    yield _model(view)
-    yield from _shading(view)
+    yield from overview(stretch)
+    yield measured_and_model(view)
+    yield from shading(shown)
 
 
 def _joint(view: TrialView) -> Iterator[str]:
-    words, found = view.named_joint, view.joint_summary["joint_type"]
-    two = view.joint_summary["two_axes"] is not None
-    ball = view.joint_summary["ball"] is not None
-    yield f"The joint: {JOINT_TYPE_WORDS[found['type']]}."
-    what = "Its two axes" if two else "Its center" if ball else "Its axis"
+    proximal, distal = view.named_joint.proximal.name, view.named_joint.distal.name
+    body, other = joint_in_body(view, "proximal"), joint_in_body(view, "distal")
+    yield f"The joint: {JOINT_TYPE_WORDS[view.joint_summary['joint_type']['type']]}."
+    two, ball = len(body.axes) == 2, body.center is not None
+    what = "Its two axes" if two else "Its center" if ball else "Its axis" if body.axes else "Both bodies"
     yield (
-        f"{what} at the reference, in the frame of (a) the {words.proximal.name} and (b) the {words.distal.name}, "
-        "with the "
-        f"origins and markers of the {words.proximal.name} (filled squares) and of the {words.distal.name} (open "
+        f"{what} at the reference, in the frame of (a) the {proximal} and (b) the {distal}, with "
+        f"{_drawn_of_bodies(body, proximal, distal)} of the {proximal} (filled squares) and of the {distal} (open "
         "circles)."
     )
     if two:
         yield "Thin lines: where the angle about the other axis carries an axis."
-        yield "(c, d) What holds 95 % of each axis (orange), enlarged across it."
+        yield f"(c) Axis 1 in the {proximal}'s frame and (d) axis 2 in the {distal}'s,"
+        yield _held([body.axes[0].known, other.axes[1].known], "enlarged across it")
     elif ball:
-        yield "(c, d) What holds 95 % of the center (orange), from two sides."
-    elif view.joint_summary["preferred"] is not None or view.joint_summary["mean_axis"] is not None:
-        yield "(c) What holds 95 % of the axis (orange), enlarged across it."
+        yield f"(c, d) The center in the xy and the xz plane of the {proximal}'s frame,"
+        known = body.semi_axes is not None and bool(np.isfinite(body.semi_axes).all())
+        yield _held([True if known else None], "from two sides")
+    elif body.axes:
+        yield f"(c) The axis in the {proximal}'s frame,"
+        yield _held([body.axes[0].known], "enlarged across it")
+
+
+def _drawn_of_bodies(body: JointInBody, proximal: str, distal: str) -> str:
+    own, other = body.markers is not None, body.other_markers is not None
+    if own == other:
+        return "the origins and markers" if own else "the origins"
+    return f"the markers of the {proximal if own else distal} and the origins"
+
+
+def _held(known: list[object | None], seen: str) -> str:
+    """Tell what is drawn of an interval: orange where it is known."""
+    if all(one is None for one in known):
+        return "of which no 95 % interval is known."
+    where = " where it is known" if None in known else ""
+    return f"with what holds 95 % (orange{where}), {seen}."
 
 
 def _slide(view: TrialView) -> Iterator[str]:
     yield "Slide along each frame's screw axis against the rotation about it."
     if stretch_of(view) is None:
-        yield _interval(view, "the slide", view.slide, view.slide_sd, is_angle=False)
+        yield interval(view, "the slide", view.slide, view.slide_sd, is_angle=False)
     else:
-        yield "Grey band: 90 % of the frames at each angle; black: their median as θ rises, and dashed as it falls."
+        yield "Grey band: 90 % of the frames at each angle; black: their median as θ rises, and dashed as it falls;"
+        yield "none where there are too few."
         if np.isfinite(view.slide_sd).any():
-            half = _length(view, NORMAL_95 * float(np.nanmedian(view.slide_sd)))
+            half = length(view, NORMAL_95 * float(np.nanmedian(view.slide_sd)))
             yield f"95 % interval of one frame by the noise of the poses: ±{half} (median)."
     pitch_mm = fitted_pitch_mm(view)
     if pitch_mm is not None:
@@ -130,7 +158,7 @@ def _slide(view: TrialView) -> Iterator[str]:
 
 
 def _error(view: TrialView) -> Iterator[str]:
-    named, body = _named_model(view), view.named_joint.distal.name
+    named, body = model_label(view), view.named_joint.distal.name
     if view.located:
         yield (
             f"Error of the model ({named}) over time: (a) angle between modeled and measured orientation, (b) RMS "
@@ -138,27 +166,33 @@ def _error(view: TrialView) -> Iterator[str]:
         )
     else:
         yield f"Error of the model ({named}) over time: angle of modeled to measured orientation; dotted: its RMS."
-    yield "Circles: the poses that the model passes through." if stretch_of(view) is None else _PARTS
-    yield from _shading(view)
+    yield KEYFRAMES if stretch_of(view) is None else PARTS
+    yield from shading(view)
 
 
 def _anatomy(view: TrialView) -> Iterator[str]:
+    shown, stretch = shown_part(view)
     side = "" if view.summary["landmarks"] is None else f" ({view.summary['landmarks']['side']} side)"
+    a, b, c, d, e = letters_of_panels(stretch, 5)
     yield (
-        f"Flexion, carrying angle (varus positive) and pronation by the ISB's sequence Z-X-Y{side}, over time and, "
-        "of the "
-        "latter two, against flexion (diamond: start)."
+        f"{a}Flexion, {b}carrying angle (varus positive) and {c}pronation by the ISB's sequence Z-X-Y{side} over time; "
+        f"{d}carrying angle and {e}pronation against flexion (diamond: start)."
     )
-    yield from _long(view, "the range of θ in each part of the recording")
-    yield from _shading(view)
+    yield from overview(stretch)
+    yield from shading(shown)
 
 
 def _velocity(view: TrialView) -> Iterator[str]:
-    along = ", and velocity along it," if view.located else ""
-    yield f"Angular velocity about the instantaneous axis, positive as θ grows{along} over time."
-    yield from _filter(view)
-    yield from _long(view, "the range of θ in each part of the recording")
-    yield from _shading(view)
+    shown, stretch = shown_part(view)
+    what = "Angular velocity about the instantaneous axis"
+    what += ", positive as θ grows" if view.summary["motion"]["signed"] else ", its size alone"
+    a, *others = letters_of_panels(stretch, 1 + view.located)
+    yield f"{a}{what}{f', and {others[0]}velocity along it' if others else ''}, over time."
+    yield filtered(view)
+    if others:
+        yield f"No velocity along it is given below {view.settings.min_rate_rad_s:g} rad/s."
+    yield from overview(stretch)
+    yield from shading(shown)
 
 
 def _instantaneous_axes(view: TrialView) -> Iterator[str]:
@@ -167,12 +201,13 @@ def _instantaneous_axes(view: TrialView) -> Iterator[str]:
         "their "
         "mean, which weights each by the square of its angular velocity; color: θ."
     )
-    yield from _filter(view)
+    yield filtered(view)
+    yield f"No axis is given below {view.settings.min_rate_rad_s:g} rad/s."
 
 
 def _cycles(view: TrialView) -> Iterator[str]:
     count = view.repetitions.number.size
-    each = "range of all (light grey)" if count > _MANY_CYCLES else "each (thin grey)"
+    each = "range of all (light grey)" if count > MOST_CYCLES else "each (thin grey)"
     if count == 1:
         yield "Angle θ of the one cycle over its time."
     else:
@@ -181,12 +216,14 @@ def _cycles(view: TrialView) -> Iterator[str]:
 
 
 def _quality(view: TrialView) -> Iterator[str]:
-    yield "Quality over time: frames without a measured pose, by body and reason;"
-    yield "standard deviation of θ by the noise of the poses"
-    yield "" if view.joint_angles is None else "and what the joint leaves of each pose, rotation and position"
-    yield "(none where it is not known)."
-    if stretch_of(view) is not None:
-        yield _PARTS
+    names = ["frames without a measured pose, by body and reason"]
+    names += ["standard deviation of θ by the noise of the poses"] if np.isfinite(view.angle_sd).any() else []
+    names += [] if view.joint_angles is None else ["rotation that the joint leaves of each pose"]
+    names += [] if view.joint_angles is None or not view.located else ["distance that it leaves"]
+    letters = letters_of_panels(None, len(names))
+    yield f"Quality over time: {'; '.join(f'{one}{name}' for one, name in zip(letters, names, strict=True))}."
+    if stretch_of(view) is not None and len(names) > 1:
+        yield PARTS
 
 
 def _axis(view: TrialView) -> Iterator[str]:
@@ -198,31 +235,33 @@ def _axis(view: TrialView) -> Iterator[str]:
 
 
 def _joint_axis(view: TrialView) -> Iterator[str]:
+    grey = "; grey: 95 % of the frames' axes" if np.isfinite(view.spread95).all() else ""
     yield (
         f"The joint's axis among the axes of the frames, in the {view.settings.express_in} frame: (a) in space, (b) "
-        "end-on, "
-        "(c, d) from two sides, enlarged across; color: θ; grey: 95 % of the frames' axes."
+        f"end-on, (c, d) from two sides, enlarged across; color: θ{grey}."
     )
     if view.confidence95 is None:
         yield "The motion has no single axis: the weighted mean of the frames' axes is shown."
         return
     model = str(view.joint_summary["preferred"]).replace("_", "-")
-    angle, radius = view.confidence95
-    if not np.isfinite(angle):
+    cone, radius = view.confidence95
+    if not np.isfinite([cone, radius]).all():
         yield f"Fit: {model}; its confidence is not known."
         return
-    yield f"Fit: {model}; orange: 95 % confidence, {_angle(view, angle)} and {_length(view, radius)}."
+    yield f"Fit: {model}; orange: 95 % confidence, {angle(view, cone)} and {length(view, radius)}."
 
 
 def _joint_angles(view: TrialView) -> Iterator[str]:
-    yield f"The joint's own angles ({JOINT_TYPE_WORDS[view.joint_summary['joint_type']['type']]}) over time"
-    yield "and what it leaves of each pose, rotation and position." if view.located else "and the rotation it leaves."
-    yield from _long(view, "the range of θ in each part of the recording")
-    if view.joint_angles is not None:
-        reach = NORMAL_95 * view.joint_angles.angle_sd
-        if np.isfinite(reach).any():
-            yield f"95 % intervals: ±{_angle(view, float(np.nanmedian(reach)))} (median)."
-    yield from _shading(view)
+    shown, stretch = shown_part(view)
+    both = view.joint_angles is not None and view.joint_angles.angle.shape[1] == 2
+    a, b, *others = letters_of_panels(stretch, 2 + view.located + both)
+    position = f" and {others[0]}position" if view.located else ""
+    together = f"; {others[-1]}the second angle against the first (diamond: start)" if both else ""
+    yield f"{a}The joint's own angles ({JOINT_TYPE_WORDS[view.joint_summary['joint_type']['type']]}) over time;"
+    yield f"what it leaves of each pose: {b}rotation{position}{together}."
+    yield from overview(stretch)
+    yield from intervals_of_angles(shown)
+    yield from shading(shown)
 
 
 def _axis_path(view: TrialView) -> Iterator[str]:
@@ -235,17 +274,19 @@ def _axis_path(view: TrialView) -> Iterator[str]:
 
 def _paper(what: str, modeled: bool) -> Callable[[TrialView], Iterator[str]]:
     def told(view: TrialView) -> Iterator[str]:
-        yield f"{what} over time, {'modeled by ' + _named_model(view) if modeled else 'measured'}"
+        shown, stretch = shown_part(view)
+        yield f"{what} over time, {'modeled by ' + model_label(view) if modeled else 'measured'}"
         yield (
             "(as figures 7 to 10 of Pennestrì and Valentini 2010; one scale with the "
             f"{'measured' if modeled else 'modeled'})."
         )
-        yield from _long(view, "the range of θ in each part of the recording")
+        yield from overview(stretch)
+        yield KEYFRAMES if what is _ANGLE else ""
+        yield from () if modeled else shading(shown)
 
     return told
 
 
-_PARTS: Final = "Black: median, and grey: range of each part of the recording."
 _ANGLE, _PARAMETERS = "Rotation angle θ", "Euler parameters e0 to e3"
 _CAPTIONS: Final[dict[str, Callable[[TrialView], Iterator[str]]]] = {
     "theta": _theta,
@@ -267,60 +308,3 @@ _CAPTIONS: Final[dict[str, Callable[[TrialView], Iterator[str]]]] = {
     "fig9": _paper(_PARAMETERS, modeled=False),
     "fig10": _paper(_PARAMETERS, modeled=True),
 }
-
-
-def _model(view: TrialView) -> str:
-    return f"Black: measured; blue, dashed: {_named_model(view)} (circles)."
-
-
-def _named_model(view: TrialView) -> str:
-    method = METHOD_LABELS.get(view.settings.model_method, view.settings.model_method)
-    return f"{method} through {len(view.summary['interpolation']['keyframes'])} poses"
-
-
-def _long(view: TrialView, overview: str) -> Iterator[str]:
-    stretch: Stretch | None = stretch_of(view)
-    if stretch is not None:
-        yield f"(a) Overview: {overview}; the others show the stretch marked there, {stretch.told}."
-
-
-def _interval(view: TrialView, name: str, values: Float, sd: Float, *, is_angle: bool) -> str:
-    reach = NORMAL_95 * sd
-    if not np.isfinite(reach).any():
-        return f"The uncertainty of {name} is not known."
-    middle = float(np.nanmedian(reach))
-    told = _angle(view, middle) if is_angle else _length(view, middle)
-    how = "orange band" if is_seen(values, reach) else "too narrow to be drawn"
-    return f"95 % interval of {name} by the noise of the poses: ±{told} (median; {how})."
-
-
-def _angle(view: TrialView, value: float) -> str:
-    return f"{float(angle_in(np.array(value), view.settings.angle_unit)):.2g} {view.settings.angle_unit}"
-
-
-def _length(view: TrialView, value: float) -> str:
-    return f"{float(length_in(np.array(value), view.settings.length_unit)):.2g} {view.settings.length_unit}"
-
-
-def _shading(view: TrialView, *, moving: bool = False) -> Iterator[str]:
-    lost, filled = int((~view.valid & ~view.filled).sum()), int(view.filled.sum())
-    parts = ["light blue: moving"] if moving and view.phases.onset_rows.size else []
-    parts += [f"light red: not tracked ({_frames(lost)})"] if lost else []
-    parts += [f"hatched: filled in ({_frames(filled)})"] if filled else []
-    if parts:
-        yield f"Shaded {', '.join(parts)}."
-
-
-def _frames(count: int) -> str:
-    return f"{count} frame{'' if count == 1 else 's'}"
-
-
-def _filter(view: TrialView) -> Iterator[str]:
-    cutoff = view.summary["trial"]["instantaneous_lowpass_hz"]
-    if cutoff is not None:
-        yield f"From poses low-pass filtered at {cutoff:.3g} Hz; none below {view.settings.min_rate_rad_s:g} rad/s."
-
-
-def _trial(view: TrialView) -> Iterator[str]:
-    name = " ".join(str(view.summary["source"]["name"] or "").split())
-    yield f"{name + ', ' if name else ''}{view.frame.size} frames at {view.rate_hz:.6g} Hz."

@@ -105,8 +105,13 @@ def _intervals(joint: JointSummary, *, located: bool) -> Iterator[str]:
             f"Stated and included is motion of each cluster as a whole of {number(skin['mm'])} mm and "
             f"{number(skin['deg'])} deg: its part is {number(skin['part_deg'])} deg and {number(skin['part_mm'])} mm."
         )
-    elif skin is not None:
+    elif skin is not None and skin["deg"] > 0.0:
         yield (
             f"Stated and included is a turn of each sensor on its bone of {number(skin['deg'])} deg: its part is "
             f"{number(skin['part_deg'])} deg."
+        )
+    elif skin is not None:
+        yield (
+            "The millimeters of motion that --skin-motion states have no effect on orientations without positions: "
+            "--skin-motion 0,DEG states a turn."
         )

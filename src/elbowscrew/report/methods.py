@@ -155,6 +155,7 @@ def _noise(noise: NoiseOfBodies, *, located: bool) -> Iterator[str]:
 def _joint_axis(trial: TrialView) -> Iterator[str]:
     joint = trial.joint_summary
     preferred, fit, screw_hinge = joint["preferred"], preferred_fit(joint), joint["screw_hinge"]
+    skin = joint["skin_motion"]
     if preferred is None or fit is None:
         share = joint["unexplained_share"]
         left = "more rotation than there is about it" if share is None else f"{100.0 * share:.2g} % of its rotation"
@@ -191,9 +192,8 @@ def _joint_axis(trial: TrialView) -> Iterator[str]:
                 f"{told['interval_method']}. It holds if no sensor turns on its bone with the motion; each degree that "
                 f"one does turns the axis by up to {fit['sensitivity_deg_per_deg']:.2g}°."
             )
-            if trial.settings.skin_motion is not None:
-                turn = trial.settings.skin_motion[1] if len(trial.settings.skin_motion) > 1 else 0.0
-                yield f"A turn of the sensors on the bone of {turn:g}° was stated and is included."
+            if skin is not None and skin["deg"] > 0.0:
+                yield f"A turn of the sensors on the bone of {skin['deg']:g}° was stated and is included."
         elif told["axis_cone95_deg"] is not None:
             yield (
                 f"Its 95 % cone and radius, {told['axis_cone95_deg']:.2g}° and {told['point_radius95_mm']:.2g} mm, are "
@@ -201,10 +201,12 @@ def _joint_axis(trial: TrialView) -> Iterator[str]:
                 "the bone no more as a whole than their markers among themselves; each degree that a cluster turns "
                 f"with the motion turns the axis by up to {fit['sensitivity_deg_per_deg']:.2g}°."
             )
-            if trial.settings.skin_motion is not None:
-                stated = " mm and ".join(f"{part:g}" for part in trial.settings.skin_motion)
-                unit = "°" if len(trial.settings.skin_motion) > 1 else " mm"
-                yield f"Motion of the clusters as a whole on the bone of {stated}{unit} was stated and is included."
+            if skin is not None:
+                turn = f" and {skin['deg']:g}°" if skin["deg"] > 0.0 else ""
+                yield (
+                    f"Motion of the clusters as a whole on the bone of {skin['mm']:g} mm{turn} was stated and is "
+                    "included."
+                )
     yield (
         "The dispersion of the helical axes is their angle to the plain mean of their directions "
         f"(median {joint['dispersion']['direction_median_deg']:.2g}°)."

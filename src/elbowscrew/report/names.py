@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Final
 
 from elbowscrew.errors import UsageError
-from elbowscrew.view.figure_names import ALL, FIGURE_CHOICES, FIGURE_ENTRIES, OVERLAY
+from elbowscrew.view.figure_names import ALL, FIGURE_CHOICES, OVERLAY, chosen_figures
 
 WIDTHS_MM: Final = {
     "single": 85.0,
@@ -40,9 +40,7 @@ def figure_names(given: Sequence[str]) -> tuple[str, ...]:
     if unknown or not names:
         msg = f"--figures: expected {ALL} or some of {', '.join(FIGURE_CHOICES)}, found {', '.join(unknown) or 'none'}"
         raise UsageError(msg)
-    if ALL not in names:
-        return names
-    return (*FIGURE_ENTRIES, *([OVERLAY] if OVERLAY in names else []))
+    return (*chosen_figures(names), *([OVERLAY] if OVERLAY in names else []))
 
 
 def width_mm(text: str) -> float:

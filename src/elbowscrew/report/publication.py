@@ -14,7 +14,7 @@ from elbowscrew.report.captions import overlay_caption
 from elbowscrew.report.figure_files import figure_files, files_of
 from elbowscrew.results.staging import settle, write_files
 from elbowscrew.results.trial_views import view_of_result
-from elbowscrew.view.figure_names import FIGURE_ENTRIES, OVERLAY, caption_file, has_figure
+from elbowscrew.view.figure_names import OVERLAY, caption_file, chosen_figures, has_figure
 
 _LONGEST_NAME: Final = 80
 
@@ -80,7 +80,7 @@ def save_publication_figures(
     from elbowscrew.plots.overlay import LEAST_TRIALS, mean_curve, overlay_figure
 
     contents: dict[str, bytes] = {}
-    single = [name for name in FIGURE_ENTRIES if name in names]
+    single = chosen_figures(names)
     prefixes = _prefixes(results)
     curves, left_out, not_drawn, units = [], [], [], set()
     for result, prefix in zip(results, prefixes, strict=True):

@@ -12,11 +12,13 @@ from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import MovementPhases
 from elbowscrew.view.trial_view import TrialView
 
-_MOST_CYCLES: Final = 20
+MOST_CYCLES: Final = 20
+"""More are not drawn one by one."""
 _MOST_FRAMES: Final = 20_000
 _CYCLES_SHOWN: Final = 3
 _FRAMES_SHOWN: Final = 2000
 _MOST_PARTS: Final = 150
+_LEAST_PARTS: Final = 10  # fewer would say little, and cycles that few and long can be followed
 _OF_FRAMES: Final = ("anatomy", "instantaneous", "losses")
 
 
@@ -29,7 +31,10 @@ class Stretch(NamedTuple):
 
 
 class Envelope(NamedTuple):
-    """What a long series spans in each part of its time: middle (s), smallest, median and largest value, (K,) each."""
+    """What a long series spans in each part of its time: middle (s), smallest, median and largest value, (K,) each.
+
+    The first and the last part stand at their outer ends once more, so that all of the time is covered.
+    """
 
     time_s: Float
     low: Float
@@ -40,27 +45,35 @@ class Envelope(NamedTuple):
 def stretch_of(view: TrialView) -> Stretch | None:
     """Choose the stretch that is most like the others; None of a trial short enough to be drawn as a whole.
 
-    Of cycles, three in a row whose largest angles and durations lie nearest the medians of all; else 2000 frames whose
-    range of the angle does. Frames that were not tracked count against a stretch.
+    Of cycles, three in a row whose largest angles and durations lie nearest the medians of all; without them, or where
+    these would be a long trial again, 2000 frames whose range of the angle does. Frames that were not tracked count
+    against a stretch.
     """
     cycles, frames = view.repetitions, view.frame.size
-    if cycles.number.size <= _MOST_CYCLES and frames <= _MOST_FRAMES:
+    if cycles.number.size <= MOST_CYCLES and frames <= _MOST_FRAMES:
         return None
     if cycles.number.size >= _CYCLES_SHOWN:
-        first = np.searchsorted(view.time_s, cycles.start_time_s)
-        end = np.searchsorted(view.time_s, cycles.end_time_s, side="right")
+        first, end = _rows_of_cycles(view)
         unlike = _unlike(cycles.top_angle) + _unlike(cycles.duration_s) + _lost(view, first, end)
         of_each = np.lib.stride_tricks.sliding_window_view(unlike, _CYCLES_SHOWN).sum(axis=1)
         best = int(np.argmin(of_each))
         last = best + _CYCLES_SHOWN - 1
         told = f"cycles {cycles.number[best]} to {cycles.number[last]} of {cycles.number.size}"
-        return Stretch(int(first[best]), int(end[last]), told)
+        if end[last] - first[best] <= _MOST_FRAMES:
+            return Stretch(int(first[best]), int(end[last]), told)
     first = np.arange(0, frames - _FRAMES_SHOWN + 1, _FRAMES_SHOWN // 2)
     end = first + _FRAMES_SHOWN
     spans = [_span(view.angle[start:stop]) for start, stop in zip(first, end, strict=True)]
     best = int(np.argmin(_unlike(np.array(spans)) + _lost(view, first, end)))
     told = f"frames {view.frame[first[best]]} to {view.frame[end[best] - 1]} of {frames}"
     return Stretch(int(first[best]), int(end[best]), told)
+
+
+def _rows_of_cycles(view: TrialView) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Row at which each cycle begins, and the one after its last."""
+    cycles = view.repetitions
+    first = np.searchsorted(view.time_s, cycles.start_time_s)
+    return first, np.searchsorted(view.time_s, cycles.end_time_s, side="right")
 
 
 def _span(values: Float) -> float:
@@ -106,6 +119,9 @@ def _cut(view: TrialView, stretch: Stretch) -> TrialView:
     phases = view.phases
     seen = (phases.offset_rows >= stretch.first) & (phases.onset_rows < stretch.end)
     last = stretch.end - stretch.first - 1
+    begin, end = _rows_of_cycles(view)
+    whole = (begin >= stretch.first) & (end <= stretch.end)
+    cycles = view.repetitions
     extra = {
         name: {of: values[rows] if name in _OF_FRAMES else values for of, values in table.items()}
         for name, table in view.extra.items()
@@ -122,15 +138,35 @@ def _cut(view: TrialView, stretch: Stretch) -> TrialView:
             offset_rows=np.clip(phases.offset_rows[seen] - stretch.first, 0, last),
             moving=phases.moving[rows],
         ),
+        repetitions=replace(cycles, **{field.name: getattr(cycles, field.name)[whole] for field in fields(cycles)}),
         extra=extra,
     )
 
 
 def envelope(view: TrialView, values: Float) -> Envelope:
-    """Tell what a series (N,) spans in parts of equal time, each as long as a cycle at least."""
-    parts = min(_MOST_PARTS, max(view.repetitions.number.size, 50))
-    edges = np.linspace(0, values.size, parts + 1).astype(np.int64)
+    """Tell what a series (N,) spans in each part of the time.
+
+    A part is a cycle, or some cycles in a row, with the rest after them; a rest longer than any cycle has parts of its
+    own, as long as the longest cycle at least. So equal cycles span the same in all parts. Where this would give few
+    parts, they are short equal ones, which follow the curve.
+    """
+    edges = _edges(view)
     known = [part[np.isfinite(part)] for part in np.split(values, edges[1:-1])]
     found = np.array([np.percentile(part, [0.0, 50.0, 100.0]) if part.size else [np.nan] * 3 for part in known])
     middle = view.time_s[np.minimum((edges[:-1] + edges[1:]) // 2, values.size - 1)]
-    return Envelope(middle, *found.T)
+    low, median, high = np.concatenate([found[:1], found, found[-1:]]).T
+    return Envelope(np.concatenate([view.time_s[:1], middle, view.time_s[-1:]]), low, median, high)
+
+
+def _edges(view: TrialView) -> NDArray[np.intp]:
+    """Rows between which the parts of a long trial lie, the first and the last included."""
+    count = view.frame.size
+    begin, end = _rows_of_cycles(view)
+    longest = int(np.max(end - begin, initial=1))
+    rests = zip([0, *end.tolist()], [*begin.tolist(), count], strict=True) if begin.size else ()
+    resting = [rest + longest * np.arange((back - rest) // longest) for rest, back in rests]
+    starts = np.unique(np.concatenate([begin, *resting]))
+    starts = starts[:: max(-(-starts.size // _MOST_PARTS), 1)]
+    if starts.size < _LEAST_PARTS:
+        return np.linspace(0, count, _MOST_PARTS + 1).astype(np.intp)
+    return np.concatenate([[0], starts[1:], [count]])

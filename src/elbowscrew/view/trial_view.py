@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowscrew.choices import METHOD_LABELS
 from elbowscrew.geometry.arrays import Bool, Float
 from elbowscrew.joints import Joint
 from elbowscrew.model.array_record import ArrayRecord
@@ -149,3 +150,9 @@ def fitted_pitch_mm(view: TrialView) -> float | None:
     """Millimeters that the joint slides per radian, where it is a screw-hinge; None where it is none."""
     fit = view.joint_summary["screw_hinge"]
     return None if fit is None or view.joint_summary["preferred"] != "screw_hinge" else fit["pitch_mm_per_rad"]
+
+
+def model_label(view: TrialView) -> str:
+    """Name the model by its method and the number of its keyframes."""
+    method = METHOD_LABELS.get(view.settings.model_method, view.settings.model_method)
+    return f"{method} through {len(view.summary['interpolation']['keyframes'])} poses"
