@@ -191,8 +191,9 @@ def test_files_are_replaced_on_request_only_and_only_ours(tmp_path: Path) -> Non
     write_files(tmp_path, {one.name: ["synthetic 3"]}, replaceable=("synthetic",))
     assert one.read_text() == "synthetic 3\n"
     one.write_text("a recording")
-    with pytest.raises(OutputError, match="not written by elbowscrew"):
+    with pytest.raises(OutputError) as caught:
         write_files(tmp_path, {two.name: ["new"], one.name: ["new"]}, replaceable=("synthetic",))
+    assert str(caught.value) == f"{one}: exists already and was not written by elbowscrew; give another name"
     assert (one.read_text(), two.read_text()) == ("a recording", "synthetic 2\n")
     with pytest.raises(OutputError) as caught:
         write_files(tmp_path.parent, {tmp_path.name: ["x"]}, replaceable=("synthetic",))

@@ -96,13 +96,30 @@ def test_what_was_expected_and_what_was_found_is_told(folder: Path) -> None:
     )
 
 
+@pytest.mark.parametrize("name", READERS)
+def test_a_number_as_text_is_no_number(folder: Path, name: str) -> None:
+    whole = content_of(folder, name)
+    seen = 0
+    for place in keys_of(whole):
+        changed = copy.deepcopy(whole)
+        parent: Any = changed
+        for key in place[:-1]:
+            parent = parent[key]
+        if type(parent[place[-1]]) not in (int, float) or OPEN & set(place):
+            continue
+        parent[place[-1]] = str(parent[place[-1]])
+        (folder / name).write_text(json.dumps(changed))
+        assert told(READERS[name], folder).startswith(f"{folder / name}: {'.'.join(map(str, place))}: expected"), place
+        seen += 1
+    assert seen > 20
+
+
 def test_another_version_is_named_beside_a_key_that_it_lacks(folder: Path) -> None:
     summary = content_of(folder, "summary.json")
     del summary["motion"]["signed"]
     (folder / "summary.json").write_text(json.dumps({**summary, "elbowscrew": "9.1"}))
-    message = told(READERS["summary.json"], folder)
-    assert message.startswith(f"{folder / 'summary.json'}: motion.signed: is missing")
-    assert f"written by elbowscrew 9.1; this is {__version__}" in message
+    where, other = f"{folder / 'summary.json'}: motion.signed: is missing", f"9.1; this is {__version__}"
+    assert told(READERS["summary.json"], folder) == f"{where} (written by elbowscrew {other}); analyze the trial again"
 
 
 def test_another_version_with_the_same_keys_is_read_and_keys_of_ones_own_are_passed_over(folder: Path) -> None:
@@ -136,10 +153,10 @@ def test_the_preferred_fit_must_be_there(folder: Path) -> None:
     assert told(READERS["joint.json"], folder).startswith(f"{folder / 'joint.json'}: {preferred}: ")
 
 
-@pytest.mark.parametrize("number", [10**30, -(10**30)])
+@pytest.mark.parametrize("number", [10**30, -(10**30), 10**6, -1])
 def test_a_frame_beyond_all_numbers_is_told(folder: Path, number: int) -> None:
     summary = content_of(folder, "summary.json")
-    summary["interpolation"]["keyframes"][0] = number
+    summary["interpolation"]["keyframes"][-1] = number
     (folder / "summary.json").write_text(json.dumps(summary))
     assert told(view_of_result, resealed(folder)).startswith(str(folder))
 

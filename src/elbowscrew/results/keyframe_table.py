@@ -85,7 +85,7 @@ def read_keyframes(
     if numbered[0] != 1:
         table.refuse(table.lines[0], f"the first phase must be 1, found {numbered[0]:g}")
     first = np.flatnonzero(np.diff(phase, prepend=0))
-    if first[-1] == count - 1 and count > 1 and first.size > 1:
+    if first[-1] == count - 1 and first.size > 1:
         table.refuse(table.lines[-1], "the last phase has no keyframe but its first")
     bounds = np.concatenate([first, [count - 1]])
     laws = _laws(table, first, law, law_peak)

@@ -105,10 +105,14 @@ def jointed(**changed: str | tuple[str, ...]) -> str:
         (GOOD.format(more="", a=",7", b="", c=""), ":2: expected 8 cells, found 9"),
         (GOOD.format(more=",phase", a=",1", b=",3", c=",3"), ":3: phases must be numbered"),
         (GOOD.format(more=",phase", a=",2", b=",2", c=",2"), ":2: the first phase must be 1"),
-        (GOOD.format(more=",phase", a=",1", b=",1", c=",2"), ":4: the last phase has no keyframe but its first"),
+        (GOOD.format(more=",phase", a=",1", b=",1", c=",2"), ":4: the last phase has no keyframe but its first\n"),
         (GOOD.format(more=",knot", a=",0", b=",0.7", c=",0.5"), ":4: the knots must increase"),
         (GOOD.format(more=",knot", a=",0", b=",0.5", c=",0.9"), "must be 0, 1"),
         (GOOD.format(more=",law", a=",magic", b=",magic", c=",magic"), ":2: expected a law"),
+        (
+            GOOD.format(more=",law,law_peak", a=",cycloidal,1.5", b=",cycloidal,1.5", c=",cycloidal,1.5"),
+            "and its peak from 0 to 1, found 'cycloidal'",
+        ),
         (GOOD.format(more=",law", a=",empirical", b=",empirical", c=",empirical"), "give --law"),
         (GOOD.format(more=",method", a=",dlb", b=",dib", c=",dlb"), "method: expected one of"),
         (GOOD.format(more=",law_start_s,law_end_s", a=",1,0", b=",1,0", c=",1,0"), ":2: law_start_s and law_end_s"),
@@ -126,8 +130,20 @@ def test_what_is_wrong_with_a_file_is_told_with_its_line(text: str, says: str, t
     path.write_text(text)
     with pytest.raises(ElbowscrewError) as caught:
         read_keyframes(path)
-    assert says in str(caught.value)
+    assert says in f"{caught.value}\n"
     assert caught.value.exit_code in (3, 4)
+
+
+def test_a_law_begins_and_ends_where_the_file_says(tmp_path: Path) -> None:
+    """Before and after the law the motion rests; with one of the two columns alone neither counts."""
+    path = tmp_path / "keys.csv"
+    path.write_text(GOOD.format(more=",law,law_start_s,law_end_s", **dict.fromkeys("abc", ",linear,0.5,1.5")))
+    motion = interpolate(read_keyframes(path), 9)
+    step = np.abs(np.diff(motion.euler_parameters, axis=0)).max(axis=1)
+    assert (step[[0, 1, 6, 7]] < 1e-12).all()
+    assert (step[2:6] > 0.01).all()
+    path.write_text(GOOD.format(more=",law,law_start_s", **dict.fromkeys("abc", ",linear,0.5")))
+    assert (np.abs(np.diff(interpolate(read_keyframes(path), 9).euler_parameters, axis=0)).max(axis=1) > 0.01).all()
 
 
 def test_the_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:

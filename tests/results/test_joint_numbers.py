@@ -1,0 +1,42 @@
+"""Numbers of the joint's type as the summary has them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from elbowscrew import Analysis, analyze, simulate_trial
+from elbowscrew.results.joint_type_summary import numbers_of_type
+
+
+@pytest.fixture(scope="module")
+def elbow() -> Analysis:
+    return analyze(simulate_trial(frames=200, inversion=95, joint_type="two-axes", marker_noise_mm=0.1).recording)
+
+
+@pytest.mark.parametrize("cone_deg", [0.5, 8.0, 30.0, 89.9])
+def test_a_cone_short_of_a_right_angle_is_told(elbow: Analysis, cone_deg: float) -> None:
+    line = told_line(elbow, cone_deg)
+    assert line["determined"] is True
+    assert line["cone95_deg"] == pytest.approx(cone_deg)
+    assert line["radius95_mm"] == pytest.approx(7.0)
+
+
+@pytest.mark.parametrize("cone_deg", [90.0, 120.0, np.inf, np.nan])
+def test_a_cone_of_a_right_angle_or_more_says_nothing(elbow: Analysis, cone_deg: float) -> None:
+    line = told_line(elbow, cone_deg)
+    assert (line["determined"], line["cone95_deg"], line["radius95_mm"]) == (False, None, None)
+
+
+def told_line(elbow: Analysis, cone_deg: float) -> dict[str, object]:
+    """The first of two axes, as if it were known to so much and 7 mm."""
+    found = elbow.joint_type
+    assert found is not None
+    assert found.two_axes is not None
+    axis = replace(found.two_axes.axis1, determined=True, axis_cone=float(np.radians(cone_deg)), point_radius=7e-3)
+    known = replace(elbow, joint_type=replace(found, two_axes=replace(found.two_axes, axis1=axis)))
+    two = numbers_of_type(known)["two_axes"]
+    assert two is not None
+    return dict(two["axis1"])
