@@ -23,9 +23,10 @@ def test_pages_of_a_batch_and_their_paths_on_standard_output(batch: Path, capsys
     assert main(["report", str(batch)]) == 0
     told = capsys.readouterr()
     pages = [batch / "trial0" / "report.html", batch / "trial1" / "report.html", batch / "index.html"]
+    pages += [batch / "repetitions.csv", batch / "cycles.csv"]
     assert told.out.splitlines() == [str(page) for page in pages]
     assert told.err == ""
-    assert all(page.read_text(encoding="utf-8").startswith("<!DOCTYPE html>") for page in pages)
+    assert all(page.read_text(encoding="utf-8").startswith("<!DOCTYPE html>") for page in pages[:3])
     assert main(["report", str(batch / "trial1"), "-q"]) == 0
     assert capsys.readouterr().out == ""
 

@@ -29,7 +29,7 @@ def study(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("study") / "my study"
     rows = []
     for k in range(18):
-        recording = simulate_trial(frames=80, inversion=40, top_deg=160.0 if k == 5 else 120.0 + k, seed=k).recording
+        recording = simulate_trial(frames=80, inversion=40, top_deg=175.0 if k == 5 else 120.0 + k, seed=k).recording
         name = f"trial {k}" if k != 7 else "trial #7 <b>%41</b>"
         save_analysis(analyze(recording), folder / name, figure_formats=(), report=k != 3)
         rows.append([name, f"s{k % 2}", ("slow", "fast")[k % 2], str(100.0 + k)])

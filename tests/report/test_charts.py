@@ -206,12 +206,15 @@ def test_colors_are_those_of_the_scale_and_halfway_between() -> None:
 
 VALUES = np.array([10.0, 11.0, 12.0, 13.0, 14.0, 15.0, 16.0, 17.0, 60.0, NAN])
 NAMES = [f"trial {k} <b>" for k in range(10)]
+FAR = VALUES > 50.0
 
 
 def test_a_strip_has_a_point_for_each_trial_and_a_box_of_its_quartiles() -> None:
     few = np.array([20.0, 30.0])
     name = "a group with a name that is very long"
-    drawn = strip_chart("top", "Largest <angle>", "deg", {"slow": (VALUES, NAMES), name: (few, NAMES[:2])})
+    drawn = strip_chart(
+        "top", "Largest <angle>", "deg", {"slow": (VALUES, NAMES, FAR), name: (few, NAMES[:2], FAR[:2])}
+    )
     read = Read(picture_in(drawn))
     unit = 0.1 * abs(read.x[0])
     known = VALUES[np.isfinite(VALUES)]
@@ -247,12 +250,12 @@ def test_a_strip_has_a_point_for_each_trial_and_a_box_of_its_quartiles() -> None
     texts = {text.text for text in read.root.iter("text")}
     assert "Largest <angle> (deg)" in texts
     assert read.root[1].text == "Largest <angle> of every trial in 2 groups, outliers marked."
-    alone = picture_in(strip_chart("top", "Top", "deg", {"all": (VALUES, NAMES)}))
+    alone = picture_in(strip_chart("top", "Top", "deg", {"all": (VALUES, NAMES, FAR)}))
     assert alone[1].text == "Top of every trial, outliers marked."
 
 
 def test_nothing_of_a_strip_chart_lies_outside_it() -> None:
-    read = Read(picture_in(strip_chart("top", "Top", "deg", {"slow": (VALUES, NAMES)})))
+    read = Read(picture_in(strip_chart("top", "Top", "deg", {"slow": (VALUES, NAMES, FAR)})))
     width, height = (float(part) for part in read.root.get("viewBox", "").split()[2:])
     left, bottom, right = numbers(read.every("path", "axis")[0])
     assert 0.0 < left < right < width

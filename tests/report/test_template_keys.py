@@ -23,8 +23,10 @@ from elbowscrew.model.summary_types import (
     TrialSummary,
     WarningSummary,
 )
+from elbowscrew.report.measures import Measure
 from elbowscrew.report.study import Failure
-from elbowscrew.report.study_page import Factor, GroupRow, Measure, TrialRow
+from elbowscrew.report.study_groups import AxisRow, NumberRow
+from elbowscrew.report.study_page import Factor, TrialRow
 
 TYPES: dict[str, Any] = {
     "summary": Summary,
@@ -39,9 +41,9 @@ TYPES: dict[str, Any] = {
 """What `elbowscrew.report.trial_page` and its loops call the parts of a result."""
 STUDY_TYPES: dict[str, Any] = {
     "row": TrialRow,
-    "group": GroupRow,
+    "number": NumberRow,
+    "axis": AxisRow,
     "factor": Factor,
-    "measure": Measure,
     "column": Measure,
     "failure": Failure,
 }
@@ -105,7 +107,9 @@ def test_every_template_is_looked_at(root: Path) -> None:
     assert {path.name for path in folder.iterdir()} == set(TEMPLATES)
 
 
-@pytest.mark.parametrize("key", ["row.outlier", "column.decimals", "failure.kind", "factor.levels", "group.count"])
+@pytest.mark.parametrize(
+    "key", ["row.outlier", "column.decimals", "factor.levels", "number.found.icc", "axis.point_sd"]
+)
 def test_a_misspelled_key_of_a_study_is_seen(root: Path, key: str) -> None:
     source = template(root, "study.html")
     assert key in source

@@ -38,7 +38,9 @@ def write_trial_page(folder: Path) -> Path:
 
 
 def write_study_page(folder: Path) -> Path:
-    """Write ``index.html`` over all result folders inside a folder, whole or not at all.
+    """Write ``index.html`` over all result folders inside a folder, with ``cycles.csv`` and ``repetitions.csv``.
+
+    Whole or not at all.
 
     Results that cannot be read stand there as failures.
 
@@ -61,14 +63,13 @@ def write_study_page(folder: Path) -> Path:
     """
     from elbowscrew.report.study_page import write_study_page as write
 
-    page, _ = write(folder)
-    return page
+    return write(folder).page
 
 
 class Remade(NamedTuple):
-    """Pages that were made, and why some could not be, or show a trial as failed: that stops no other page."""
+    """Pages and tables that were made, and why some could not be, or show a trial as failed: that stops no other."""
 
-    pages: tuple[Path, ...]
+    files: tuple[Path, ...]
     errors: tuple[ElbowscrewError, ...]
 
 
@@ -92,24 +93,26 @@ def remake_pages(folders: Iterable[Path]) -> Remade:
     from elbowscrew.report.study_page import write_study_page as write_index
     from elbowscrew.results.trial_views import is_result
 
-    pages: list[Path] = []
+    files: list[Path] = []
     errors: list[ElbowscrewError] = []
     for folder in folders:
         told: set[Path] = set()
         for result in results_in([folder]):
             try:
-                pages.append(write_trial_page(result))
+                files.append(write_trial_page(result))
             except ElbowscrewError as error:
                 errors.append(error)
                 told.add(result)
         try:
             if not is_result(folder):
-                page, unread = write_index(folder)
-                pages.append(page)
-                errors += [ResultError(not_shown(page, one)) for one in unread if folder / one.path not in told]
+                study = write_index(folder)
+                files += [study.page, *study.tables]
+                errors += [
+                    ResultError(not_shown(study.page, one)) for one in study.unread if folder / one.path not in told
+                ]
         except ElbowscrewError as error:
             errors.append(error)
-    return Remade(tuple(dict.fromkeys(pages)), tuple(errors))
+    return Remade(tuple(dict.fromkeys(files)), tuple(errors))
 
 
 def results_in(folders: Iterable[Path]) -> tuple[Path, ...]:

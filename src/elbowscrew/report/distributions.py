@@ -1,4 +1,4 @@
-"""How a number spreads over the trials of a study: outliers by a robust rule, and strips with boxes by condition."""
+"""How a number spreads over the trials of a study: strips with boxes by condition."""
 
 from __future__ import annotations
 
@@ -9,47 +9,16 @@ from typing import Final
 import numpy as np
 from markupsafe import Markup
 
-from elbowscrew.geometry.arrays import Float
+from elbowscrew.geometry.arrays import Bool, Float
 from elbowscrew.report.charts import picture, range_of, tick_text, ticks_between
 
-LIMIT: Final = 3.5
-LEAST: Final = 5
-_NORMAL_MAD: Final = 0.6745
-_NORMAL_MEAN: Final = 1.253314
+_LEAST: Final = 5
 _WIDTH: Final = 640.0
 _ROW: Final = 40.0
 _LONGEST: Final = 22
 
 
-def modified_z(values: Float) -> Float:
-    """Modified z-scores, which outliers themselves do not hide.
-
-    Parameters
-    ----------
-    values : ndarray, shape (N,)
-        NaN where not known.
-
-    Returns
-    -------
-    ndarray, shape (N,)
-        ``0.6745 (x - median) / MAD``; with the mean absolute deviation where more than half of the values are alike; 0
-        where all are, NaN where there are fewer than five.
-
-    References
-    ----------
-    Iglewicz and Hoaglin 1993, How to detect and handle outliers.
-    """
-    known = values[np.isfinite(values)]
-    if known.size < LEAST:
-        return np.full(values.shape, np.nan)
-    off = values - np.median(known)
-    mad, mean = float(np.median(np.abs(off[np.isfinite(off)]))), float(np.nanmean(np.abs(off)))
-    if mad > 1e-12 * max(float(np.abs(known).max()), 1e-300):
-        return _NORMAL_MAD * off / mad
-    return off / (_NORMAL_MEAN * mean) if mean > 0.0 else np.where(np.isfinite(off), 0.0, np.nan)
-
-
-def strip_chart(name: str, title: str, unit: str, groups: Mapping[str, tuple[Float, Sequence[str]]]) -> Markup:
+def strip_chart(name: str, title: str, unit: str, groups: Mapping[str, tuple[Float, Sequence[str], Bool]]) -> Markup:
     """Draw every trial as a point, a strip for each group, over a box of its quartiles.
 
     Parameters
@@ -57,10 +26,10 @@ def strip_chart(name: str, title: str, unit: str, groups: Mapping[str, tuple[Flo
     name : str
         Tells the chart's ids from others'.
     title, unit : str
-    groups : mapping of str to (ndarray of shape (N,), sequence of str)
-        Values and the names of their trials, by group.
+    groups : mapping of str to (ndarray of shape (N,), sequence of str, ndarray of bool of shape (N,))
+        Values, the names of their trials, and whether they stand out, by group.
     """
-    low, high = range_of(*(values for values, _ in groups.values()), air=0.04)
+    low, high = range_of(*(values for values, _, _ in groups.values()), air=0.04)
     left = 20.0 + 7.6 * max(min(max(map(len, groups)), _LONGEST), 6)
     right, bottom = _WIDTH - 16.0, 8.0 + _ROW * len(groups)
 
@@ -77,14 +46,13 @@ def strip_chart(name: str, title: str, unit: str, groups: Mapping[str, tuple[Flo
     parts.append(
         f'<text x="{0.5 * (left + right):g}" y="{bottom + 42:g}" text-anchor="middle">{escape(title)} ({unit})</text>'
     )
-    for k, (group, (numbers, names)) in enumerate(groups.items()):
+    for k, (group, (numbers, names, far)) in enumerate(groups.items()):
         middle = 8.0 + _ROW * (k + 0.5)
         shown = group if len(group) <= _LONGEST else group[: _LONGEST - 1] + "…"
         parts.append(f'<text x="{left - 10:g}" y="{middle + 5:g}" text-anchor="end">{escape(shown)}</text>')
         known = numbers[np.isfinite(numbers)]
-        if known.size >= LEAST:
+        if known.size >= _LEAST:
             parts.append(_box(known, middle, along))
-        far = np.abs(modified_z(numbers)) > LIMIT
         # Points side by side, by a sequence that spreads evenly and is the same every time.
         spread = (np.arange(numbers.size) * 0.618034 % 1.0 - 0.5) * 0.5 * _ROW
         for value, offset, outlying, trial in zip(numbers.tolist(), spread.tolist(), far.tolist(), names, strict=True):

@@ -95,7 +95,7 @@ def _environment() -> jinja2.Environment:
         lstrip_blocks=True,
         auto_reload=False,
     )
-    environment.filters.update(number=number, brief=brief, vector=vector, percent=percent, words=words)
+    environment.filters.update(number=number, known=known, brief=brief, vector=vector, percent=percent, words=words)
     return environment
 
 
@@ -107,6 +107,11 @@ def number(value: float | None, decimals: int = 2) -> str:
     if float(text) == 0.0:
         text = text.lstrip("-")
     return text.replace("-", "−")
+
+
+def known(value: float | None, decimals: int = 2) -> str:
+    """Write a number, and nothing where it is not defined."""
+    return "" if value is None or not math.isfinite(value) else number(value, decimals)
 
 
 def brief(value: float | None, digits: int = 2) -> str:

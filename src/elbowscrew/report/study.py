@@ -13,39 +13,54 @@ from typing import Final
 import numpy as np
 
 from elbowscrew import tables
+from elbowscrew.choices import AngleUnit, LengthUnit
 from elbowscrew.errors import ResultError
 from elbowscrew.geometry.arrays import Float
-from elbowscrew.model.summary_types import Summary
 from elbowscrew.opening import open_text
 from elbowscrew.reading.source import longest_cell
+from elbowscrew.report.measures import COLUMNS
+from elbowscrew.report.pages import unshowable
+from elbowscrew.report.trial_parts import TrialAxis, axis_of, curve_of_result
 from elbowscrew.results.proof import proof_of
-from elbowscrew.results.summary_reading import read_summary, settings_in
+from elbowscrew.results.summary_reading import read_joint_summary, read_summary, settings_in
 from elbowscrew.results.table_reading import read_columns
-from elbowscrew.results.trial_views import is_result
+from elbowscrew.results.trial_views import UNREADABLE, is_result
 from elbowscrew.view.decimation import drawn_rows
 
-CONDITION: Final = "condition"
-_ALWAYS: Final = ("subject", CONDITION)
+SUBJECT, CONDITION = "subject", "condition"
+_ALWAYS: Final = (SUBJECT, CONDITION)
 _BEFORE, _BEHIND = "path", "frames"  # columns of a batch's summary.csv around those that its manifest brought
 _MOST_LEVELS: Final = 12
 _MOST_FACTORS: Final = 6
 _THETA: Final = tuple(column for column in tables.SCREW_COLUMNS if column.name in ("theta", "time_s"))
-_KEPT_BUCKETS: Final = 400
+_KEPT_BUCKETS: Final = 40
 _LONGEST_CELL: Final = 1 << 20
+
+Units = tuple[AngleUnit, LengthUnit]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StudyTrial:
-    """One trial of a study.
+    """One trial of a study; a few kilobytes, as there may be ten thousand.
 
     Attributes
     ----------
     folder : str
         The result's folder relative to the study's, with slashes.
-    summary : Summary
-        Its ``summary.json``.
+    joint : str
+        Which joint it is.
+    values : mapping of str to float
+        Numbers of `elbowscrew.report.measures.COLUMNS` by their keys, NaN where not known.
+    warnings : tuple of str
+        Their codes, each once.
     time_s, theta : ndarray, shape (M,)
-        Seconds and degrees; of long trials as many points as a thumbnail needs.
+        Seconds and degrees, as many points as a thumbnail needs.
+    curve : ndarray, shape (101,), or None
+        Mean of its cycles, radians; None if none is complete and known throughout.
+    axis : TrialAxis or None
+        Its axis in the bones' frame; None without landmarks, or without an axis.
+    units : tuple of str
+        Angle and length in its tables.
     page : bool
         Whether it has a ``report.html``.
     factors : mapping of str to str
@@ -53,11 +68,26 @@ class StudyTrial:
     """
 
     folder: str
-    summary: Summary
+    joint: str
+    values: Mapping[str, float]
+    warnings: tuple[str, ...]
     time_s: Float
     theta: Float
+    curve: Float | None
+    axis: TrialAxis | None
+    units: Units
     page: bool
     factors: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def subject(self) -> str:
+        """Whom it is of; empty where nothing says it."""
+        return said_of(self.factors, SUBJECT)
+
+    @property
+    def condition(self) -> str:
+        """Under which condition it was recorded; empty where nothing says it."""
+        return said_of(self.factors, CONDITION)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -74,7 +104,7 @@ class Study:
     """Trials of a folder by their folders, the columns that the manifest brought, and what failed.
 
     Where there is a ``summary.csv``, trials are those that it names; `others` are results beside them. `unread` are
-    trials whose results could not be read just now.
+    trials whose results could not be read just now. `units` are those of the tables over all trials.
     """
 
     name: str
@@ -83,6 +113,7 @@ class Study:
     failures: tuple[Failure, ...]
     others: tuple[str, ...] = ()
     unread: tuple[Failure, ...] = ()
+    units: Units = ("deg", "mm")
 
 
 def result_folders(folder: Path) -> Iterator[Path]:
@@ -123,32 +154,65 @@ def read_study(folder: Path, factors: Sequence[str] | None = None) -> Study:
     if not trials and not unread and not failures:
         msg = f"{folder}: holds no finished results; analyze trials into it first"
         raise ResultError(msg)
-    said = _said_of(folder / "summary.csv", {trial.folder for trial in trials})
+    table = _rows(folder / "summary.csv")
+    said = _said_of(table, {trial.folder for trial in trials})
     chosen = tuple(_factors(said) if factors is None else factors)
     kept = tuple(
         replace(trial, factors={name: said.get(trial.folder, {}).get(name, "") for name in chosen})
         for trial in trials
         if not said or trial.folder in said
     )
-    others = tuple(trial.folder for trial in trials if said and trial.folder not in said)
-    name = folder.resolve().name or "study"
-    return Study(name=name, trials=kept, factors=chosen, failures=tuple(failures), others=others, unread=tuple(unread))
+    return Study(
+        name=folder.resolve().name or "study",
+        trials=kept,
+        factors=chosen,
+        failures=tuple(failures),
+        others=tuple(trial.folder for trial in trials if said and trial.folder not in said),
+        unread=tuple(unread),
+        units=_units(table[0] if table else ()),
+    )
+
+
+def _units(header: Sequence[str]) -> Units:
+    """Units of ``summary.csv``, by the names of its columns."""
+    return (
+        "rad" if any(name.endswith("_rad") for name in header) else "deg",
+        "m" if "slide_median_m" in header else "mm",
+    )
+
+
+def said_of(factors: Mapping[str, str], name: str) -> str:
+    """Look up what a table says of a trial, however it writes the name of the column."""
+    return next((value for factor, value in factors.items() if factor.strip().casefold() == name), "")
 
 
 def _trial(result: Path, name: str) -> StudyTrial:
     proof = proof_of(result)
     summary = read_summary(proof)
     settings = settings_in(summary, result)
-    columns = read_columns(proof.file("screw.csv"), _THETA, settings.angle_unit, settings.length_unit)
+    units = settings.angle_unit, settings.length_unit
+    columns = read_columns(proof.file("screw.csv"), _THETA, *units)
     theta = np.degrees(columns["theta"])
     rows = drawn_rows(theta, keep_gaps=True, parts=_KEPT_BUCKETS)
-    return StudyTrial(
-        folder=name,
-        summary=summary,
-        time_s=columns["time_s"][rows],
-        theta=theta[rows],
-        page=(result / "report.html").is_file(),
-    )
+    try:
+        values = {one.key: one.read(summary) for one in COLUMNS}
+        if not theta.size:
+            msg = "screw.csv has no rows"
+            raise ValueError(msg)
+        return StudyTrial(
+            folder=name,
+            joint=summary["trial"]["joint"]["name"],
+            values={key: np.nan if value is None else float(value) for key, value in values.items()},
+            warnings=tuple(dict.fromkeys(one["code"] for one in summary["warnings"] if one["severity"] == "warning")),
+            time_s=columns["time_s"][rows],
+            theta=theta[rows],
+            curve=curve_of_result(proof, *units)[0],
+            axis=None if summary["landmarks"] is None else axis_of(read_joint_summary(proof)),
+            units=units,
+            page=(result / "report.html").is_file(),
+        )
+    except UNREADABLE as error:
+        raise unshowable(result, error) from error
 
 
 def _failures(path: Path) -> list[Failure]:
@@ -158,9 +222,8 @@ def _failures(path: Path) -> list[Failure]:
     ]
 
 
-def _said_of(path: Path, folders: set[str]) -> dict[str, dict[str, str]]:
+def _said_of(rows: list[list[str]], folders: set[str]) -> dict[str, dict[str, str]]:
     """Rows of ``summary.csv`` by the results they are of: one of its columns names their folders."""
-    rows = _rows(path)
     if len(rows) < 2:
         return {}
     header = rows[0]

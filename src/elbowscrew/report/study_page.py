@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Final, NamedTuple, TypedDict
 from urllib.parse import quote
@@ -11,59 +11,23 @@ import numpy as np
 from markupsafe import Markup
 
 from elbowscrew.geometry.arrays import Float
-from elbowscrew.model.summary_types import MotionSummary, Summary
+from elbowscrew.group.curves import LEAST_FOR_BAND
+from elbowscrew.group.outliers import FALSE_ALARMS, LEAST, Outliers
 from elbowscrew.report.charts import path_of
-from elbowscrew.report.distributions import LEAST, LIMIT, modified_z, strip_chart
-from elbowscrew.report.pages import MARK, UNSHOWABLE, render, unshowable
-from elbowscrew.report.study import CONDITION, Failure, Study, StudyTrial, read_study
+from elbowscrew.report.distributions import strip_chart
+from elbowscrew.report.measures import COLUMNS, MEASURES
+from elbowscrew.report.pages import MARK, render
+from elbowscrew.report.study import Failure, Study, StudyTrial, read_study
+from elbowscrew.report.study_curves import curve_charts, curves_of, left_out_text
+from elbowscrew.report.study_groups import Group, axis_rows, groups_of, number_rows, outlying, values_of
+from elbowscrew.report.study_tables import STUDY_TABLES, TABLE_MARK, study_tables
 from elbowscrew.results.staging import write_files
 from elbowscrew.view.decimation import drawn_rows
 
-_INDEX: Final = "index.html"
+INDEX: Final = "index.html"
 _THUMB: Final = (132.0, 34.0)
 _THUMB_BUCKETS: Final = 40
 _MOST_STRIPS: Final = 24
-_ALL: Final = "all trials"
-_JOINT: Final = "joint"
-
-
-class Measure(NamedTuple):
-    """A number of each trial, and how it is read from ``summary.json``."""
-
-    key: str
-    title: str
-    unit: str
-    read: Callable[[Summary], float | None]
-    decimals: int
-
-
-def _second_range(motion: MotionSummary) -> float | None:
-    """Range about the second of two axes; None of other joints."""
-    two = motion["joint_numbers"]["two_axes"]
-    return None if two is None else two["axis2"]["range_deg"]
-
-
-def _cone(motion: MotionSummary) -> float | None:
-    joint = motion["joint_axis"]
-    return None if joint is None else joint["axis_cone95_deg"]
-
-
-MEASURES: Final = (
-    Measure("top", "Largest angle", "deg", lambda one: one["motion"]["theta_max_deg"], 1),
-    Measure("dispersion", "Dispersion of the axes", "deg", lambda one: one["motion"]["axis_dispersion_deg"], 2),
-    Measure("second", "Range about the second axis", "deg", lambda one: _second_range(one["motion"]), 1),
-    Measure("error", "Model error, RMS rotation", "deg", lambda one: one["interpolation"]["rms_angle_error_deg"], 2),
-)
-"""Those that are compared over the trials."""
-COLUMNS: Final = (
-    Measure("frames", "Frames", "", lambda one: one["trial"]["frames"], 0),
-    Measure("tracked", "Tracked", "%", lambda one: 100.0 * (1.0 - one["trial"]["missing_share"]), 1),
-    *MEASURES,
-    Measure("cone", "Axis 95 % cone", "deg", lambda one: _cone(one["motion"]), 3),
-    Measure("displacement", "RMS displacement", "mm", lambda one: one["interpolation"]["rms_displacement_mm"], 2),
-    Measure("repetitions", "Repetitions", "", lambda one: one["motion"]["repetitions"], 0),
-)
-"""Those that stand in the table of the trials, in order."""
 
 
 class TrialRow(TypedDict):
@@ -73,24 +37,17 @@ class TrialRow(TypedDict):
     link: str | None
     thumb: Markup
     factors: list[tuple[str, str]]
-    values: dict[str, float]
-    warnings: list[str]
+    values: Mapping[str, float]
+    warnings: Sequence[str]
     outlier: list[str]
 
 
-class StudyPage(NamedTuple):
-    """One HTML file, and the trials whose results it could not show."""
+class WrittenStudy(NamedTuple):
+    """The page, the tables beside it, and the trials whose results could not be shown."""
 
-    html: str
+    page: Path
+    tables: tuple[Path, ...]
     unread: tuple[Failure, ...]
-
-
-class GroupRow(TypedDict):
-    """Trials alike in a factor: of each measure its decimals, and its median and quartiles."""
-
-    name: str
-    count: int
-    cells: list[tuple[int, list[float | None]]]
 
 
 class Factor(TypedDict):
@@ -100,11 +57,15 @@ class Factor(TypedDict):
     levels: list[str]
 
 
-def write_study_page(folder: Path, factors: Sequence[str] | None = None) -> tuple[Path, tuple[Failure, ...]]:
-    """Write ``index.html`` over the results in a folder, and give it and the trials that it could not show."""
-    page = study_page(read_study(folder, factors))
-    write_files(folder, {_INDEX: page.html.encode("utf-8", "replace")}, replaceable=(MARK,))
-    return folder / _INDEX, page.unread
+def write_study_page(folder: Path, factors: Sequence[str] | None = None) -> WrittenStudy:
+    """Write ``index.html``, ``cycles.csv`` and ``repetitions.csv`` over the results in a folder."""
+    study = read_study(folder, factors)
+    told = {name for name in ("summary.csv", "failures.csv") if (folder / name).is_file()}
+    page = study_page(study, [*sorted(told, reverse=True), *STUDY_TABLES])
+    contents: dict[str, Iterable[str] | bytes] = {INDEX: page.encode("utf-8", "replace")}
+    contents |= study_tables(folder, study)
+    write_files(folder, contents, replaceable=(MARK, TABLE_MARK))
+    return WrittenStudy(folder / INDEX, tuple(folder / name for name in STUDY_TABLES), study.unread)
 
 
 def not_shown(page: Path, trial: Failure) -> str:
@@ -112,48 +73,51 @@ def not_shown(page: Path, trial: Failure) -> str:
     return f"{page}: shows a trial as failed: {trial.message}"
 
 
-def study_page(study: Study) -> StudyPage:
+def study_page(study: Study, tables: Sequence[str] = ()) -> str:
     """Make the page of a study.
 
     Parameters
     ----------
     study : Study
         From `elbowscrew.report.study.read_study`.
+    tables : sequence of str
+        Files beside the page that it links to.
 
     Returns
     -------
-    StudyPage
-        It needs no other file but the trials' pages it links to. The same results give the same bytes.
+    str
+        HTML that needs no other file but the trials' pages it links to. The same results give the same bytes.
     """
-    trials, unread = [], list(study.unread)
-    rows: list[TrialRow] = []
-    scale = _scale(study.trials)
-    for trial in study.trials:
-        try:
-            rows.append(_row(trial, scale))
-            trials.append(trial)
-        except UNSHOWABLE as error:
-            unread.append(Failure(path=trial.folder, kind="ResultError", message=str(unshowable(Path(), error))))
-    groups = _groups(trials, _group_factor(study))
-    _mark_outliers(rows, groups)
+    trials = study.trials
+    scale = _scale(trials)
+    rows = [_row(trial, scale) for trial in trials]
+    groups, grouped_by = groups_of(study, trials)
+    found = outlying(trials, groups)
+    _mark_outliers(rows, trials, found)
+    curves = curves_of(trials, groups)
+    subjects = {trial.subject for trial in trials} - {""}
     content = {
         "name": study.name,
+        "tables": tables,
         "rows": rows,
         "factors": [Factor(name=name, levels=_levels(trials, name)) for name in study.factors],
-        "group_name": _group_name(study, trials),
-        "groups": _table_of_groups(rows, groups),
-        "measures": MEASURES,
+        "group_name": grouped_by,
+        "subjects": len(subjects),
+        "numbers": number_rows(trials, groups),
+        "curves": curve_charts(curves, groups),
+        "left_out": left_out_text(curves.left_out),
+        "least_for_band": LEAST_FOR_BAND,
+        "axes": axis_rows(trials, groups),
         "columns": COLUMNS,
-        "charts": _charts(rows, groups if len(groups) <= _MOST_STRIPS else _groups(trials, None)),
-        "failures": [*study.failures, *unread],
+        "charts": _charts(trials, groups if len(groups) <= _MOST_STRIPS else _one_group(groups), found),
+        "failures": [*study.failures, *study.unread],
         "others": study.others,
         "outliers": sum(bool(row["outlier"]) for row in rows),
         "warned": sum(bool(row["warnings"]) for row in rows),
-        "limit": LIMIT,
+        "false_alarms": FALSE_ALARMS,
         "least": LEAST,
     }
-    html = render("study.html", styles=("page.css", "study.css"), script="study.js", data={}, content=content)
-    return StudyPage(html, tuple(unread))
+    return render("study.html", styles=("page.css", "study.css"), script="study.js", data={}, content=content)
 
 
 def thumbnail(time_s: Float, theta: Float, scale: tuple[float, float]) -> Markup:
@@ -179,87 +143,42 @@ def _scale(trials: Sequence[StudyTrial]) -> tuple[float, float]:
 
 
 def _row(trial: StudyTrial, scale: tuple[float, float]) -> TrialRow:
-    summary = trial.summary
-    if not trial.theta.size:
-        msg = "screw.csv has no rows"
-        raise ValueError(msg)
-    warnings = [one["code"] for one in summary["warnings"] if one["severity"] == "warning"]
-    values = {one.key: one.read(summary) for one in COLUMNS}
     return {
         "folder": trial.folder,
         "link": quote(f"{trial.folder}/report.html", safe="/") if trial.page else None,
         "thumb": thumbnail(trial.time_s, trial.theta, scale),
         "factors": list(trial.factors.items()),
-        "values": {key: np.nan if value is None else value for key, value in values.items()},
-        "warnings": list(dict.fromkeys(warnings)),
+        "values": trial.values,
+        "warnings": trial.warnings,
         "outlier": [],
     }
 
 
-def _group_name(study: Study, trials: Sequence[StudyTrial]) -> str | None:
-    """Name what groups the distributions: the joint where there are several, and the manifest's factor."""
-    return " and ".join(name for name in (_JOINT * _several_joints(trials), _group_factor(study)) if name) or None
-
-
-def _group_factor(study: Study) -> str | None:
-    """Name the factor that groups the distributions: the condition, else the manifest's first column."""
-    named = [name for name in study.factors if name.strip().casefold() == CONDITION]
-    return next(iter([*named, *study.factors]), None)
-
-
-def _groups(trials: Sequence[StudyTrial], factor: str | None) -> dict[str, list[int]]:
-    """Trials by joint and factor: numbers of two joints have no common median."""
-    several = _several_joints(trials)
-    groups: dict[str, list[int]] = {}
-    for k, trial in enumerate(trials):
-        words = [_joint_of(trial)] if several else []
-        words += [] if factor is None else [trial.factors.get(factor, "") or "–"]
-        groups.setdefault(", ".join(words) or _ALL, []).append(k)
-    return dict(sorted(groups.items()))
-
-
-def _joint_of(trial: StudyTrial) -> str:
-    return trial.summary["trial"]["joint"]["name"]
-
-
-def _several_joints(trials: Sequence[StudyTrial]) -> bool:
-    return len({_joint_of(trial) for trial in trials}) > 1
-
-
-def _mark_outliers(rows: list[TrialRow], groups: Mapping[str, list[int]]) -> None:
+def _mark_outliers(rows: list[TrialRow], trials: Sequence[StudyTrial], found: Mapping[str, Outliers]) -> None:
     for measure in MEASURES:
-        for members in groups.values():
-            values = np.array([rows[k]["values"][measure.key] for k in members], dtype=np.float64)
-            for k, z in zip(members, modified_z(values).tolist(), strict=True):
-                if abs(z) > LIMIT:
-                    rows[k]["outlier"].append(f"{measure.title} {'high' if z > 0.0 else 'low'}")
+        of = found[measure.key]
+        for sides, whose in ((of.trial, False), (of.subject, True)):
+            for k in np.flatnonzero(sides).tolist():
+                text = f"{measure.title} {'high' if sides[k] > 0 else 'low'}"
+                rows[k]["outlier"].append(f"{trials[k].subject}: {text}" if whose else text)
 
 
-def _table_of_groups(rows: list[TrialRow], groups: Mapping[str, list[int]]) -> list[GroupRow]:
-    """Count, median and quartiles of each measure in each group."""
-    table: list[GroupRow] = []
-    for name, members in groups.items():
-        cells: list[tuple[int, list[float | None]]] = []
-        for measure in MEASURES:
-            values = np.array([rows[k]["values"][measure.key] for k in members], dtype=np.float64)
-            known = values[np.isfinite(values)]
-            quartiles = np.percentile(known, [50, 25, 75]).tolist() if known.size else [None] * 3
-            cells.append((measure.decimals, quartiles))
-        table.append({"name": name, "count": len(members), "cells": cells})
-    return table
+def _one_group(groups: Sequence[Group]) -> list[Group]:
+    return [Group("all trials", "", sorted(k for group in groups for k in group.rows))]
 
 
-def _charts(rows: list[TrialRow], groups: Mapping[str, list[int]]) -> list[tuple[str, Markup]]:
+def _charts(
+    trials: Sequence[StudyTrial], groups: Sequence[Group], found: Mapping[str, Outliers]
+) -> list[tuple[str, Markup]]:
     charts = []
     for measure in MEASURES:
+        values, of = values_of(trials, measure), found[measure.key]
+        far = (of.trial != 0) | (of.subject != 0)
         strips = {
-            name: (
-                np.array([rows[k]["values"][measure.key] for k in members], dtype=np.float64),
-                [rows[k]["folder"] for k in members],
-            )
-            for name, members in groups.items()
+            group.name: (values[group.rows], [trials[k].folder for k in group.rows], far[group.rows])
+            for group in groups
         }
-        if any(np.isfinite(values).any() for values, _ in strips.values()):
+        if np.isfinite(values).any():
             charts.append((measure.title, strip_chart(measure.key, measure.title, measure.unit, strips)))
     return charts
 

@@ -23,7 +23,9 @@ _DEVICES: Final = frozenset(
     | {f"{kind}{k}" for kind in ("com", "lpt") for k in "0123456789¹²³"}
 )
 # What stands beside the results in the output folder, or may one day.
-_TAKEN: Final = frozenset({"summary.csv", "failures.csv", "index.html", "report.html", "figures", "assets"})
+_TAKEN: Final = frozenset(
+    {"summary.csv", "failures.csv", "cycles.csv", "repetitions.csv", "index.html", "report.html", "figures", "assets"}
+)
 
 
 def result_names(paths: Sequence[str], by_file: Sequence[bool] | None = None) -> list[str]:

@@ -17,6 +17,7 @@ from elbowscrew.model import Landmarks
 from elbowscrew.model.summary_types import Summary
 from elbowscrew.reading.landmarks import read_landmarks
 from elbowscrew.report.study_page import not_shown, write_study_page
+from elbowscrew.report.study_tables import STUDY_TABLES
 from elbowscrew.results.proof import proof_of
 from elbowscrew.results.result_files import is_summary
 from elbowscrew.results.staging import replace_file
@@ -150,21 +151,25 @@ def run_study(
 
         failed = _analyze(tasks, pending, opened, workers, report)
         failures = tuple(FailedTrial(path=tasks[k].label, failure=failed[k]) for k in sorted(failed))
-        rows = [
-            StudyRow(trial=task.folder.name, path=task.label, columns=trial.columns, summary=_summary_of(task))
-            for k, (task, trial) in enumerate(zip(tasks, trials, strict=True))
-            if k not in failed
-        ]
+        told: dict[str, bool] = {}
+
+        def rows() -> Iterator[StudyRow]:
+            """Yield the trials with results, one at a time in memory, and note which of them are warned of."""
+            for k, (task, trial) in enumerate(zip(tasks, trials, strict=True)):
+                if k not in failed:
+                    summary = _summary_of(task)
+                    told[task.folder.name] = any(one["severity"] == "warning" for one in summary["warnings"])
+                    yield StudyRow(trial=task.folder.name, path=task.label, columns=trial.columns, summary=summary)
+
         carried = list(dict.fromkeys(name for trial in trials for name in trial.columns))
         replace_file(folder / FAILURES_TABLE, failures_table(failures))
-        replace_file(folder / SUMMARY_TABLE, summary_table(rows, carried, common.angle_unit, common.length_unit))
-        page, unread = write_study_page(folder, carried)
-        told = {row.trial for row in rows}
+        replace_file(folder / SUMMARY_TABLE, summary_table(rows(), carried, common.angle_unit, common.length_unit))
+        page, _, unread = write_study_page(folder, carried)
         return StudyResult(
             folder=folder,
             names=tuple(task.folder.name for task in tasks),
             kept=len(tasks) - len(pending),
-            warned=sum(any(one["severity"] == "warning" for one in row.summary["warnings"]) for row in rows),
+            warned=sum(told.values()),
             failed=failures,
             changed=tuple(
                 f"{task.folder.name}/{name}"
@@ -258,7 +263,7 @@ def _names(trials: Sequence[Trial]) -> list[str]:
 
 
 def _remove_tables(folder: Path) -> None:
-    for name in (SUMMARY_TABLE, FAILURES_TABLE):
+    for name in (SUMMARY_TABLE, FAILURES_TABLE, *STUDY_TABLES):
         try:
             (folder / name).unlink(missing_ok=True)
         except OSError as error:
