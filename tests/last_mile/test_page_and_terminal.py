@@ -123,7 +123,8 @@ def rows_after(told: Told, first: str) -> list[list[str]]:
     rows = told.page.rows
     (start,) = (k for k, row in enumerate(rows) if row and row[0] == first)
     heads = {
-        "Estimate", "Type tried", "Axis", "Frame", "No.", "Angle, deg", "Phase", "Error of the model", "Body", "Option",
+        "Estimate", "Type tried", "Axis", "Frame", "No.", "Angle, deg", "Phase", "Error of the model", "Body",
+        "To report", "Option",
     }  # fmt: skip
     found = []
     for row in rows[start + 1 :]:
@@ -423,6 +424,7 @@ def texts_with_numbers(told: Told) -> Iterator[tuple[str, list[str]]]:
         yield "The joint’s center is the point midway", centers[0] + centers[1]
     severe = sum(warning["severity"] == "warning" for warning in summary["warnings"])
     yield r"\d+ warnings?|\d+ notes?|No warnings", [str(n) for n in (severe, len(summary["warnings"]) - severe) if n]
+    yield "After the ISB’s recommendations", ["1995", "2005"]
     yield "elbowscrew, version", []
 
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from elbowscrew.choices import FUNCTIONAL_AXIS_WORDS
 from elbowscrew.joints import Joint
 from elbowscrew.model.anatomy import LANDMARKS
-from elbowscrew.model.joint_summary_types import AnatomySummary
+from elbowscrew.model.joint_summary_types import AnatomySummary, AxisAgainstBones
 from elbowscrew.model.summary_types import LandmarksSummary
 from elbowscrew.report.pages import number, vector
 from elbowscrew.view.trial_view import TrialView
@@ -64,23 +64,27 @@ def bones_methods(view: TrialView) -> Iterator[str]:
     yield (
         "Flexion, carrying angle (varus positive) and pronation (0 in supination) were computed by the sequence Z-X-Y "
         "of the International Society of Biomechanics (Wu and others 2005) from landmarks of the "
-        f"{found['side']} arm ({_sources(marks)}); signs mean the same on both sides."
+        f"{found['side']} arm ({landmark_sources(marks)}); signs mean the same on both sides."
     )
     if found["axis"] is None:
         return
+    without = ", without the error of the landmarks" if found["axis_angle_deg_low"] is not None else ""
+    yield f"The {FUNCTIONAL_AXIS_WORDS[found['axis']]} lies {axis_against_epicondyles(found)}{without}."
+
+
+def axis_against_epicondyles(found: AxisAgainstBones) -> str:
+    """How the axis stands to the epicondyles, with its interval."""
     angle, distance = (
         _interval(found["axis_angle_deg_low"], found["axis_angle_deg_high"], "°"),
         _interval(found["axis_distance_mm_low"], found["axis_distance_mm_high"], " mm"),
     )
-    without = ", without the error of the landmarks" if angle else ""
-    yield (
-        f"The {FUNCTIONAL_AXIS_WORDS[found['axis']]} lies {found['axis_angle_deg']:.1f}°{angle} off the line of the "
-        f"epicondyles and passes {found['axis_distance_mm']:.1f} mm{distance} from the point midway between "
-        f"them{without}."
+    return (
+        f"{found['axis_angle_deg']:.1f}°{angle} off the line of the epicondyles and passes "
+        f"{found['axis_distance_mm']:.1f} mm{distance} from the point midway between them"
     )
 
 
-def _sources(marks: LandmarksSummary) -> str:
+def landmark_sources(marks: LandmarksSummary) -> str:
     """Which landmarks are of markers, and which were given as coordinates."""
     by_markers = [name for name in LANDMARKS if "markers" in marks[name]]  # type: ignore[literal-required]
     given = [name for name in LANDMARKS if name not in by_markers]

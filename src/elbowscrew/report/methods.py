@@ -65,6 +65,24 @@ def citations_of(trial: TrialView) -> tuple[str, ...]:
     return (f"elbowscrew, version {trial.summary['elbowscrew']} (BSD-3-Clause).", PAPER, *of_bones)
 
 
+def frame_words(trial: TrialView) -> str:
+    """Name the frame that screws are expressed in."""
+    proximal, distal = trial.named_joint.proximal.name, trial.named_joint.distal.name
+    frames = {
+        "distal": f"the {distal}'s frame at the reference",
+        "proximal": f"the {proximal}'s frame",
+        "lab": f"the laboratory frame, with the {proximal} where it was at the reference",
+    }
+    return frames[trial.settings.express_in]
+
+
+def method_words(trial: TrialView) -> str:
+    """Name the interpolation method of the model."""
+    kind, method = trial.summary["motion"]["joint_type"], trial.settings.model_method
+    angles = "the joint's own angles" if kind is None else _ANGLES.get(kind["type"], "the joint's own angles")
+    return _METHODS.get(method, method).format(angles=angles)
+
+
 def _sentences(trial: TrialView) -> Iterator[str]:
     settings, summary = trial.settings, trial.summary
     proximal, distal = trial.named_joint.proximal.name, trial.named_joint.distal.name
@@ -73,11 +91,6 @@ def _sentences(trial: TrialView) -> Iterator[str]:
         yield f"The {proximal} was taken to stand still, so that poses of the {distal} are relative motion."
     else:
         yield f"Motion of the {distal} relative to the {proximal} was described by unit dual quaternions."
-    frames = {
-        "distal": f"the {distal}'s frame at the reference",
-        "proximal": f"the {proximal}'s frame",
-        "lab": f"the laboratory frame, with the {proximal} where it was at the reference",
-    }
     window = settings.reference_window
     mean = f"the mean of {window} frames from frame" if window > 1 else "frame"
     resolved = (
@@ -87,7 +100,7 @@ def _sentences(trial: TrialView) -> Iterator[str]:
     )
     yield (
         f"The displacement from the reference pose ({mean} {summary['trial']['reference_frame']}) was resolved into "
-        f"{resolved}, expressed in {frames[settings.express_in]}."
+        f"{resolved}, expressed in {frame_words(trial)}."
     )
     yield (
         (
@@ -232,13 +245,10 @@ def _other_joint(joint: JointSummary, *, located: bool) -> Iterator[str]:
 
 def _model(trial: TrialView) -> Iterator[str]:
     settings, model = trial.settings, trial.summary["interpolation"]
-    kind = trial.summary["motion"]["joint_type"]
-    angles = "the joint's own angles" if kind is None else _ANGLES.get(kind["type"], "the joint's own angles")
-    method = _METHODS.get(settings.model_method, settings.model_method).format(angles=angles)
     keyframes = model["keyframes"]
     listed = f"frames {', '.join(map(str, keyframes))}" if len(keyframes) <= _KEYFRAMES_TOLD else "keyframes.csv"
     pieces = "phase by phase" if settings.blend == "piecewise" else "all poses at once"
-    yield (f"The motion was modeled by {method} of {len(keyframes)} keyframe poses ({listed}), {pieces}.")
+    yield (f"The motion was modeled by {method_words(trial)} of {len(keyframes)} keyframe poses ({listed}), {pieces}.")
     if settings.tolerance_mm is not None:
         selection = model["selection"]
         if selection is None or selection["tolerance_deg"] is None:

@@ -15,6 +15,7 @@ from elbowscrew.joints import Joint
 from elbowscrew.model.joint_summary_types import EstimateSummary, JointSummary
 from elbowscrew.report.bones_words import bones_sentences
 from elbowscrew.report.captions import caption_of
+from elbowscrew.report.checklist import MISSING, checklist_of
 from elbowscrew.report.joint_words import joint_sentences
 from elbowscrew.report.methods import citations_of, methods_of
 from elbowscrew.report.pages import MARK, UNSHOWABLE, render, unshowable
@@ -129,6 +130,8 @@ def trial_page(trial: TrialView, folder: Path) -> str:
         "other_units": (trial.settings.angle_unit, trial.settings.length_unit) != ("deg", "mm"),
         "methods": methods_of(trial),
         "citations": citations_of(trial),
+        "checklist": checklist_of(trial),
+        "missing": MISSING,
         "captions": [
             (name, caption_of(name, trial))
             for name in FIGURE_ENTRIES
