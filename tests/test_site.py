@@ -14,6 +14,7 @@ import typer
 
 import elbowscrew
 from elbowscrew.cli.app import app
+from elbowscrew.cli.examples import EXAMPLES
 
 TOCTREE = re.compile(r"^```\{toctree\}\n(.*?)^```", re.M | re.S)
 BLOCK = re.compile(r"^ *(`{3,}|:{3,})(?:sh|\{run\})?\n(.*?)^ *\1\s*$", re.M | re.S)
@@ -53,6 +54,14 @@ def test_every_command_is_documented(root: Path) -> None:
     assert re.findall(r"^```\{command\} (\w+)$", text, re.M) == list(group().commands)
 
 
+def test_every_command_has_examples_and_they_are_its_own() -> None:
+    assert list(EXAMPLES) == list(group().commands)
+    for name, lines in EXAMPLES.items():
+        assert lines
+        assert all(line.startswith(f"elbowscrew {name} ") or line == f"elbowscrew {name}" for line in lines)
+        assert all(line in command(name).epilog for line in lines)
+
+
 @cache
 def group() -> Any:
     return typer.main.get_command(app)
@@ -65,7 +74,7 @@ def command(name: str) -> Any:
 
 def command_lines(root: Path) -> list[tuple[str, str]]:
     """Every command line in a document, with the document's name; those that break over lines are put together."""
-    found = []
+    found = [("the help", line) for lines in EXAMPLES.values() for line in lines]
     for page in [root / "README.md", root / "benchmarks" / "README.md", *pages(root)]:
         for _, block in BLOCK.findall(page.read_text(encoding="utf-8")):
             for line in re.sub(r" *[\\`]\n *", " ", block).splitlines():

@@ -13,7 +13,7 @@ from typing import Any, Final, Literal, get_args
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from elbowscrew.choices import FileUnit, RotationType
-from elbowscrew.errors import shown
+from elbowscrew.errors import shown, why_unreadable
 from elbowscrew.opening import read_toml_and_digest
 
 SECONDS: Final = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
@@ -211,7 +211,7 @@ def read_column_file(path: Path) -> ColumnFile:
     try:
         given, digest = read_toml_and_digest(path)
     except OSError as error:
-        msg = f"{path}: cannot be read as a file of columns: {error.strerror or error}"
+        msg = f"{path}: cannot be read as a file of columns: {why_unreadable(path, error)}"
         raise ValueError(msg) from error
     except ValueError as error:
         msg = f"{path}: not TOML: {error}"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Final
@@ -10,10 +11,11 @@ from typing import Any, Final
 from pydantic import ValidationError
 
 from elbowscrew.declaring import option_name
-from elbowscrew.errors import UsageError, shown
+from elbowscrew.errors import UsageError, asked_back, shown, why_unreadable
 from elbowscrew.opening import read_toml
 from elbowscrew.settings import LISTS, SETTINGS, Settings
 
+_QUOTED: Final = re.compile(r"'([^']+)'")
 _FIELDS: Final = {one.option: one.field for one in SETTINGS}
 
 
@@ -43,7 +45,7 @@ def _read_toml(config: Path) -> dict[str, Any]:
     try:
         given = read_toml(config)
     except OSError as error:
-        msg = f"{config}: cannot be read as a settings file: {error.strerror or error}"
+        msg = f"{config}: cannot be read as a settings file: {why_unreadable(config, error)}"
         raise UsageError(msg) from error
     except ValueError as error:
         msg = f"{config}: not TOML: {error}. Write one `key = value` a line, text in quotes"
@@ -82,7 +84,14 @@ def checked_settings(values: Mapping[str, Any], location: str) -> Settings:
     try:
         return settings_from_options(values)
     except ValidationError as error:
-        raise UsageError("; ".join(_sentence(location, fault, list(_FIELDS)) for fault in error.errors())) from error
+        raise UsageError("; ".join(_sentence(location, fault, list(_FIELDS)) for fault in _faults(error))) from error
+
+
+def _faults(error: ValidationError) -> list[Any]:
+    """Faults of values, without that of a list which is empty only because none of its values was taken."""
+    faults: list[Any] = error.errors()
+    parts = {fault["loc"][0] for fault in faults if len(fault["loc"]) > 1}
+    return [one for one in faults if one["type"] != "too_short" or one["loc"][0] not in parts]
 
 
 def _sentence(location: str, fault: Any, known: list[str]) -> str:
@@ -94,4 +103,5 @@ def _sentence(location: str, fault: Any, known: list[str]) -> str:
     message = str(fault["msg"]).removeprefix("Value error, ").replace("Input should", "should")
     if not key or fault["type"] == "value_error":  # our own checks say themselves what they found
         return f"{location}: {key}: {message}" if key else f"{location}: {message}"
-    return f"{location}: {key}: {message}, found {shown(fault['input'])}"
+    mean = asked_back(fault["input"], _QUOTED.findall(str(fault.get("ctx", {}).get("expected", ""))))
+    return f"{location}: {key}: {message}, found {shown(fault['input'])}{mean}"

@@ -19,7 +19,9 @@ found and what to do next.
 from __future__ import annotations
 
 import difflib
-from collections.abc import Sequence
+import os
+from collections.abc import Iterable, Sequence
+from contextlib import suppress
 from typing import NamedTuple
 
 _LONGEST_VALUE = 80
@@ -48,6 +50,42 @@ def did_you_mean(wanted: str, names: Sequence[str]) -> str:
     known = {name.casefold(): name for name in names}
     near = [known[name] for name in difflib.get_close_matches(wanted.casefold(), known, n=3)]
     return f"; did you mean {' or '.join(map(repr, near))}?" if near else ""
+
+
+def asked_back(wanted: object, choices: Iterable[str]) -> str:
+    """Ask back where one or several values with commas are none of some choices; each that is none is asked back."""
+    known = tuple(choices)
+    given = [text.strip() for text in wanted.split(",")] if isinstance(wanted, str) else []
+    near = [nearest(one, known) for one in given if one not in known]
+    found = [repr(one) for one in dict.fromkeys(near) if one is not None]
+    return f"; did you mean {' and '.join(found)}?" if found else ""
+
+
+def nearest(wanted: str, choices: Sequence[str]) -> str | None:
+    """Give the choice that is meant, whatever its case and hyphens, or begun alone; None if none is near."""
+    known = {_letters(choice): choice for choice in choices}
+    letters = _letters(wanted)
+    begun = [choice for choice in known if len(letters) > 1 and choice.startswith(letters)]
+    close = begun if len(begun) == 1 else difflib.get_close_matches(letters, known, n=1)
+    return known[close[0]] if close else None
+
+
+def _letters(name: str) -> str:
+    return name.casefold().replace("-", "").replace("_", "").replace(" ", "")
+
+
+def why_unreadable(path: str | os.PathLike[str], error: OSError) -> str:
+    """Say why a file cannot be opened; of one that is not there, ask back by names that are nearly its own."""
+    reason = str(error.strerror or error)
+    return f"{reason}{files_beside(path)}" if isinstance(error, FileNotFoundError) else reason
+
+
+def files_beside(path: str | os.PathLike[str], *, folders: bool = False) -> str:
+    """Ask back by the names in a file's folder that are nearly its own, or by folders alone; empty if there is none."""
+    folder, name = os.path.split(os.fspath(path))
+    with suppress(OSError, ValueError):
+        return did_you_mean(name, [one.name for one in os.scandir(folder or os.curdir) if one.is_dir() or not folders])
+    return ""
 
 
 def told_names(names: Sequence[str]) -> str:

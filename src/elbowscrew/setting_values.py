@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from elbowscrew.choices import FRAMES, STATED_JOINTS
-from elbowscrew.errors import shown
+from elbowscrew.errors import asked_back, shown
 
 
 def frame(value: object) -> object:
@@ -24,7 +24,8 @@ def joint_type(value: object) -> object:
     """Take the types with a hyphen, too."""
     name = value.replace("-", "_") if isinstance(value, str) else value
     if name not in ("auto", *STATED_JOINTS):
-        msg = f"expected auto, {', '.join(STATED_JOINTS)}, found {shown(value)}"
+        mean = asked_back(value, STATED_JOINTS)
+        msg = f"expected auto, {', '.join(STATED_JOINTS)}, found {shown(value)}{mean}"
         raise ValueError(msg)
     return name
 

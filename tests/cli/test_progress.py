@@ -1,4 +1,4 @@
-"""The bar that ``compare`` shows: on a terminal, once it takes a while, and nowhere else."""
+"""The bar that shows how far the work has come: on a terminal, once it takes a while, and nowhere else."""
 
 from __future__ import annotations
 
@@ -9,8 +9,9 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
-from elbowscrew import save_simulation, simulate_trial
+from elbowscrew import analyze, save_analysis, save_simulation, simulate_trial
 from elbowscrew.cli import main, progress
+from elbowscrew.report import remake_pages
 
 
 @pytest.fixture
@@ -83,3 +84,28 @@ def test_compare_shows_its_steps_and_quiet_shows_nothing(
     assert main([*given, "-o", "shown"]) == 0
     assert steps in terminal.getvalue()
     assert capsys.readouterr().err == ""
+
+
+def test_analyze_report_and_simulate_show_what_they_do(
+    terminal: io.StringIO, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["simulate", "take.csv", "--frames", "60", "--inversion", "30"]) == 0
+    assert "Simulating take.csv" in terminal.getvalue() or "Writing take.csv" in terminal.getvalue()
+    given = ["analyze", "take.csv", "--figure-format", "none", "--no-report"]
+    assert main([*given, "-o", "quiet", "--quiet"]) == 0
+    assert "Analyzing" not in terminal.getvalue()
+    assert main([*given, "-o", "shown"]) == 0
+    assert "Analyzing take.csv" in terminal.getvalue()
+    assert main(["report", "shown", "quiet"]) == 0
+    assert "2/2" in terminal.getvalue()
+    capsys.readouterr()
+
+
+def test_figures_and_pages_count_their_results(tmp_path: Path) -> None:
+    folder = save_analysis(
+        analyze(simulate_trial(frames=60, inversion=30).recording), tmp_path / "one", figure_formats=()
+    )
+    steps: list[tuple[int, int]] = []
+    remake_pages([tmp_path, folder], lambda done, total: steps.append((done, total)))
+    assert steps == [(0, 2), (1, 2), (2, 2)]

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from elbowscrew.cli import options
+from elbowscrew.cli import completing, options
 from elbowscrew.errors import UsageError, shown
 
 if TYPE_CHECKING:
@@ -75,10 +75,17 @@ def _parameter(name: str, setting: Setting, defaults: Mapping[str, str]) -> insp
         rich_help_panel=setting.about,
         help=setting.text + (" Separate with commas, or repeat the option." if setting.several else ""),
         show_default=False if kind is bool or not default else default,
+        autocompletion=_completion(setting),
     )
     return inspect.Parameter(
         name, inspect.Parameter.KEYWORD_ONLY, default=None, annotation=Annotated[kind | None, option]
     )
+
+
+def _completion(setting: Setting) -> Callable[..., list[str]] | None:
+    if setting.option in ("proximal", "distal"):
+        return completing.bodies
+    return completing.choices(setting.choices) if setting.several and setting.choices else None
 
 
 def _value(setting: Setting, given: Any) -> Any:

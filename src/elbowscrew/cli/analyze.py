@@ -39,7 +39,9 @@ def analyze(
     json_output: Annotated[
         bool, typer.Option("--json", help="Print summary.json instead of the table.", rich_help_panel=OUTPUT)
     ] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print no table.", rich_help_panel=OUTPUT)] = False,
+    quiet: Annotated[
+        bool, typer.Option("--quiet", "-q", help="Print neither table nor progress.", rich_help_panel=OUTPUT)
+    ] = False,
     verbose: Annotated[
         bool, typer.Option("--verbose", "-v", help="Name every file written.", rich_help_panel=OUTPUT)
     ] = False,
@@ -49,6 +51,7 @@ def analyze(
     Screw axis, angle and slide of every frame, a model through a few poses, tables, a summary and figures.
     """
     from elbowscrew.cli import render
+    from elbowscrew.cli.progress import shown_stages
     from elbowscrew.configuring import settings_from
     from elbowscrew.reading.landmarks import read_landmarks
     from elbowscrew.results.staging import check_result_folder
@@ -58,13 +61,12 @@ def analyze(
     target = output if output is not None else Path(f"{trial.stem}_elbowscrew")
     check_result_folder(target, force=force)  # before the work, not after it
     check_output(settings)
-    analysis = analyze_file(
-        trial,
-        settings,
-        distal_path=distal_path,
-        landmarks=None if landmarks is None else read_landmarks(landmarks),
-    )
-    summary = write_result(analysis, target, force=force, report=page)
+    placed = None if landmarks is None else read_landmarks(landmarks)
+    with shown_stages(quiet=quiet) as begin:
+        begin(f"Analyzing {trial.name}")
+        analysis = analyze_file(trial, settings, distal_path=distal_path, landmarks=placed)
+        begin(f"Writing {target}")
+        summary = write_result(analysis, target, force=force, report=page)
     render.warnings(summary["warnings"])
     if json_output:
         render.json_object(summary)

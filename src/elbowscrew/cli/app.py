@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Annotated, Any
 
 import typer
@@ -11,6 +12,7 @@ from elbowscrew._version import __version__
 from elbowscrew.cli.analyze import analyze
 from elbowscrew.cli.batch import batch
 from elbowscrew.cli.compare import compare
+from elbowscrew.cli.examples import epilog
 from elbowscrew.cli.info import info
 from elbowscrew.cli.interpolate import interpolate
 from elbowscrew.cli.paper import paper
@@ -26,7 +28,7 @@ class _Commands(typer.core.TyperGroup):
         with_settings = getattr(getattr(command, "callback", None), "with_settings", None)
         if with_settings is not None:
             alone = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
-            alone.command(name)(with_settings())
+            alone.command(name, epilog=epilog(str(name)))(with_settings())
             command = typer.main.get_command(alone)
         return name, command, rest
 
@@ -36,6 +38,7 @@ app = typer.Typer(
     name="elbowscrew",
     help="Screw motion of a joint from OptiTrack recordings, by dual quaternions.",
     pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
 )
 
 
@@ -54,14 +57,18 @@ def _common(
     pass
 
 
-app.command()(analyze)
-app.command()(batch)
-app.command()(report)
-app.command()(compare)
-app.command()(interpolate)
-app.command()(info)
-app.command()(simulate)
-app.command()(paper)
+_COMMANDS: dict[str, Callable[..., Any]] = {
+    "analyze": analyze,
+    "batch": batch,
+    "report": report,
+    "compare": compare,
+    "interpolate": interpolate,
+    "info": info,
+    "simulate": simulate,
+    "paper": paper,
+}
+for _name, _command in _COMMANDS.items():
+    app.command(_name, epilog=epilog(_name))(_command)
 
 
 def run(arguments: list[str]) -> object:

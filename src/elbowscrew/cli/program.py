@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import os
+import re
 import sys
 from types import FrameType
 
 from elbowscrew.cli.text import emit, one_line, tell
-from elbowscrew.errors import ElbowscrewError, OutputError, UsageError
+from elbowscrew.errors import ElbowscrewError, OutputError, UsageError, asked_back
 
 INTERRUPTED = 130
 
@@ -65,9 +66,22 @@ def _report(message: str, code: int) -> int:
 def _report_usage(error: Exception) -> int:
     context = getattr(error, "ctx", None)
     path = context.command_path if context is not None else "elbowscrew"
-    message = error.format_message() if hasattr(error, "format_message") else str(error)
-    _report(f"{message.replace('Value error, ', '').rstrip('.')}. See `{path} --help`", UsageError.exit_code)
+    message = _usage_message(error).replace("Value error, ", "").rstrip(".")
+    _report(f"{message}{'' if message.endswith('?') else '.'} See `{path} --help`", UsageError.exit_code)
     return int(getattr(error, "exit_code", UsageError.exit_code))
+
+
+def _usage_message(error: Exception) -> str:
+    """Give the parser's message, with what may have been meant in place of a name or a choice that is none."""
+    option = getattr(error, "option_name", None)
+    if option is not None and hasattr(error, "possibilities"):
+        return f"No such option: {option}{asked_back(option, error.possibilities or ())}"
+    message = str(error.format_message()) if hasattr(error, "format_message") else str(error)
+    value, is_none, choices = message.partition("' is not one of ")
+    if not is_none:
+        return message
+    given = value.rpartition(": '")[2]
+    return message.rstrip(".") + asked_back(given, re.findall(r"'([^']+)'", choices))
 
 
 def _mend_streams() -> None:

@@ -6,14 +6,17 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from typing import TYPE_CHECKING
 
 from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeRemainingColumn
+from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 from rich.progress import Progress as Bar
 from rich.text import Text
 
 from elbowscrew.cli.text import one_line, tell
-from elbowscrew.study.study import Progress
+
+if TYPE_CHECKING:
+    from elbowscrew.study.study import Progress
 
 _SECONDS_BETWEEN_LINES = 10.0
 _SECONDS_WITHOUT_BAR = 2.0
@@ -47,17 +50,35 @@ def shown_progress(*, quiet: bool, verbose: bool) -> Iterator[Callable[[Progress
 def shown_steps(what: str, *, quiet: bool) -> Iterator[Callable[[int, int], None]]:
     """Give a function that shows how many steps are done and of how many, on a terminal and once they take a while."""
     console = Console(stderr=True)
-    if quiet or not console.is_terminal:
-        yield lambda _done, _total: None
-        return
     bar = _bar(console)
     task = bar.add_task(what, total=None, told="")
+    with _shown_late(bar, quiet=quiet):
+        yield lambda done, total: bar.update(task, completed=done, total=total)
+
+
+@contextmanager
+def shown_stages(*, quiet: bool) -> Iterator[Callable[[str], None]]:
+    """Give a function that shows which stage of the work has begun, on a terminal and once the work takes a while."""
+    bar = Bar(
+        TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn(), console=Console(stderr=True), transient=True
+    )
+    task = bar.add_task("", total=None)
+    with _shown_late(bar, quiet=quiet):
+        yield lambda stage: bar.update(task, description=one_line(stage))
+
+
+@contextmanager
+def _shown_late(bar: Bar, *, quiet: bool) -> Iterator[None]:
+    """Show a bar on a terminal as long as the block lasts, if it lasts a while."""
+    if quiet or not bar.console.is_terminal:
+        yield
+        return
     # By a clock of its own, so that a first step that never seems to end is shown too.
     begin = threading.Timer(_SECONDS_WITHOUT_BAR, bar.start)
     begin.daemon = True
     begin.start()
     try:
-        yield lambda done, total: bar.update(task, completed=done, total=total)
+        yield
     finally:
         begin.cancel()
         begin.join()

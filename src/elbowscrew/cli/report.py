@@ -74,12 +74,13 @@ def report(
     force: Annotated[
         bool, typer.Option("--force", rich_help_panel=_FIGURES, help="Replace figures of the same names.")
     ] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print no paths.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print neither paths nor progress.")] = False,
 ) -> None:
     """Make report.html and index.html anew, or figures for publication.
 
     From finished results, without analyzing again: a page for every trial, and one over those of a batch.
     """
+    from elbowscrew.cli.progress import shown_steps
     from elbowscrew.cli.text import emit, one_line, printable, tell
     from elbowscrew.errors import UsageError
     from elbowscrew.report import remake_pages, results_in
@@ -91,7 +92,8 @@ def report(
         if idle or width != "double":
             msg = f"{', '.join(idle or ['--width'])}: belongs to --figures; name some of {', '.join(FIGURE_CHOICES)}"
             raise UsageError(msg)
-        written, errors = remake_pages(results)
+        with shown_steps("Pages", quiet=quiet) as step:
+            written, errors = remake_pages(results, report=step)
     else:
         from elbowscrew.report.publication import save_publication_figures
 
@@ -106,9 +108,10 @@ def report(
             )
             raise UsageError(msg)
         folder = output if output is not None else Path("elbowscrew_figures")
-        published = save_publication_figures(
-            results_in(results), folder, names, formats, width_mm=wide, font=font, force=force
-        )
+        with shown_steps("Results", quiet=quiet) as step:
+            published = save_publication_figures(
+                results_in(results), folder, names, formats, width_mm=wide, font=font, force=force, report=step
+            )
         written = published.files
         for path in published.left_out:
             name = one_line(str(path))

@@ -108,6 +108,7 @@ def simulate(
 
     The truth about it goes to <OUT>.truth.json.
     """
+    from elbowscrew.cli.progress import shown_stages
     from elbowscrew.cli.text import emit, printable
     from elbowscrew.saving import save_simulation
     from elbowscrew.simulate import Simulation, simulate_trial
@@ -138,12 +139,12 @@ def simulate(
         tremor_hz=tremor_hz,
         seed=seed,
     )
-    for path in save_simulation(
-        simulate_trial(simulation),
-        output,
-        layout=layout,
-        length_unit=length_unit,
-        landmarks=landmarks,
-        force=force,
-    ):
+    with shown_stages(quiet=False) as begin:
+        begin(f"Simulating {output}")
+        made = simulate_trial(simulation)
+        begin(f"Writing {output}")
+        written = save_simulation(
+            made, output, layout=layout, length_unit=length_unit, landmarks=landmarks, force=force
+        )
+    for path in written:
         emit(f"{printable(str(path))}\n")

@@ -10,7 +10,7 @@ from typing import Any, Final, get_args
 
 import numpy as np
 
-from elbowscrew.errors import UsageError, shown
+from elbowscrew.errors import UsageError, shown, why_unreadable
 from elbowscrew.model.anatomy import LANDMARKS, Landmark, LandmarkFrame, Landmarks, Side
 from elbowscrew.opening import read_toml
 
@@ -75,7 +75,7 @@ def _read_toml(file: Path) -> dict[str, Any]:
     try:
         return read_toml(file)
     except OSError as error:
-        msg = f"{file}: cannot be read as a file of landmarks: {error.strerror or error}"
+        msg = f"{file}: cannot be read as a file of landmarks: {why_unreadable(file, error)}"
         raise UsageError(msg) from error
     except ValueError as error:
         msg = f"{file}: not TOML: {error}. Write one `key = value` a line, text in quotes"

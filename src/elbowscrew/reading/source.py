@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final, TextIO
 
-from elbowscrew.errors import RecordingError
+from elbowscrew.errors import RecordingError, files_beside
 from elbowscrew.opening import digest_of, open_bytes, open_text
 
 _HEAD_BYTES: Final = 65536
@@ -170,7 +170,7 @@ def open_source(path: Path) -> TextSource:
                 stream.seek(-1, 2)
                 last = stream.read(1)
     except FileNotFoundError as error:
-        msg = f"{path}: no such file; check the name and the folder"
+        msg = f"{path}: no such file{files_beside(path) or '; check the name and the folder'}"
         raise RecordingError(msg) from error
     except IsADirectoryError as error:
         msg = f"{path}: a folder, not a recording; give one exported CSV file"

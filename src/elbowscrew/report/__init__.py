@@ -5,11 +5,12 @@ Everything is imported where it is used: an analysis starts without the template
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from itertools import count
 from pathlib import Path
 from typing import NamedTuple
 
-from elbowscrew.errors import ElbowscrewError, ResultError
+from elbowscrew.errors import ElbowscrewError, ResultError, files_beside
 
 
 def write_trial_page(folder: Path) -> Path:
@@ -73,12 +74,14 @@ class Remade(NamedTuple):
     errors: tuple[ElbowscrewError, ...]
 
 
-def remake_pages(folders: Iterable[Path]) -> Remade:
+def remake_pages(folders: Iterable[Path], report: Callable[[int, int], None] = lambda _done, _total: None) -> Remade:
     """Make the pages of result folders anew; in a folder that holds some, theirs and the one over all of them.
 
     Parameters
     ----------
     folders : iterable of Path
+    report : callable, optional
+        Called with how many results have their page, and how many there are.
 
     Returns
     -------
@@ -95,14 +98,19 @@ def remake_pages(folders: Iterable[Path]) -> Remade:
 
     files: list[Path] = []
     errors: list[ElbowscrewError] = []
-    for folder in folders:
+    inside = [(folder, results_in([folder])) for folder in folders]
+    total = sum(len(results) for _, results in inside)
+    done = count(1)
+    report(0, total)
+    for folder, results in inside:
         told: set[Path] = set()
-        for result in results_in([folder]):
+        for result in results:
             try:
                 files.append(write_trial_page(result))
             except ElbowscrewError as error:
                 errors.append(error)
                 told.add(result)
+            report(next(done), total)
         try:
             if not is_result(folder):
                 study = write_index(folder)
@@ -130,7 +138,9 @@ def results_in(folders: Iterable[Path]) -> tuple[Path, ...]:
     for folder in folders:
         inside = [folder] if is_result(folder) else list(result_folders(folder))
         if not inside:
-            what = "holds no finished result" if folder.is_dir() else "no such folder"
+            what = (
+                "holds no finished result" if folder.is_dir() else f"no such folder{files_beside(folder, folders=True)}"
+            )
             msg = f"{folder}: {what}; analyze trials first, and give the folders that were written"
             raise ResultError(msg)
         found += inside

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Final
 
-from elbowscrew.errors import UsageError
+from elbowscrew.errors import UsageError, asked_back
 from elbowscrew.view.figure_names import ALL, FIGURE_CHOICES, OVERLAY, chosen_figures
 
 WIDTHS_MM: Final = {
@@ -38,7 +38,9 @@ def figure_names(given: Sequence[str]) -> tuple[str, ...]:
     names = tuple(dict.fromkeys(name.strip() for text in given for name in text.split(",") if name.strip()))
     unknown = [name for name in names if name not in (*FIGURE_CHOICES, ALL)]
     if unknown or not names:
-        msg = f"--figures: expected {ALL} or some of {', '.join(FIGURE_CHOICES)}, found {', '.join(unknown) or 'none'}"
+        mean = asked_back(",".join(unknown), (*FIGURE_CHOICES, ALL))
+        found = f"{', '.join(unknown) or 'none'}{mean}"
+        msg = f"--figures: expected {ALL} or some of {', '.join(FIGURE_CHOICES)}, found {found}"
         raise UsageError(msg)
     return (*chosen_figures(names), *([OVERLAY] if OVERLAY in names else []))
 
@@ -58,5 +60,5 @@ def width_mm(text: str) -> float:
     if not _LEAST_MM <= width <= _MOST_MM:
         named = ", ".join(WIDTHS_MM)
         msg = f"--width: expected {named} or millimeters from {_LEAST_MM:g} to {_MOST_MM:g}, found {text!r}"
-        raise UsageError(msg)
+        raise UsageError(msg + asked_back(text, WIDTHS_MM))
     return width

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Final, NamedTuple
@@ -45,6 +45,7 @@ def save_publication_figures(
     width_mm: float,
     font: str | None = None,
     force: bool = False,
+    report: Callable[[int, int], None] = lambda _done, _total: None,
 ) -> Published:
     """Write figures of results, all of them or none.
 
@@ -63,6 +64,8 @@ def save_publication_figures(
         Family of the letters; that of each trial's settings by default.
     force : bool
         Replace files of these names.
+    report : callable, optional
+        Called with how many results are drawn, and how many there are.
 
     Returns
     -------
@@ -83,7 +86,8 @@ def save_publication_figures(
     single = chosen_figures(names)
     prefixes = _prefixes(results)
     curves, left_out, not_drawn, units = [], [], [], set()
-    for result, prefix in zip(results, prefixes, strict=True):
+    for done, (result, prefix) in enumerate(zip(results, prefixes, strict=True)):
+        report(done, len(results))
         settle(result)
         trial = view_of_result(result, single)
         not_drawn += [(result, name) for name in single if not has_figure(name, trial)]

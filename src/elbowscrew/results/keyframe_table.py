@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowscrew.choices import METHOD_NAMES
-from elbowscrew.errors import RecordingError, SettingError
+from elbowscrew.errors import RecordingError, SettingError, why_unreadable
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_quaternion import continuous_signs, dual_quat_from_pose, normalize
 from elbowscrew.geometry.quaternion import norm
@@ -217,7 +217,7 @@ class _Table:
                 row for row in enumerate(csv.reader(text.splitlines()), start=1) if any(cell.strip() for cell in row[1])
             ]
         except (OSError, ValueError, csv.Error) as error:
-            why = error.strerror or error if isinstance(error, OSError) else "not a CSV file in UTF-8"
+            why = why_unreadable(path, error) if isinstance(error, OSError) else "not a CSV file in UTF-8"
             msg = f"{path}: cannot be read as keyframes: {why}"
             raise RecordingError(msg) from error
         names = [cell.strip() for cell in rows[0][1]] if rows else []

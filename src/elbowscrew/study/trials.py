@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from elbowscrew.errors import UsageError
+from elbowscrew.errors import UsageError, files_beside
 from elbowscrew.reading.registry import ENDINGS, FORMATS, TABLE_ENDINGS
 from elbowscrew.reading.source import END_OF_STORAGE_HEADER, first_bytes
 from elbowscrew.results.result_files import is_summary
@@ -133,7 +133,7 @@ class _Search:
 
     def pattern(self, text: str) -> None:
         if not glob.has_magic(text):
-            msg = f"{text}: no such file or folder; check the name"
+            msg = f"{text}: no such file or folder{files_beside(text) or '; check the name'}"
             raise UsageError(msg)
         matches = [Path(match) for match in sorted(glob.glob(text, recursive=True))]  # noqa: PTH207 - may be absolute
         if not matches:

@@ -21,7 +21,7 @@ from elbowscrew.choices import (
     MethodName,
     functions_named,
 )
-from elbowscrew.errors import SettingError, UsageError
+from elbowscrew.errors import SettingError, UsageError, asked_back
 from elbowscrew.geometry.arrays import Bool, Float
 from elbowscrew.model import ModelPhases
 from elbowscrew.motion.axes.measured import smoothed_displacement, twist_cutoff
@@ -78,7 +78,8 @@ class ComparisonPlan:
             given = getattr(self, name)
             strange = [one for one in given if one not in allowed]
             if strange or not given:
-                msg = f"--{name}: expected some of {', '.join(allowed)}, found {', '.join(strange) or 'none'}"
+                found = f"{', '.join(strange) or 'none'}{asked_back(','.join(strange), allowed)}"
+                msg = f"--{name}: expected some of {', '.join(allowed)}, found {found}"
                 raise UsageError(msg)
         for name, low, high in (("counts", 2, _MOST_PER_PHASE), ("decimation", 2, 1000)):
             numbers = getattr(self, name)
