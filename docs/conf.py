@@ -27,7 +27,7 @@ extensions = [
     "commands",
     "program",
 ]
-exclude_patterns = ["_static", "_extensions", "schemas", "gallery_scripts"]
+exclude_patterns = ["_made", "_static", "_extensions", "schemas", "gallery_scripts"]
 suppress_warnings = ["mystnb.unknown_mime_type"]
 
 # ELBOWSCREW_DOCS_RUN=0 builds without running anything: commands and cells are shown as they stand.

@@ -15,6 +15,8 @@ import typer
 import elbowscrew
 from elbowscrew.cli.app import app
 from elbowscrew.cli.examples import EXAMPLES
+from elbowscrew.tables import TABLES
+from elbowscrew.view.figure_names import FIGURE_CHOICES
 
 TOCTREE = re.compile(r"^```\{toctree\}\n(.*?)^```", re.M | re.S)
 BLOCK = re.compile(r"^ *(`{3,}|:{3,})(?:sh|\{run\})?\n(.*?)^ *\1\s*$", re.M | re.S)
@@ -52,6 +54,35 @@ def test_the_python_interface_is_documented_whole(root: Path) -> None:
 def test_every_command_is_documented(root: Path) -> None:
     text = (root / "docs" / "reference" / "cli.md").read_text(encoding="utf-8")
     assert re.findall(r"^```\{command\} (\w+)$", text, re.M) == list(group().commands)
+
+
+def test_every_figure_is_explained(root: Path) -> None:
+    text = (root / "docs" / "reference" / "figures.md").read_text(encoding="utf-8")
+    told = set(re.findall(r"`(\w+)`", " ".join(re.findall(r"^## (.*)$", text, re.M))))
+    assert told >= set(FIGURE_CHOICES) - {"fig8", "fig9"} | {"compare"}  # the paper's four have one heading
+
+
+def test_every_table_and_column_is_documented(root: Path) -> None:
+    pages = ("reference/outputs", "reference/columns", "reference/compare", "explanation/anatomy")
+    text = "".join((root / "docs" / f"{page}.md").read_text(encoding="utf-8") for page in pages)
+    for name, columns in TABLES.items():
+        assert f"`{name}.csv`" in text, name
+        for column in columns:
+            ends = {
+                column.name,
+                re.sub(r"_[xyz](?=$|_)", "", column.name),
+                re.sub(r"\d$", "0", column.name),
+                column.name.replace("2_", "1_"),
+            }
+            assert any(f"`{end}" in text for end in ends), f"{name}: {column.name}"
+
+
+def test_every_page_of_the_report_is_explained(root: Path) -> None:
+    """Each heading of the page stands in the guide to it."""
+    template = (root / "src" / "elbowscrew" / "report" / "templates" / "trial.html").read_text(encoding="utf-8")
+    text = (root / "docs" / "reference" / "page.md").read_text(encoding="utf-8")
+    for heading in re.findall(r"<h[23][^>]*>([A-Z][^<{]*)</h[23]>", template):
+        assert heading in text, heading
 
 
 def test_every_command_has_examples_and_they_are_its_own() -> None:

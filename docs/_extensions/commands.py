@@ -1,7 +1,8 @@
 """Command lines, files and Python that pages show, run at build, with what they print below them.
 
 Each page has a folder of its own with the sample recordings in it; what a command writes is there for the next one.
-``run`` takes command lines, ``file`` the text of a file by the name in its argument, and ``python`` a program.
+``run`` takes command lines, ``file`` the text of a file by the name in its argument, ``python`` a program, and
+``picture`` a file that they have made.
 A command that ends otherwise than its ``exit`` says (0 by default) fails the build.
 """
 
@@ -24,8 +25,12 @@ from docutils import nodes
 from docutils.parsers.rst import Directive, directives
 from sphinx.application import Sphinx
 from sphinx.errors import ExtensionError
+from sphinx.util import logging
 
+MADE = Path(__file__).resolve().parents[1] / "_made"
+"""Pictures that the build makes."""
 SAMPLES = Path(__file__).resolve().parents[2] / "sample_data"
+_LOG = logging.getLogger(__name__)
 _ESCAPES = re.compile(r"\x1b\[[0-9;?]*[A-Za-z]")
 
 
@@ -116,6 +121,10 @@ class _Shown(Directive):
     def block(self, text: str, language: str, *classes: str) -> nodes.literal_block:
         return nodes.literal_block(text, text, language=language, classes=list(classes))
 
+    def failed(self, why: str) -> None:
+        """Warn, which ends a build that takes warnings for errors after all pages have been read."""
+        _LOG.warning(why, location=(self.environment.docname, self.lineno))
+
     def result(self, printed: str) -> list[nodes.Node]:
         if "quiet" in self.options or not printed.strip():
             return []
@@ -141,8 +150,7 @@ class Run(_Shown):
             told, code = self.page.command(line)
             printed += told
             if code != self.options.get("exit", 0):
-                msg = f"{self.environment.docname}: {line!r} ended with {code}\n{told}"
-                raise ExtensionError(msg)
+                self.failed(f"{line!r} ended with {code}\n{told}")
         return [*shown, *self.result(printed)]
 
 
@@ -170,9 +178,28 @@ class Python(_Shown):
             return shown
         try:
             return [*shown, *self.result(self.page.python(self.text))]
-        except Exception as error:
-            msg = f"{self.environment.docname}: {traceback.format_exc()}"
-            raise ExtensionError(msg) from error
+        except Exception:  # whatever it is, the page must be told
+            self.failed(traceback.format_exc())
+            return shown
+
+
+class Picture(_Shown):
+    """A picture that a command above has made; the text below it tells those who cannot see it what it shows."""
+
+    required_arguments = 1
+
+    def run(self) -> list[nodes.Node]:
+        """Keep it beside the pages, and show it."""
+        if not self.environment.config.run_commands:
+            return []
+        source = self.page.folder / self.arguments[0]
+        if not source.exists():
+            self.failed(f"no picture {self.arguments[0]}")
+            return []
+        name = "-".join([*self.environment.docname.split("/"), *source.relative_to(self.page.folder).parts])
+        MADE.mkdir(exist_ok=True)
+        shutil.copy(source, MADE / name)
+        return [nodes.image("", uri=f"/{MADE.name}/{name}", alt=" ".join(self.text.split()))]
 
 
 def _forget(_app: Sphinx, _error: Exception | None) -> None:
@@ -188,5 +215,6 @@ def setup(app: Sphinx) -> dict[str, bool]:
     app.add_directive("run", Run)
     app.add_directive("file", File)
     app.add_directive("python", Python)
+    app.add_directive("picture", Picture)
     app.connect("build-finished", _forget)
     return {"parallel_read_safe": False, "parallel_write_safe": True}
