@@ -70,7 +70,7 @@ def save_analysis(
     exports: Sequence[str] | None = None,
     report: bool = True,
 ) -> Path:
-    """Write the tables, ``summary.json``, ``joint.json``, ``figures/`` and ``report.html`` into a folder.
+    """Write tables, ``summary.json``, ``joint.json``, ``figures/``, ``report.html`` and ``methods.txt`` into a folder.
 
     Whole or not at all. Figures and page are made of the numbers as the tables and JSON hold them, so that
     ``elbowscrew report`` makes the same of the folder at any later time.
@@ -90,7 +90,7 @@ def save_analysis(
     exports : sequence of {"parquet", "mat", "sto"}, optional
         Formats of other programs to write the tables in, too; those of the analysis' settings by default.
     report : bool
-        Write the page.
+        Write the page, and the methods as text.
 
     Returns
     -------
@@ -141,8 +141,10 @@ def write_result(
         write_exports(staged, analysis, found, others)
         _write_json(staged / SUMMARY, found)
         if report:
+            from elbowscrew.report.methods_file import METHODS, methods_file
             from elbowscrew.report.trial_page import PAGE, trial_page
 
+            write_new(staged / METHODS, methods_file(view).encode("utf-8", "replace"))
             write_new(staged / PAGE, trial_page(view, staged).encode("utf-8", "replace"))
     return found
 

@@ -50,7 +50,7 @@ def test_a_good_trial_ends_with_0_and_a_whole_result(take: Path, capsys: pytest.
                      "figures/euler_parameters.png", "figures/joint.caption.txt", "figures/joint.png",
                      "figures/slide.caption.txt", "figures/slide.png", "figures/theta.caption.txt", "figures/theta.png",
                      "instantaneous.csv", "interpolation.csv", "joint.json", "joint_angles.csv", "keyframes.csv",
-                     "repetitions.csv", "report.html", "screw.csv", "summary.json"]  # fmt: skip
+                     "methods.txt", "repetitions.csv", "report.html", "screw.csv", "summary.json"]  # fmt: skip
     assert sorted(path.name for path in take.parent.iterdir()) == ["take.csv", "take_elbowscrew"]
 
 

@@ -73,8 +73,8 @@ def test_an_axis_is_told_with_its_limits_everywhere(hinge: Told) -> None:
         "landmarks of the left arm (EL, EM, US, RS, GH by coordinates); signs mean the same on both sides."
     ) in hinge.methods
     assert (
-        f"The joint axis lies {angle[0]:.1f}° (95 % interval {angle[1]:.1f} to {angle[2]:.1f}°) off the line of the "
-        f"epicondyles and passes {distance[0]:.1f} mm (95 % interval {distance[1]:.1f} to {distance[2]:.1f} mm) from "
+        f"The joint axis lies {angle[0]:.2f}° (95 % interval {angle[1]:.2f} to {angle[2]:.2f}°) off the line of the "
+        f"epicondyles and passes {distance[0]:.2f} mm (95 % interval {distance[1]:.2f} to {distance[2]:.2f} mm) from "
         "the point midway between them, without the error of the landmarks."
     ) in hinge.methods
     assert hinge.terminal["Epicondyles"].startswith(f"the joint axis is {angle[0]:.2f} deg (")

@@ -122,8 +122,8 @@ def expected_of(told: Told) -> dict[str, str]:
             for name in ("axis_angle_deg", "axis_distance_mm")
         )
         found["Axis and epicondyles"] = (
-            f"{angle[0]:.1f}° (95 % interval {angle[1]:.1f} to {angle[2]:.1f}°) off the line of the epicondyles and "
-            f"passes {far[0]:.1f} mm (95 % interval {far[1]:.1f} to {far[2]:.1f} mm) from the point midway between "
+            f"{angle[0]:.2f}° (95 % interval {angle[1]:.2f} to {angle[2]:.2f}°) off the line of the epicondyles and "
+            f"passes {far[0]:.2f} mm (95 % interval {far[1]:.2f} to {far[2]:.2f} mm) from the point midway between "
             "them; the error of the landmarks is not included"
         )
     return found
@@ -183,6 +183,18 @@ def test_the_page_tells_how_many_entries_are_filled_in(told: Told) -> None:
     assert f"{filled} of {len(said)} entries are filled in" in page
     assert page.count(f'<span class="badge warn">{MISSING}</span>') == len(said) - filled
     assert 0 < filled < len(said)
+
+
+def test_the_text_beside_the_page_says_the_same(told: Told) -> None:
+    """Methods, references and checklist of the page, in `methods.txt`."""
+    text = (told.folder / "methods.txt").read_text(encoding="utf-8")
+    methods, references, checklist = re.fullmatch(
+        r"Methods\n\n(.+)\n\nReferences\n\n(.+)\n\nReporting checklist\n\n(.+)\n", text, re.S
+    ).groups()  # type: ignore[union-attr]
+    assert methods in told.page.texts
+    assert all(reference in told.page.texts for reference in references.splitlines())
+    said = {title: f"[{MISSING}]" if value == MISSING else value for title, value in rows_of(told).items()}
+    assert checklist.splitlines() == [f"{title}: {value}" for title, value in said.items()]
 
 
 # Other outcomes, in memory.

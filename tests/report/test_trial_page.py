@@ -79,7 +79,7 @@ def test_the_page_asks_for_nothing_and_runs_nothing_but_its_own(page: str) -> No
         assert not name.startswith("on"), (tag, name)
         assert name != "style", tag
         if name in ("src", "href", "xlink:href", "action", "data"):
-            assert re.fullmatch(r"#[\w-]+|[\w.]+\.(csv|json)", value), value
+            assert re.fullmatch(r"#[\w-]+|[\w.]+\.(csv|json|txt)", value), value
     policy = next(
         value for tag, name, value in seen.attributes if name == "content" and value.startswith("default-src")
     )

@@ -31,7 +31,10 @@ def analyze(
     given: dict[str, Any],
     landmarks: options.LandmarksFile = None,
     page: Annotated[
-        bool, typer.Option("--report/--no-report", rich_help_panel=OUTPUT, help="Write the page report.html.")
+        bool,
+        typer.Option(
+            "--report/--no-report", rich_help_panel=OUTPUT, help="Write the page report.html and methods.txt."
+        ),
     ] = True,
     config: Annotated[
         Path | None, typer.Option(metavar="FILE.toml", rich_help_panel=OUTPUT, help="Settings; options override them.")

@@ -79,8 +79,8 @@ def axis_against_epicondyles(found: AxisAgainstBones) -> str:
         _interval(found["axis_distance_mm_low"], found["axis_distance_mm_high"], " mm"),
     )
     return (
-        f"{found['axis_angle_deg']:.1f}°{angle} off the line of the epicondyles and passes "
-        f"{found['axis_distance_mm']:.1f} mm{distance} from the point midway between them"
+        f"{found['axis_angle_deg']:.2f}°{angle} off the line of the epicondyles and passes "
+        f"{found['axis_distance_mm']:.2f} mm{distance} from the point midway between them"
     )
 
 
@@ -93,4 +93,4 @@ def landmark_sources(marks: LandmarksSummary) -> str:
 
 
 def _interval(low: float | None, high: float | None, unit: str) -> str:
-    return "" if low is None or high is None else f" (95 % interval {low:.1f} to {high:.1f}{unit})"
+    return "" if low is None or high is None else f" (95 % interval {low:.2f} to {high:.2f}{unit})"

@@ -10,7 +10,6 @@ from collections.abc import Callable, Iterator
 from typing import Final, NamedTuple
 
 import numpy as np
-from scipy.spatial.distance import pdist
 
 from elbowscrew.choices import JOINT_TYPE_WORDS
 from elbowscrew.geometry.arrays import Float
@@ -279,7 +278,8 @@ def _told_of(
 def _cluster(body: QualitySummary, markers: Float | None) -> str | None:
     if markers is None or len(markers) < 2:
         return None
-    return f"{len(markers)} markers, the farthest two {1000.0 * pdist(markers).max():.0f} mm apart"
+    apart = np.linalg.norm(markers[:, None] - markers, axis=-1).max()
+    return f"{len(markers)} markers, the farthest two {1000.0 * apart:.0f} mm apart"
 
 
 def _residual(body: QualitySummary, markers: Float | None) -> str | None:

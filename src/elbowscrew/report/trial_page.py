@@ -18,6 +18,7 @@ from elbowscrew.report.captions import caption_of
 from elbowscrew.report.checklist import MISSING, checklist_of
 from elbowscrew.report.joint_words import joint_sentences
 from elbowscrew.report.methods import citations_of, methods_of
+from elbowscrew.report.methods_file import METHODS
 from elbowscrew.report.pages import MARK, UNSHOWABLE, render, unshowable
 from elbowscrew.report.scene import WIDEST, scene_of
 from elbowscrew.report.trial_charts import (
@@ -55,6 +56,7 @@ _FILES: Final = (
     ("joint_angles.csv", "the joint's own angles, frame by frame"),
     ("axis_path.csv", "the joint's axis against its angle"),
     ("joint.json", "joint axis by all estimators"),
+    (METHODS, "methods paragraph, references and reporting checklist as text"),
 )
 
 

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 _LINE: Final = re.compile(r"([0-9a-f]{64}) [ *](\S+)")
 _READ_BYTES: Final = 1 << 20
-_DRAWN: Final = ("figures/", "report.html")
+_DRAWN: Final = ("figures/", "report.html", "methods.txt")
 
 
 def seal(folder: Path, names: Sequence[str] = RESULT_FILES) -> None:

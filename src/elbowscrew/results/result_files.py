@@ -31,6 +31,7 @@ RESULT_FILES: Final = (
     *(f"{name}{ending}" for name in TABLES for ending in _TABLE_ENDINGS),
     *(export.file for export in EXPORTS.values() if not export.file.startswith(".")),
     "report.html",
+    "methods.txt",
     *(f"figures/{file}" for name in FIGURE_ENTRIES for file in _figure_files(name)),
     SUMS,
 )
