@@ -23,6 +23,7 @@ extensions = [
     "myst_nb",
     "sphinx_copybutton",
     "sphinx_design",
+    "sphinx_gallery.gen_gallery",
     "math_ml",
     "commands",
     "program",
@@ -40,6 +41,17 @@ nb_execution_raise_on_error = True
 nb_execution_timeout = 120
 nb_merge_streams = True
 nb_ipywidgets_js: dict[str, dict[str, str]] = {}  # they would come from the network
+
+sphinx_gallery_conf = {
+    "examples_dirs": "gallery_scripts",
+    "gallery_dirs": "gallery",
+    "filename_pattern": "/plot_" if run_commands else "/none",
+    "download_all_examples": False,
+    "show_memory": False,
+    "show_signature": False,
+    "min_reported_time": 600,
+    "within_subsection_order": "FileNameSortKey",
+}
 
 autosummary_generate = True
 autodoc_typehints = "none"  # the docstrings tell types with their shapes

@@ -210,7 +210,7 @@ def _forget(_app: Sphinx, _error: Exception | None) -> None:
 
 def setup(app: Sphinx) -> dict[str, bool]:
     """Register the directives."""
-    os.environ["COLUMNS"] = "100"  # how wide tables are
+    os.environ["COLUMNS"] = "88"  # how wide tables are
     app.add_config_value("run_commands", True, "env")
     app.add_directive("run", Run)
     app.add_directive("file", File)

@@ -24,7 +24,7 @@ _AXES: Final = ("x", "y", "z")
 def dataset_from_table(result: TableRecord, angle_unit: AngleUnit, length_unit: LengthUnit) -> xr.Dataset:
     """Label a table; see `TableRecord.to_xarray`."""
     if find_spec("xarray") is None:
-        msg = "to_xarray needs xarray; install it with: pip install 'elbowscrew[xarray]'"
+        msg = "to_xarray needs xarray; install it with: pip install xarray"
         raise UsageError(msg)
     import xarray as xr
 

@@ -105,7 +105,7 @@ def read(path: Path, options: ReadOptions) -> Recording:
 
 def _open(path: Path) -> _Content:
     if find_spec("ezc3d") is None:
-        msg = f"{path}: a C3D file needs ezc3d; install it with: pip install 'elbowscrew[c3d]'"
+        msg = f"{path}: a C3D file needs ezc3d; install it with: pip install ezc3d"
         raise RecordingError(msg)
     reason = "the file is damaged"
     try:

@@ -35,7 +35,7 @@ def check_exports(formats: Sequence[str]) -> None:
             raise UsageError(msg)
         library = EXPORTS[name].library
         if library is not None and find_spec(library) is None:
-            msg = f"--export {name} needs {library}; install it with: pip install 'elbowscrew[export]'"
+            msg = f"--export {name} needs {library}; install it with: pip install {library}"
             raise UsageError(msg)
 
 

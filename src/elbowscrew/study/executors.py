@@ -60,7 +60,7 @@ def open_executor(scheduler: str | None, workers: int, wait_s: float = WAIT_S) -
         msg = f"--scheduler {scheduler}: expected tcp://host:port, tls://host:port or {LOCAL_CLUSTER}"
         raise UsageError(msg)
     if find_spec("distributed") is None:
-        msg = "--scheduler needs dask.distributed; install it with: pip install 'elbowscrew[cluster]'"
+        msg = "--scheduler needs dask.distributed; install it with: pip install distributed"
         raise UsageError(msg)
     return partial(_cluster, scheduler, workers, wait_s)
 
