@@ -28,7 +28,7 @@ def main(data: Path, out: Path) -> None:
     times, processor = [], []
     for path in paths:
         start, start_processor = time.perf_counter(), time.process_time()
-        save_analysis(analyze_file(path, Settings()), out / path.stem, force=True)
+        save_analysis(analyze_file(path, Settings()), out / path.stem, overwrite=True)
         collect_garbage()
         times.append(time.perf_counter() - start)
         processor.append(time.process_time() - start_processor)

@@ -153,7 +153,7 @@ def read_cycles(_folder: Path, changed: Path) -> None:
 
 
 def read_poses(folder: Path, changed: Path) -> None:
-    save_motion(interpolate(read_keyframes(changed), 20), folder / "motion.csv", force=True)
+    save_motion(interpolate(read_keyframes(changed), 20), folder / "motion.csv", overwrite=True)
 
 
 READERS: dict[str, Callable[[Path, Path], None]] = {

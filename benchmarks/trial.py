@@ -34,7 +34,7 @@ def long_export(folder: Path, frames: int) -> Path:
     # A cycle ends where the next one begins, so that each but the first is one frame shorter.
     cycles = max(1, -(-(frames - 1) // (CYCLE - 1)))
     trial = simulate_trial(Simulation(frames=CYCLE, repetitions=cycles))
-    whole, truth = save_simulation(trial, folder / "whole.csv", force=True)
+    whole, truth = save_simulation(trial, folder / "whole.csv", overwrite=True)
     truth.unlink()
     with whole.open(encoding="utf-8") as source, path.open("w", encoding="utf-8") as target:
         for number, line in enumerate(source):

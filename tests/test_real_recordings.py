@@ -222,7 +222,7 @@ def test_local_coordinate_space_gives_the_offsets_themselves(real_data: Path) ->
 
 def test_mirrored_bodies_of_version_1_1_are_corrected(real_data: Path) -> None:
     path = real_data / "real" / "v11_handsyn_20141028_body.csv"
-    with pytest.raises(SettingError, match="--units"):
+    with pytest.raises(SettingError, match="give units m"):
         read_recording(path)
     recording = read_recording(path, units="m")
     assert [warning.code for warning in recording.warnings] == ["mirrored"]

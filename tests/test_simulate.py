@@ -121,7 +121,7 @@ def test_rests_come_before_and_after() -> None:
      {"slide_mm": 3.0, "joint_type": "hinge"}, {"wander_deg": 2.0, "joint_type": "ball"}],
 )  # fmt: skip
 def test_impossible_trials_are_refused(settings: dict[str, Any]) -> None:
-    with pytest.raises(UsageError, match="--"):
+    with pytest.raises(UsageError, match="simulate: "):
         simulate_trial(**settings)
 
 
@@ -332,7 +332,7 @@ def test_an_elbows_landmarks_are_written_as_they_are_read(tmp_path: Path) -> Non
     for name, mark in made.by_name.items():
         assert found.by_name[name].frame == mark.frame
         assert found.by_name[name].point == pytest.approx(mark.point, abs=5.1e-6)
-    save_simulation(trial, tmp_path / "t.csv", landmarks=True, force=True)
+    save_simulation(trial, tmp_path / "t.csv", landmarks=True, overwrite=True)
     with pytest.raises(UsageError, match="only an elbow has landmarks"):
         save_simulation(simulate_trial(joint="knee", **SHORT), tmp_path / "k.csv", landmarks=True)
     assert not list(tmp_path.glob("k.*"))

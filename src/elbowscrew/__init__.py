@@ -13,44 +13,58 @@ from elbowscrew._version import __version__
 
 TYPE_CHECKING = False  # typing itself would double the time of `elbowscrew --version`
 if TYPE_CHECKING:
-    from typing import Any
-
-    from elbowscrew.comparing import compare_trials
+    from elbowscrew import geometry, plots
     from elbowscrew.errors import ElbowscrewError
-    from elbowscrew.model import Analysis, Comparison, Landmark, Landmarks, Recording, RigidBody, TrialsComparison
-    from elbowscrew.motion.analysis import analyze
-    from elbowscrew.motion.interpolation.comparison import compare
+    from elbowscrew.interface.analysis import Analysis
+    from elbowscrew.interface.calls import (
+        analyze,
+        batch,
+        compare,
+        compare_trials,
+        interpolate,
+        read_result,
+        simulate_trial,
+    )
+    from elbowscrew.interface.study import StudyResult
+    from elbowscrew.model import Comparison, KeyframeSet, Landmark, Landmarks, Recording, RigidBody, TrialsComparison
     from elbowscrew.motion.interpolation.keyframe_sources import ComparisonPlan
-    from elbowscrew.motion.interpolation.rebuilding import interpolate, keyframes_of
+    from elbowscrew.motion.interpolation.rebuilding import keyframes_of
     from elbowscrew.reading.landmarks import read_landmarks
     from elbowscrew.reading.registry import read_recording
     from elbowscrew.results.keyframe_table import read_keyframes
     from elbowscrew.results.summary import summary_from_analysis
     from elbowscrew.saving import save_analysis, save_comparison, save_motion, save_simulation
     from elbowscrew.settings import Settings
-    from elbowscrew.simulate import Simulation, simulate_trial
+    from elbowscrew.simulate import SimulatedTrial, Simulation
 
 __all__ = [
     "Analysis",
     "Comparison",
     "ComparisonPlan",
     "ElbowscrewError",
+    "KeyframeSet",
     "Landmark",
     "Landmarks",
     "Recording",
     "RigidBody",
     "Settings",
+    "SimulatedTrial",
     "Simulation",
+    "StudyResult",
     "TrialsComparison",
     "__version__",
     "analyze",
+    "batch",
     "compare",
     "compare_trials",
+    "geometry",
     "interpolate",
     "keyframes_of",
+    "plots",
     "read_keyframes",
     "read_landmarks",
     "read_recording",
+    "read_result",
     "save_analysis",
     "save_comparison",
     "save_motion",
@@ -61,39 +75,54 @@ __all__ = [
 
 # Names are loaded when first used, so that `elbowscrew --help` starts without NumPy.
 _HOME = {
-    "Analysis": "model",
+    "Analysis": "interface.analysis",
     "Comparison": "model",
     "ComparisonPlan": "motion.interpolation.keyframe_sources",
     "ElbowscrewError": "errors",
+    "KeyframeSet": "model",
     "Landmark": "model",
     "Landmarks": "model",
     "Recording": "model",
     "RigidBody": "model",
     "Settings": "settings",
+    "SimulatedTrial": "simulate",
     "Simulation": "simulate",
+    "StudyResult": "interface.study",
     "TrialsComparison": "model",
-    "analyze": "motion.analysis",
-    "compare": "motion.interpolation.comparison",
-    "compare_trials": "comparing",
-    "interpolate": "motion.interpolation.rebuilding",
+}
+_FUNCTIONS = {
+    "analyze": "interface.calls",
+    "batch": "interface.calls",
+    "compare": "interface.calls",
+    "compare_trials": "interface.calls",
+    "interpolate": "interface.calls",
     "keyframes_of": "motion.interpolation.rebuilding",
     "read_keyframes": "results.keyframe_table",
     "read_landmarks": "reading.landmarks",
     "read_recording": "reading.registry",
+    "read_result": "interface.calls",
     "save_analysis": "saving",
     "save_comparison": "saving",
     "save_motion": "saving",
     "save_simulation": "saving",
-    "simulate_trial": "simulate",
+    "simulate_trial": "interface.calls",
     "summary_from_analysis": "results.summary",
 }
+_MODULES = ("geometry", "plots")
 
 
-def __getattr__(name: str) -> Any:
+def __getattr__(name: str) -> object:
+    from importlib import import_module
+
+    if name in _MODULES:
+        return import_module(f"elbowscrew.{name}")
     if name in _HOME:
-        from importlib import import_module
-
         return getattr(import_module(f"elbowscrew.{_HOME[name]}"), name)
+    if name in _FUNCTIONS:
+        from elbowscrew.interface.python_words import public
+
+        globals()[name] = public(getattr(import_module(f"elbowscrew.{_FUNCTIONS[name]}"), name))
+        return globals()[name]
     msg = f"module 'elbowscrew' has no attribute {name!r}"
     raise AttributeError(msg)
 

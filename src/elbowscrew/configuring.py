@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import difflib
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, Final
 
 from pydantic import ValidationError
 
-from elbowscrew.declaring import option_name
+from elbowscrew.declaring import FORMER_NAMES, option_name
 from elbowscrew.errors import UsageError, asked_back, shown, why_unreadable
 from elbowscrew.opening import read_toml
 from elbowscrew.settings import LISTS, SETTINGS, Settings
@@ -68,6 +68,24 @@ def settings_from_options(values: Mapping[str, Any]) -> Settings:
     return Settings.model_validate({_FIELDS.get(name, name): value for name, value in values.items()})
 
 
+def settings_with(settings: Settings | None, fields: Mapping[str, Any]) -> Settings:
+    """Change fields of settings, by their names in Python.
+
+    Raises
+    ------
+    UsageError
+        If a name or a value is not a possible one; it names the field.
+    """
+    former = {name.replace("-", "_"): now.replace("-", "_") for name, now in FORMER_NAMES.items()}
+    given = {} if settings is None else {name: getattr(settings, name) for name in settings.model_fields_set}
+    changed = {former.get(name, name): value for name, value in fields.items()}
+    try:
+        return Settings.model_validate({**given, **changed})
+    except ValidationError as error:
+        known = list(Settings.model_fields)
+        raise UsageError("; ".join(_sentence("settings", fault, known, str) for fault in _faults(error))) from error
+
+
 def options_from_settings(settings: Settings) -> dict[str, Any]:
     """Give every setting by the name of its option, ready for JSON."""
     return {option_name(field): value for field, value in settings.model_dump(mode="json").items()}
@@ -94,8 +112,8 @@ def _faults(error: ValidationError) -> list[Any]:
     return [one for one in faults if one["type"] != "too_short" or one["loc"][0] not in parts]
 
 
-def _sentence(location: str, fault: Any, known: list[str]) -> str:
-    key = option_name(str(fault["loc"][0])) if fault["loc"] else ""
+def _sentence(location: str, fault: Any, known: list[str], named: Callable[[str], str] = option_name) -> str:
+    key = named(str(fault["loc"][0])) if fault["loc"] else ""
     if fault["type"] == "extra_forbidden":
         close = difflib.get_close_matches(key, known, n=1)
         hint = f"did you mean {close[0]!r}?" if close else f"possible keys: {', '.join(known)}"

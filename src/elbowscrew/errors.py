@@ -7,6 +7,7 @@
     ├── RecordingError   3  the recording cannot be read
     │   ├── NoBodiesError   it has no rigid bodies, but maybe markers
     │   └── ResultError     a folder that should hold a finished result does not, or a damaged one
+    │       └── NotKeptError   what is asked of a result is not in its files
     ├── SettingError     4  a setting does not fit this recording
     │   └── MissingStatementError   the file lacks a statement that an option must supply
     ├── AnalysisError    5  the recording can be read but not analyzed
@@ -140,6 +141,10 @@ class NoBodiesError(RecordingError):
 
 class ResultError(RecordingError):
     """A folder holds no finished result, or one that cannot be read: what was to be read is at fault, as in a file."""
+
+
+class NotKeptError(ResultError, AttributeError):
+    """Something that an analysis has in memory, and the files of its result do not hold."""
 
 
 class SettingError(ElbowscrewError):

@@ -65,7 +65,7 @@ def save_analysis(
     analysis: Analysis,
     folder: str | os.PathLike[str],
     *,
-    force: bool = False,
+    overwrite: bool = False,
     figure_formats: Sequence[str] | None = None,
     exports: Sequence[str] | None = None,
     report: bool = True,
@@ -83,7 +83,7 @@ def save_analysis(
         From `elbowscrew.analyze`.
     folder : path-like
         Where to; it is made.
-    force : bool
+    overwrite : bool
         Replace an earlier result.
     figure_formats : sequence of {"png", "svg", "pdf", "tiff", "eps"}, optional
         Those of the analysis' settings by default; may be empty.
@@ -113,7 +113,7 @@ def save_analysis(
     True
     """
     target = Path(folder)
-    write_result(analysis, target, force=force, figure_formats=figure_formats, exports=exports, report=report)
+    write_result(analysis, target, force=overwrite, figure_formats=figure_formats, exports=exports, report=report)
     return target
 
 
@@ -181,7 +181,7 @@ def save_simulation(
     layout: Literal["motive", "row-tagged"] = "motive",
     length_unit: Literal["m", "cm", "mm"] = "m",
     landmarks: bool = False,
-    force: bool = False,
+    overwrite: bool = False,
 ) -> tuple[Path, ...]:
     """Write a synthetic trial in an OptiTrack layout, and the truth about it beside it.
 
@@ -197,7 +197,7 @@ def save_simulation(
         Unit in the export; the row-tagged layout has meters always.
     landmarks : bool
         Write the elbow's landmarks, too, to the same name with ``.landmarks.toml``.
-    force : bool
+    overwrite : bool
         Replace files of an earlier simulation.
 
     Returns
@@ -247,7 +247,7 @@ def save_simulation(
             raise UsageError(msg)
         about = "landmarks of a synthetic elbow, in the frames of its two bodies"
         contents[export.with_suffix(".landmarks.toml").name] = landmarks_lines(trial.landmarks, about)
-    write_files(export.parent, contents, replaceable=("synthetic",) if force else None)
+    write_files(export.parent, contents, replaceable=("synthetic",) if overwrite else None)
     return tuple(export.parent / name for name in contents)
 
 
@@ -272,7 +272,7 @@ def save_paper_figures(folder: str | os.PathLike[str]) -> tuple[Path, ...]:
     return tuple(Path(folder) / name for name in contents)
 
 
-def save_motion(motion: RebuiltMotion, path: str | os.PathLike[str], *, force: bool = False) -> Path:
+def save_motion(motion: RebuiltMotion, path: str | os.PathLike[str], *, overwrite: bool = False) -> Path:
     """Write a rebuilt motion as CSV, in degrees and millimeters.
 
     Parameters
@@ -281,7 +281,7 @@ def save_motion(motion: RebuiltMotion, path: str | os.PathLike[str], *, force: b
         From `elbowscrew.interpolate`.
     path : path-like
         The file.
-    force : bool
+    overwrite : bool
         Replace an earlier such file.
 
     Returns
@@ -307,7 +307,9 @@ def save_motion(motion: RebuiltMotion, path: str | os.PathLike[str], *, force: b
         staged = Path(folder) / "motion.csv"
         write_table(staged, motion, "deg", "mm")
         content = staged.read_bytes()
-    write_files(target.parent, {target.name: content}, replaceable=("frame,time_s,phase,t,theta",) if force else None)
+    write_files(
+        target.parent, {target.name: content}, replaceable=("frame,time_s,phase,t,theta",) if overwrite else None
+    )
     return target
 
 
@@ -315,7 +317,7 @@ def save_comparison(
     comparison: Comparison | TrialsComparison,
     folder: str | os.PathLike[str],
     *,
-    force: bool = False,
+    overwrite: bool = False,
     figure_formats: Sequence[str] | None = None,
 ) -> Path:
     """Write ``compare.csv``, ``compare.json`` and the figures of a comparison into a folder, whole or not at all.
@@ -326,7 +328,7 @@ def save_comparison(
         From `elbowscrew.compare` or `elbowscrew.compare_trials`.
     folder : path-like
         Where to; it is made.
-    force : bool
+    overwrite : bool
         Replace an earlier comparison.
     figure_formats : sequence of {"png", "svg", "pdf", "tiff", "eps"}, optional
         Those of the settings by default; may be empty.
@@ -354,7 +356,7 @@ def save_comparison(
     True
     """
     target = Path(folder)
-    write_comparison(comparison, target, force=force, figure_formats=figure_formats)
+    write_comparison(comparison, target, force=overwrite, figure_formats=figure_formats)
     return target
 
 

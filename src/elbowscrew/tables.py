@@ -294,7 +294,7 @@ def attributes(read: Sequence[NDArray[Any]], table: tuple[Column, ...]) -> dict[
     Returns
     -------
     dict of str to ndarray
-        Shape (N,), or (N, k) of k components; flags as bool.
+        Shape (N,), or (N, k) of k components, NaN for those that the table does not have; flags as bool.
     """
     parts: dict[str, list[tuple[Column, NDArray[Any]]]] = {}
     for column, values_of in zip(table, read, strict=True):
@@ -302,8 +302,10 @@ def attributes(read: Sequence[NDArray[Any]], table: tuple[Column, ...]) -> dict[
     found = {}
     for attribute, pairs in parts.items():
         columns_of, values = [column for column, _ in pairs], [one for _, one in pairs]
-        if columns_of[0].component is not None:
-            found[attribute] = np.stack(values, axis=1)
+        places = [column.component for column in columns_of if column.component is not None]
+        if places:
+            found[attribute] = np.full((values[0].size, max(places) + 1), np.nan)
+            found[attribute][:, places] = np.stack(values, axis=1)
         elif columns_of[0].quantity is Quantity.FLAG:
             found[attribute] = values[0] == 1
         else:

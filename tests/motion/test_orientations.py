@@ -211,14 +211,14 @@ def test_a_tolerance_is_an_angle_and_the_fewest_keyframes_are_those_of_its_chord
 
 
 def test_what_says_nothing_of_orientations_is_refused() -> None:
-    with pytest.raises(SettingError, match="--marker-noise: body 'upper arm' has orientations and no positions"):
+    with pytest.raises(SettingError, match="marker_noise_mm: body 'upper arm' has orientations and no positions"):
         analyze(hinge(located=False), Settings(marker_noise_mm=1.0))
-    with pytest.raises(SettingError, match=r"--joint-type screw-hinge: .* tell of no slide"):
+    with pytest.raises(SettingError, match=r"joint_type screw-hinge: .* tell of no slide"):
         analyze(hinge(located=False), Settings(joint_type="screw_hinge"))
     with pytest.raises(SettingError, match="the bodies have positions, and the error is a length"):
         analyze(hinge(located=True), Settings(tolerance_mm="2deg"))
     at = Landmark(markers=("a",))
-    with pytest.raises(SettingError, match="--landmarks: landmarks are places"):
+    with pytest.raises(SettingError, match="landmarks: landmarks are places"):
         analyze(hinge(located=False), landmarks=Landmarks(side="right", EL=at, EM=at, US=at, RS=at, GH=at))
 
 

@@ -52,7 +52,7 @@ def test_bones_that_are_named_are_analyzed_with_a_warning(tmp_path: Path) -> Non
 
 def test_bones_are_not_taken_by_themselves(tmp_path: Path) -> None:
     path = skeleton(tmp_path / "t.csv")
-    with pytest.raises(NoBodiesError, match=r"--proximal and --distal \('Anna:LUArm', 'Anna:LFArm'\)"):
+    with pytest.raises(NoBodiesError, match=r"proximal and distal \('Anna:LUArm', 'Anna:LFArm'\)"):
         read_recording(path)
     with pytest.raises(NoBodiesError, match="no rigid bodies"):
         read_recording(path, bones=("LUArm", "#1"))

@@ -108,9 +108,9 @@ def test_one_body_alone_is_told(tmp_path: Path) -> None:
 
 def test_what_the_file_does_not_state_is_asked_for_at_once(tmp_path: Path) -> None:
     path = write(tmp_path / "ulna.tra", both()[1])
-    with pytest.raises(SettingError, match="give --units m, cm or mm, and --rate HZ"):
+    with pytest.raises(SettingError, match="give units m, cm or mm, and rate_hz HZ"):
         read_recording(path)
-    with pytest.raises(SettingError, match="give --rate HZ"):
+    with pytest.raises(SettingError, match="give rate_hz HZ"):
         read_recording(path, units="mm")
 
 
@@ -204,7 +204,7 @@ def test_a_column_of_frame_numbers_is_the_clock(tmp_path: Path, mark: str) -> No
 
 def test_a_unit_that_cannot_be_is_asked_back(tmp_path: Path) -> None:
     first, second = (write(tmp_path / name, rows) for name, rows in zip(("a.tra", "b.tra"), both(), strict=True))
-    with pytest.raises(SettingError, match=r"--units m puts what is in the file .* m from the origin: is .*mm"):
+    with pytest.raises(SettingError, match=r"units=.m. puts what is in the file .* m from the origin: is .*mm"):
         read_recording(first, distal_path=second, units="m", rate_hz=100.0)
     meters = [write(tmp_path / f"{path.stem}_m.tra", metric(path)) for path in (first, second)]
     doubted = read_recording(meters[0], distal_path=meters[1], units="mm", rate_hz=100.0)
@@ -222,5 +222,5 @@ def metric(path: Path) -> list[str]:
 
 def test_six_numbers_a_row_are_not_guessed(tmp_path: Path) -> None:
     path = write(tmp_path / "t.tra", ["1.5,2,3,10,20,30"] * 5)
-    with pytest.raises(RecordingError, match=r"Autoscoper.*--columns"):
+    with pytest.raises(RecordingError, match=r"Autoscoper.*columns FILE"):
         read_recording(path)

@@ -12,12 +12,12 @@ from elbowscrew.errors import SettingError
 
 def test_unit_and_order_of_angles_are_asked_for_together(real_data: Path) -> None:
     case = real_data / "cases" / "units_missing_info.csv"
-    with pytest.raises(SettingError, match=r"--units m, cm or mm, and --rotation XYZ"):
+    with pytest.raises(SettingError, match=r"units m, cm or mm, and rotation XYZ"):
         read_recording(case)
-    with pytest.raises(SettingError, match="Euler angles; give --rotation XYZ") as asked:
+    with pytest.raises(SettingError, match="Euler angles; give rotation XYZ") as asked:
         read_recording(case, units="cm")
-    assert "--units" not in str(asked.value)
-    with pytest.raises(SettingError, match="unit of length; give --units") as asked:
+    assert "units" not in str(asked.value)
+    with pytest.raises(SettingError, match="unit of length; give units") as asked:
         read_recording(case, rotation="XYZ")
-    assert "--rotation" not in str(asked.value)
+    assert "rotation" not in str(asked.value)
     assert read_recording(case, units="cm", rotation="XYZ").frame.size == 3

@@ -215,7 +215,7 @@ def test_headers_of_a_plain_table_that_do_not_fit(tmp_path: Path, header: str, s
 
 def test_trc_files_state_their_unit_and_rate(tmp_path: Path) -> None:
     silent = trc(tmp_path / "a.trc", unit="")
-    with pytest.raises(SettingError, match="--units"):
+    with pytest.raises(SettingError, match="give units m, cm or mm"):
         read_recording(silent, markers=("*",))
     recording = read_recording(silent, markers=("*",), units="mm")
     assert recording.markers[0].position == pytest.approx(ARM[:, 0], abs=1e-12)

@@ -45,7 +45,7 @@ def test_a_pause_in_the_times_is_one(tmp_path: Path) -> None:
 
 def test_frame_numbers_alone_need_the_rate(tmp_path: Path) -> None:
     path = table(tmp_path / "t.csv", {"frame": 7 + np.arange(90)})
-    with pytest.raises(SettingError, match="give --rate HZ"):
+    with pytest.raises(SettingError, match="give rate_hz HZ"):
         read_recording(path)
     recording = read_recording(path, rate_hz=240.0)
     assert recording.frame.tolist() == list(range(7, 97))

@@ -123,7 +123,7 @@ def test_units_are_known_in_their_spellings(tmp_path: Path, written: str, meters
 @pytest.mark.parametrize("written", ["", "inch", "met", "m/s"])
 def test_a_unit_that_is_not_known_is_asked_for(tmp_path: Path, written: str) -> None:
     path = write(tmp_path / "t.trc", lines(written))
-    with pytest.raises(SettingError, match="--units"):
+    with pytest.raises(SettingError, match="give units m, cm or mm"):
         read_recording(path, markers="*")
     assert read_recording(path, markers="A1", units="cm").markers[0].position[0] == pytest.approx(0.01 * PLACES[0, :3])
 

@@ -16,6 +16,7 @@ from finished_results import HOSTILE, write_rows
 from sealed import resealed
 
 from elbowscrew import analyze, save_analysis, simulate_trial
+from elbowscrew.choices import JointName
 from elbowscrew.cli import main
 from elbowscrew.errors import OutputError, ResultError
 from elbowscrew.report import remake_pages, results_in, write_study_page
@@ -234,7 +235,7 @@ def test_the_columns_of_a_batchs_manifest_are_those_between_path_and_frames(resu
 
 
 def test_numbers_of_two_joints_have_no_common_median(tmp_path: Path) -> None:
-    tops = {"elbow": (100.0, 110.0, 120.0), "knee": (50.0, 60.0, 70.0)}
+    tops: dict[JointName, tuple[float, ...]] = {"elbow": (100.0, 110.0, 120.0), "knee": (50.0, 60.0, 70.0)}
     for joint, angles in tops.items():
         for k, top in enumerate(angles):
             trial = simulate_trial(frames=80, inversion=40, top_deg=top, seed=k, joint=joint)

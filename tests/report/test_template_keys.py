@@ -48,7 +48,11 @@ STUDY_TYPES: dict[str, Any] = {
     "failure": Failure,
 }
 """What `elbowscrew.report.study_page` and its loops call the parts of a study."""
-TEMPLATES = {"trial.html": TYPES, "study.html": STUDY_TYPES, "base.html": {}}
+SPACE_TYPES: dict[str, Any] = {"joint": JointSummary, "motion": MotionSummary}
+"""What the view in space calls them, on the page and alone."""
+TEMPLATES = {
+    "trial.html": TYPES, "study.html": STUDY_TYPES, "base.html": {}, "viewer.html": SPACE_TYPES, "space.html": {}
+}  # fmt: skip
 METHODS = {"items", "lower", "startswith"}
 
 

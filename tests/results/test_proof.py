@@ -196,7 +196,7 @@ def test_files_of_two_states_of_a_result_do_not_go_together(copy: Path) -> None:
     proof = proof_of(copy)
     read_summary(proof)
     other = simulate_trial(frames=60, inversion=30, seed=4).recording
-    save_analysis(analyze(other), copy, force=True, figure_formats=())
+    save_analysis(analyze(other), copy, overwrite=True, figure_formats=())
     with pytest.raises(ResultError, match="not as it was written"):
         read_summary(proof)
 
@@ -207,7 +207,7 @@ def test_what_desktops_leave_blocks_nothing(copy: Path, stray: str) -> None:
         (place / stray).write_bytes(b"\0\1")
     recording = simulate_trial(frames=60, inversion=30, seed=4).recording
     write_trial_page(copy)
-    save_analysis(analyze(recording), copy, force=True, figure_formats=())
+    save_analysis(analyze(recording), copy, overwrite=True, figure_formats=())
     assert not (copy / stray).exists()
     empty = copy.parent / "empty"
     empty.mkdir()

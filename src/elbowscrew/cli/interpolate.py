@@ -65,4 +65,4 @@ def interpolate(
         raise UsageError(msg)
     found = read_keyframes(keyframes, method=method, law=law, law_peak=law_peak)
     target = output if output is not None else Path(f"{keyframes.stem}_motion.csv")
-    emit(f"{printable(str(save_motion(rebuild(found, frames), target, force=force)))}\n")
+    emit(f"{printable(str(save_motion(rebuild(found, frames), target, overwrite=force)))}\n")

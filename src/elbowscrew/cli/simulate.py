@@ -144,7 +144,7 @@ def simulate(
         made = simulate_trial(simulation)
         begin(f"Writing {output}")
         written = save_simulation(
-            made, output, layout=layout, length_unit=length_unit, landmarks=landmarks, force=force
+            made, output, layout=layout, length_unit=length_unit, landmarks=landmarks, overwrite=force
         )
     for path in written:
         emit(f"{printable(str(path))}\n")

@@ -42,8 +42,8 @@ class TableRecord(ArrayRecord, ABC):
         return f"{type(self).__name__}({told}: {', '.join(names[:_COLUMNS_TOLD])}{more})"
 
     def _repr_html_(self) -> str:
-        name = html.escape(type(self).__name__)
-        return f"<div><b>{name}</b>{self.to_frame().to_html(max_rows=_ROWS_SHOWN)}</div>"
+        shown = self.to_frame().to_html(max_rows=_ROWS_SHOWN, float_format="{:.6g}".format, na_rep="")
+        return f"<div><b>{html.escape(type(self).__name__)}</b>{shown}</div>"
 
     def columns(
         self, angle_unit: AngleUnit = "deg", length_unit: LengthUnit = "mm", rows: slice = slice(None)

@@ -129,3 +129,4 @@ def error_figure(analysis: Analysis | TrialView, *, width_mm: float = WIDTH_MM) 
 def _color_bar(figure: Figure, cell: SubplotSpec, view: TrialView) -> None:
     bar = figure.colorbar(axis.color_scale(view), cax=figure.add_subplot(cell), orientation="horizontal")
     bar.set_label(f"Angle θ ({view.settings.angle_unit})")
+    bar.ax.set_label("<colorbar>")  # as matplotlib calls those that it makes itself

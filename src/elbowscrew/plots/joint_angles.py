@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.sensitivity import NORMAL_95
 from elbowscrew.model import Analysis
+from elbowscrew.model.joint_axis import AxisPath
 from elbowscrew.model.joint_type import JointAngles
 from elbowscrew.motion.difference import piercing
 from elbowscrew.plots import style
@@ -121,35 +122,47 @@ def plot_angles_together(ax: Axes, analysis: Analysis | TrialView) -> Axes:
 
 def axis_path_figure(analysis: Analysis | TrialView, *, width_mm: float = WIDTH_MM) -> Figure:
     """Make the figure of an axis that wanders: its tilt and its shift from the mean axis against the angle."""
-    view = view_of(analysis)
-    path = view.axis_path
-    if path is None:
-        msg = "no wander of this joint's axis was found"
-        raise ValueError(msg)
+    view, _ = _with_path(analysis)
     narrow = width_mm < NARROW_MM
     figure = style.new_figure(width_mm, 110.0 if narrow else 68.0)
     panels = [figure.add_subplot(2, 1, k) if narrow else figure.add_subplot(1, 2, k) for k in (1, 2)]
-    direction = view.joint_direction
-    across, toward = directions_across(direction)
-    settings = view.settings
-    angle = angle_in(path.angle, settings.angle_unit)
-    offset = piercing(path.direction, path.point, direction, view.joint_point) - view.joint_point
-    for k, (u, name) in enumerate(zip(across, toward, strict=True)):
-        tilt = angle_in(np.arctan2(path.direction @ u, path.direction @ direction), settings.angle_unit)
-        shift = length_in(offset @ u, settings.length_unit)
-        for ax, values, sd in (
-            (panels[0], tilt, angle_in(path.axis_sd, settings.angle_unit)),
-            (panels[1], shift, length_in(path.point_sd, settings.length_unit)),
-        ):
-            reach = NORMAL_95 * sd / np.sqrt(2.0)  # of one component
-            if np.isfinite(reach).any():
-                ax.fill_between(angle, values - reach, values + reach, label="95 % of each", **style.BAND)
-            ax.plot(angle, values, label=f"toward {name}", linewidth=1.3, marker="o", markersize=2.5, **style.AXES[k])
-    panels[0].set_ylabel(f"Tilt from the mean axis ({settings.angle_unit})")
-    panels[1].set_ylabel(f"Shift from the mean axis ({settings.length_unit})")
-    for ax in panels:
-        ax.axhline(0.0, **style.LEVEL)
-        ax.set_xlabel(f"Angle ({settings.angle_unit})")
+    for ax, shifted in zip(panels, (False, True), strict=True):
+        plot_axis_path(ax, view, shifted=shifted)
     style.letter(*panels)
     style.legend(figure, panels[0], below=True)
     return figure
+
+
+def _with_path(analysis: Analysis | TrialView) -> tuple[TrialView, AxisPath]:
+    """Give the view and the path of its axis; ValueError of an axis that stays."""
+    view = view_of(analysis)
+    if view.axis_path is None:
+        msg = "no wander of this joint's axis was found"
+        raise ValueError(msg)
+    return view, view.axis_path
+
+
+def plot_axis_path(ax: Axes, analysis: Analysis | TrialView, *, shifted: bool) -> Axes:
+    """Draw how far an axis that wanders tilts from the mean axis, or shifts, against the angle."""
+    view, path = _with_path(analysis)
+    direction, settings = view.joint_direction, view.settings
+    across, toward = directions_across(direction)
+    angle = angle_in(path.angle, settings.angle_unit)
+    if shifted:
+        offset = piercing(path.direction, path.point, direction, view.joint_point) - view.joint_point
+        parts = [length_in(offset @ u, settings.length_unit) for u in across]
+        sd = length_in(path.point_sd, settings.length_unit)
+    else:
+        along = path.direction @ direction
+        parts = [angle_in(np.arctan2(path.direction @ u, along), settings.angle_unit) for u in across]
+        sd = angle_in(path.axis_sd, settings.angle_unit)
+    reach = NORMAL_95 * sd / np.sqrt(2.0)  # of one component
+    for k, (values, name) in enumerate(zip(parts, toward, strict=True)):
+        if np.isfinite(reach).any():
+            ax.fill_between(angle, values - reach, values + reach, label="95 % of each", **style.BAND)
+        ax.plot(angle, values, label=f"toward {name}", linewidth=1.3, marker="o", markersize=2.5, **style.AXES[k])
+    ax.axhline(0.0, **style.LEVEL)
+    ax.set_xlabel(f"Angle ({settings.angle_unit})")
+    what, unit = ("Shift", settings.length_unit) if shifted else ("Tilt", settings.angle_unit)
+    ax.set_ylabel(f"{what} from the mean axis ({unit})")
+    return ax

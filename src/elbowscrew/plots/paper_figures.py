@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 from typing import Any, Final
 
@@ -22,12 +23,22 @@ _DASHES: Final[tuple[Any, ...]] = ("-", (0, (5, 2)), (0, (1, 1.2)), (0, (6, 2, 1
 """Of e0 to e3."""
 
 
-def _angle_figure(analysis: Analysis | TrialView, *, width_mm: float = WIDTH_MM, modeled: bool) -> Figure:
+def _over_time(
+    draw: Callable[..., Axes], analysis: Analysis | TrialView, *, width_mm: float = WIDTH_MM, modeled: bool
+) -> Figure:
     whole = view_of(analysis)
     view, stretch = shown_part(whole)
     figure = style.new_figure(width_mm, 0.32 * width_mm + 26.0)
     panels = series.overview_grid(figure, whole, stretch, 1)
-    ax = panels[-1]
+    draw(panels[-1], view, modeled=modeled)
+    style.letter(*panels)
+    style.legend(figure, *panels)
+    return figure
+
+
+def plot_one_angle(ax: Axes, analysis: Analysis | TrialView, *, modeled: bool) -> Axes:
+    """Draw the measured angle over time, or the modeled one."""
+    view = view_of(analysis)
     unit, time_s = view.settings.angle_unit, view.time_s
     angle = angle_in(view.modeled_angle if modeled else view.angle, unit)
     look = style.MODELED if modeled else style.MEASURED
@@ -37,18 +48,12 @@ def _angle_figure(analysis: Analysis | TrialView, *, width_mm: float = WIDTH_MM,
         series.mark_tracking(ax, view)
     ax.set_ylabel(f"Angle θ ({unit})")
     _alike(ax, angle_in(view.angle, unit), angle_in(view.modeled_angle, unit))
-    series.over_time(ax, time_s)
-    style.letter(*panels)
-    style.legend(figure, *panels)
-    return figure
+    return series.over_time(ax, time_s)
 
 
-def _euler_figure(analysis: Analysis | TrialView, *, width_mm: float = WIDTH_MM, modeled: bool) -> Figure:
-    whole = view_of(analysis)
-    view, stretch = shown_part(whole)
-    figure = style.new_figure(width_mm, 0.32 * width_mm + 26.0)
-    panels = series.overview_grid(figure, whole, stretch, 1)
-    ax = panels[-1]
+def plot_all_euler_parameters(ax: Axes, analysis: Analysis | TrialView, *, modeled: bool) -> Axes:
+    """Draw e0 to e3 over time, those measured or those modeled."""
+    view = view_of(analysis)
     time_s = view.time_s
     shown = view.modeled_euler_parameters if modeled else view.euler_parameters
     look = style.MODELED if modeled else style.MEASURED
@@ -59,10 +64,7 @@ def _euler_figure(analysis: Analysis | TrialView, *, width_mm: float = WIDTH_MM,
         series.mark_tracking(ax, view)
     ax.set_ylabel("Modeled $e_k$ (–)" if modeled else "Measured $e_k$ (–)")
     _alike(ax, view.euler_parameters, view.modeled_euler_parameters)
-    series.over_time(ax, time_s)
-    style.letter(*panels)
-    style.legend(figure, *panels)
-    return figure
+    return series.over_time(ax, time_s)
 
 
 def _alike(ax: Axes, *both: Float) -> None:
@@ -72,8 +74,8 @@ def _alike(ax: Axes, *both: Float) -> None:
     ax.set_ylim(low - air, high + air)
 
 
-figure_7: Final[MakeFigure] = partial(_angle_figure, modeled=False)
-figure_8: Final[MakeFigure] = partial(_angle_figure, modeled=True)
-figure_9: Final[MakeFigure] = partial(_euler_figure, modeled=False)
-figure_10: Final[MakeFigure] = partial(_euler_figure, modeled=True)
+figure_7: Final[MakeFigure] = partial(_over_time, plot_one_angle, modeled=False)
+figure_8: Final[MakeFigure] = partial(_over_time, plot_one_angle, modeled=True)
+figure_9: Final[MakeFigure] = partial(_over_time, plot_all_euler_parameters, modeled=False)
+figure_10: Final[MakeFigure] = partial(_over_time, plot_all_euler_parameters, modeled=True)
 """Counterparts of the figures of Pennestrì and Valentini 2010, of any trial."""

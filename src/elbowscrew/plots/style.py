@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import re
-from contextlib import AbstractContextManager
+from collections.abc import Iterator
+from contextlib import AbstractContextManager, contextmanager
+from contextvars import ContextVar
 from difflib import get_close_matches
 from itertools import pairwise
 from typing import Any, Final, cast
@@ -133,9 +135,27 @@ def known_font(name: str) -> str:
 
 def new_figure(width_mm: float, height_mm: float) -> Figure:
     """Return an empty figure of that size on paper, without pyplot's global state; `settle` lays it out."""
-    figure = Figure(figsize=(width_mm / MM_PER_INCH, height_mm / MM_PER_INCH), dpi=DOTS_PER_INCH)
+    size = width_mm / MM_PER_INCH, height_mm / MM_PER_INCH
+    if _SHOWN.get():
+        import matplotlib.pyplot as plt
+
+        return plt.figure(figsize=size)
+    figure = Figure(figsize=size, dpi=DOTS_PER_INCH)
     FigureCanvasAgg(figure)  # so that laying out and drawing share a renderer
     return figure
+
+
+_SHOWN: Final[ContextVar[bool]] = ContextVar("_SHOWN", default=False)
+
+
+@contextmanager
+def on_screen() -> Iterator[None]:
+    """Let figures be pyplot's, which shows them: in a notebook or a window, with the user's dots per inch."""
+    token = _SHOWN.set(True)
+    try:
+        yield
+    finally:
+        _SHOWN.reset(token)
 
 
 def letter(*panels: Axes) -> None:

@@ -95,19 +95,14 @@ def trial_page(trial: TrialView, folder: Path) -> str:
     curve, words = trial.repetition_curve, trial.named_joint
     warnings = summary["warnings"]
     content = {
+        **_about_space(trial),
         "summary": summary,
         "source": summary["source"],
         "trial": summary["trial"],
-        "motion": summary["motion"],
         "model": summary["interpolation"],
-        "joint": joint,
-        "title": summary["source"]["name"] or "trial",
         "proximal_name": f"still {words.proximal.name}" if trial.proximal_name is None else trial.proximal_name,
         "distal_name": trial.distal_name,
-        "proximal_word": words.proximal.name,
-        "distal_word": words.distal.name,
         "bodies": [body for body in (summary["trial"]["proximal"], summary["trial"]["distal"]) if body is not None],
-        "frame_name": _frame_names(trial.named_joint)[trial.settings.express_in],
         "lost_frames": int((~trial.valid & ~trial.filled).sum()),
         "warnings": [warning for warning in warnings if warning["severity"] == "warning"],
         "notes": [warning for warning in warnings if warning["severity"] != "warning"],
@@ -116,7 +111,6 @@ def trial_page(trial: TrialView, folder: Path) -> str:
         "min_angle_deg": trial.settings.min_angle_deg,
         "axis_sd_deg": trial.settings.axis_sd_deg,
         "hardly_deg": _HARDLY_DEG,
-        "widest_deg": float(np.degrees(WIDEST)),
         "theta_chart": theta_chart(trial),
         "axis_chart": axis_chart(trial) if trial.located else None,
         "error_chart": error_chart(trial),
@@ -143,6 +137,27 @@ def trial_page(trial: TrialView, folder: Path) -> str:
     }
     scene = scene_of(trial) if trial.located else None
     return render("trial.html", styles=("page.css",), script="trial.js", data=scene, content=content)
+
+
+def space_page(trial: TrialView) -> str:
+    """Make a page of the view in space alone, of a trial that has places."""
+    return render(
+        "space.html", styles=("page.css",), script="trial.js", data=scene_of(trial), content=_about_space(trial)
+    )
+
+
+def _about_space(trial: TrialView) -> dict[str, Any]:
+    """What the view in space says beside what it draws."""
+    summary, words = trial.summary, trial.named_joint
+    return {
+        "title": summary["source"]["name"] or "trial",
+        "motion": summary["motion"],
+        "joint": trial.joint_summary,
+        "proximal_word": words.proximal.name,
+        "distal_word": words.distal.name,
+        "frame_name": _frame_names(words)[trial.settings.express_in],
+        "widest_deg": float(np.degrees(WIDEST)),
+    }
 
 
 def _frame_names(words: Joint) -> dict[str, str]:

@@ -5,7 +5,8 @@ Both go the same way, from the numbers as the files of a result have them, so th
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from abc import ABC, abstractmethod
+from collections.abc import Collection, Mapping
 from dataclasses import fields
 from pathlib import Path
 from typing import Any, Final, NamedTuple
@@ -61,10 +62,22 @@ def is_result(folder: Path) -> bool:
     return (folder / SUMMARY).is_file() and (folder / "screw.csv").is_file()
 
 
+class Viewed(ABC):
+    """A trial that has what is shown of it at hand."""
+
+    __slots__ = ()
+
+    @abstractmethod
+    def trial_view(self) -> TrialView:
+        """Give it."""
+
+
 def view_of(trial: Analysis | TrialView) -> TrialView:
     """Give what is shown of an analysis; a view is given back as it is."""
     if isinstance(trial, TrialView):
         return trial
+    if isinstance(trial, Viewed):
+        return trial.trial_view()
     return view_of_analysis(trial, summary_from_analysis(trial), joint_summary(trial), tuple(FIGURE_ENTRIES))
 
 
@@ -109,7 +122,7 @@ def view_of_proved(proof: Proof, figures: Collection[str] = ()) -> TrialView:
             model=read_attributes(model, tables.INTERPOLATION_COLUMNS, _MODEL, *units),
             repetitions=read_attributes(cycles, tables.REPETITION_COLUMNS, _REPETITIONS, *units),
             curve=None if curve is None else read_columns(curve, tables.CURVE_COLUMNS, *units),
-            angles=None if angles is None else read_attributes(angles, _angle_table(joint), _ANGLES, *units),
+            angles=None if angles is None else read_attributes(angles, angle_table(joint), _ANGLES, *units),
             path=None if path is None else read_attributes(path, tables.AXIS_PATH_COLUMNS, _PATH, *units),
             extra={
                 name: read_attributes(proof.file(f"{table}.csv"), columns, names, *units)
@@ -124,6 +137,32 @@ def view_of_proved(proof: Proof, figures: Collection[str] = ()) -> TrialView:
             "analyze the trial again"
         )
         raise ResultError(" ".join(msg.split())) from error
+
+
+def view_of_tables(
+    summary: Summary, joint: JointSummary, settings: Settings, tables_of: Mapping[str, Attributes]
+) -> TrialView:
+    """Give what `view_of_result` reads, of tables that have been read whole, by their names."""
+    curve = tables_of.get("repetition_curve")
+    return _view(
+        summary,
+        joint,
+        settings,
+        _Tables(
+            screw=tables_of["screw"],
+            model=tables_of["interpolation"],
+            repetitions=tables_of["repetitions"],
+            curve=None if curve is None else {one.name: curve[one.attribute] for one in tables.CURVE_COLUMNS},
+            angles=tables_of.get("joint_angles"),
+            path=tables_of.get("axis_path"),
+            extra={name: tables_of[table] for name, (table, _, _) in _EXTRA.items() if table in tables_of},
+        ),
+    )
+
+
+def angle_table(joint: JointSummary) -> tuple[tables.Column, ...]:
+    """Columns of the joint's own angles, by how many it has."""
+    return tables.JOINT_ANGLE_COLUMNS[JOINT_ANGLES[joint["joint_type"]["type"]]]
 
 
 def _extra_of(figures: Collection[str]) -> dict[str, tuple[str, tuple[tables.Column, ...], tuple[str, ...]]]:
@@ -236,10 +275,6 @@ def _view(summary: Summary, joint: JointSummary, settings: Settings, read: _Tabl
         axis_path=None if read.path is None else AxisPath(**read.path),
         extra=read.extra,
     )
-
-
-def _angle_table(joint: JointSummary) -> tuple[tables.Column, ...]:
-    return tables.JOINT_ANGLE_COLUMNS[JOINT_ANGLES[joint["joint_type"]["type"]]]
 
 
 def _pose(pose: PoseSummary) -> Float:

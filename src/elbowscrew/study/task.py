@@ -78,7 +78,7 @@ def analyze_trial(task: TrialTask) -> Failure | None:
                 msg = f"{task.folder}: is a link; a batch writes into its own folder alone: remove it"
                 raise OutputError(msg)
             analysis = analyze_file(task.path, task.settings, distal_path=task.distal_path, landmarks=task.landmarks)
-            save_analysis(analysis, task.folder, force=True)
+            save_analysis(analysis, task.folder, overwrite=True)
             del analysis
             collect_garbage()
     except ElbowscrewError as error:

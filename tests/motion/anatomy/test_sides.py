@@ -35,7 +35,7 @@ def recording(side: Side | None, **changes: Any) -> Recording:
 @pytest.mark.parametrize("side", ["left", "right"])
 def test_landmarks_of_the_other_side_are_refused_with_both_sides(side: Side) -> None:
     other: Side = "right" if side == "left" else "left"
-    with pytest.raises(SettingError, match="--proximal and --distal") as caught:
+    with pytest.raises(SettingError, match="proximal and distal") as caught:
         analyze(recording(side), landmarks=landmarks(other))
     told = str(caught.value)
     assert caught.value.exit_code == 4
@@ -58,7 +58,7 @@ def test_bodies_named_by_options_are_taken_with_a_warning() -> None:
 
 def test_beside_a_still_body_the_distal_one_tells_the_side() -> None:
     still = Settings(proximal="none")
-    with pytest.raises(SettingError, match="give --distal if that is meant"):
+    with pytest.raises(SettingError, match="give distal if that is meant"):
         analyze(recording("left"), still, landmarks=landmarks("right"))
     named = Settings(proximal="none", distal="Left Forearm")
     codes = [warning.code for warning in analyze(recording("left"), named, landmarks=landmarks("right")).warnings]

@@ -107,7 +107,7 @@ def wild(frames: int = 120) -> Recording:
 
 @pytest.mark.parametrize("stated", ["auto", "free", "rigid"])
 def test_a_joint_without_angles_is_refused_in_one_line(stated: str) -> None:
-    with pytest.raises(SettingError, match="--method joint: the joint is") as caught:
+    with pytest.raises(SettingError, match='method="joint": the joint is') as caught:
         analyze(wild(), Settings(method="joint", joint_type=stated))
     assert "\n" not in str(caught.value)
     assert " here, which has no angles" in str(caught.value)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from elbowscrew import analyze, simulate_trial
+from elbowscrew.choices import SimulatedJointType
 from elbowscrew.geometry import dual_quat_from_screw
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.motion.joint.deciding_frames import deciding_frames
@@ -39,7 +40,7 @@ def test_poses_that_are_all_the_same_are_spread_in_time() -> None:
 
 
 @pytest.mark.parametrize("joint", ["hinge", "two-axes", "ball"])
-def test_a_long_rest_does_not_change_the_type(joint: str) -> None:
+def test_a_long_rest_does_not_change_the_type(joint: SimulatedJointType) -> None:
     trial = simulate_trial(
         frames=101,
         inversion=50,

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from elbowscrew import Analysis, Recording, RigidBody, Settings, analyze, simulate_trial
+from elbowscrew.choices import SimulatedJointType
 from elbowscrew.geometry import dual_quat_from_screw
 from elbowscrew.geometry.dual_quaternion import multiply
 from elbowscrew.simulate import SimulatedTrial
@@ -52,7 +53,7 @@ def test_a_filter_hardly_moves_the_cuts_of_two_axes() -> None:
 
 
 @pytest.mark.parametrize("joint_type", ["two-axes", "hinge"])
-def test_the_largest_angle_is_that_of_the_cycle(joint_type: str) -> None:
+def test_the_largest_angle_is_that_of_the_cycle(joint_type: SimulatedJointType) -> None:
     trial = simulate_trial(joint_type=joint_type, repetitions=2, seed=2)
     analysis = analyze(trial.recording)
     found, frame = analysis.repetitions, analysis.screw.frame

@@ -213,7 +213,7 @@ def test_without_noise_there_are_no_errors_and_no_precision_to_ask_for() -> None
     analysis = analyze(recording, Settings(noise="none"))
     assert np.isnan(analysis.screw.axis_sd).all()
     assert "noise-unknown" in [warning.code for warning in analysis.warnings]
-    with pytest.raises(SettingError, match="--marker-noise"):
+    with pytest.raises(SettingError, match="marker_noise_mm"):
         analyze(recording, Settings(noise="none", axis_sd_deg=1))
 
 

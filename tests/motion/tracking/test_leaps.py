@@ -186,7 +186,7 @@ def test_a_body_that_really_turns_fast_is_told_with_its_speed_and_the_option_tha
     angle = np.radians(40.0) * np.arange(120)  # 4000 deg/s at 100 Hz
     fast = body(dual_quat_from_screw(angle, 0.0, [0.0, 0.6, 0.8], [0.0, 0.0, 0.0]))
     taken = Recording.from_bodies([fast], rate_hz=100)
-    with pytest.raises(AnalysisError, match=r"evenly there, at up to 4000 deg/s.* --max-turn 4800 keeps it"):
+    with pytest.raises(AnalysisError, match=r"evenly there, at up to 4000 deg/s.* max_turn_deg_s=4800 keeps it"):
         analyze(taken)
     kept = analyze(taken, Settings(max_turn_deg_s=4800))
     assert np.degrees(kept.screw.angle) == pytest.approx(np.degrees(angle), abs=1e-6)

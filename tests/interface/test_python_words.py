@@ -1,0 +1,84 @@
+"""Errors of the Python interface speak of keywords, and its keywords are the settings."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any, Literal, get_args, get_origin, get_type_hints
+
+import pytest
+
+import elbowscrew
+from elbowscrew import Analysis, Settings, Simulation
+from elbowscrew.configuring import settings_with
+from elbowscrew.errors import ElbowscrewError, OutputError, UsageError
+from elbowscrew.interface.fields import SettingsFields, SimulationFields
+from elbowscrew.interface.python_words import in_python
+from elbowscrew.settings import SETTINGS
+from elbowscrew.simulate import simulate_trial
+
+
+def choices_in(annotation: Any) -> set[str]:
+    """Strings that a type allows, in a union or a list."""
+    if get_origin(annotation) is Literal:
+        return {one for one in get_args(annotation) if isinstance(one, str)}
+    return set().union(*map(choices_in, get_args(annotation)))
+
+
+def test_every_setting_is_a_keyword_of_its_type() -> None:
+    keywords = get_type_hints(SettingsFields)
+    former = {"arm", "forearm", "arm_markers", "forearm_markers"}
+    assert set(keywords) == set(Settings.model_fields) | former
+    for name, field in Settings.model_fields.items():
+        assert choices_in(keywords[name]) == choices_in(field.annotation), name
+
+
+def test_every_field_of_a_simulation_is_a_keyword() -> None:
+    keywords = get_type_hints(SimulationFields)
+    former = {name: keywords.pop(name) for name in ("arm", "axis_drift_deg")}
+    assert keywords == get_type_hints(Simulation)
+    assert former == {"arm": keywords["proximal"], "axis_drift_deg": keywords["wander_deg"]}
+
+
+def test_no_option_is_left_in_a_message() -> None:
+    for one in SETTINGS:
+        assert in_python(f"give --{one.option}.") == f"give {one.field}."
+    assert in_python("--method sclerp or joint") == 'method="sclerp" or joint'
+    assert in_python("--units m, cm or mm") == "units m, cm or mm"
+    assert in_python("--max-turn 4000 keeps it") == "max_turn_deg_s=4000 keeps it"
+    assert in_python("no option -- here, nor a-b") == "no option -- here, nor a-b"
+
+
+@pytest.mark.parametrize(
+    ("given", "told"),
+    [
+        ({"max_gap": 3}, "unknown key 'max_gap'; did you mean 'max_gap_s'"),
+        ({"max_gap_s": -1}, "max_gap_s: should be greater than or equal to 0, found -1"),
+        ({"reference": 4444}, "reference=4444: no such frame"),
+        ({"law": "linear", "law_peak": 0.4}, "leave law_peak out"),
+        ({"distal": "Nobody"}, "distal"),
+    ],
+)
+def test_errors_name_keywords(samples: Path, given: dict[str, Any], told: str) -> None:
+    with pytest.raises(ElbowscrewError, match=re.escape(told)) as caught:
+        elbowscrew.analyze(samples / "elbow_natural.csv", **given)
+    assert "--" not in str(caught.value)
+
+
+def test_an_existing_result_is_told_with_the_keyword_that_replaces_it(read_back: Analysis, elbow: Analysis) -> None:
+    assert read_back.folder is not None
+    with pytest.raises(OutputError, match="give overwrite=True to replace it"):
+        elbowscrew.save_analysis(elbow, read_back.folder)
+
+
+def test_a_trial_that_cannot_be_simulated_is_told_by_its_keywords() -> None:
+    with pytest.raises(UsageError, match=r"impossible value of top_deg:"):
+        elbowscrew.simulate_trial(top_deg=-1)
+    with pytest.raises(UsageError, match=r"--top"):
+        simulate_trial(top_deg=-1)
+
+
+def test_keywords_are_stronger_than_settings() -> None:
+    found = settings_with(Settings(proximal="A", lowpass_hz=6), {"arm": "B", "keyframes": [0, 9]})
+    assert (found.proximal, found.lowpass_hz, found.keyframes) == ("B", 6, (0, 9))
+    assert settings_with(None, {}) == Settings()
