@@ -13,7 +13,8 @@ from elbowscrew._version import __version__
 
 TYPE_CHECKING = False  # typing itself would double the time of `elbowscrew --version`
 if TYPE_CHECKING:
-    from elbowscrew import geometry, plots
+    from elbowscrew import geometry as geometry
+    from elbowscrew import plots as plots
     from elbowscrew.errors import ElbowscrewError
     from elbowscrew.interface.analysis import Analysis
     from elbowscrew.interface.calls import (
@@ -57,10 +58,8 @@ __all__ = [
     "batch",
     "compare",
     "compare_trials",
-    "geometry",
     "interpolate",
     "keyframes_of",
-    "plots",
     "read_keyframes",
     "read_landmarks",
     "read_recording",
@@ -128,4 +127,4 @@ def __getattr__(name: str) -> object:
 
 
 def __dir__() -> list[str]:
-    return sorted(__all__)
+    return sorted((*__all__, *_MODULES))
