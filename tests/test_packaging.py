@@ -46,7 +46,8 @@ def test_the_wheel_holds_the_package_and_nothing_else(root: Path, wheel: zipfile
         for path in (root / "src" / "elbowscrew").rglob("*")
         if path.is_file() and "__pycache__" not in path.parts
     }
-    assert inside == there
+    samples = {f"elbowscrew/{path.relative_to(root).as_posix()}" for path in (root / "sample_data").rglob("*.*")}
+    assert inside == there | samples
     assert {"elbowscrew/py.typed", "elbowscrew/matplotlibrc", "elbowscrew/report/templates/trial.html"} <= inside
     assert any(name.endswith("licenses/LICENSE") for name in wheel.namelist())
 

@@ -15,10 +15,14 @@ from typer.testing import CliRunner
 
 from elbowscrew import Settings, analyze, read_landmarks, read_recording, simulate_trial
 from elbowscrew.cli.app import app
+from elbowscrew.errors import OutputError, UsageError
 from elbowscrew.geometry.arrays import Float
+from elbowscrew.samples import SAMPLES, copy_to, path
+from elbowscrew.study.trials import find_trials
 
 NAMES = ("elbow_paper", "elbow_moving_arm_mm", "elbow_row_tagged", "knee", "elbow_left")
 ALL = (*NAMES, "elbow_natural")
+STUDY = tuple(f"study/P0{subject}_{trial}" for subject in (1, 2, 3) for trial in (1, 2))
 # Of a right elbow at rest in the arm's frame, mm.
 AT_REST = {
     "EL": np.array([37.6, -128.1, 7.5]),
@@ -30,14 +34,16 @@ AT_REST = {
 WITH_LANDMARKS = ("elbow_left", "elbow_natural")
 
 
-@pytest.mark.parametrize("name", ALL)
+@pytest.mark.parametrize("name", [*ALL, STUDY[0]])
 def test_the_documented_command_makes_the_sample(
     samples: Path, root: Path, name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     lines = re.findall(
         r"^elbowscrew (simulate (\S+)\.csv .*)$", (root / "docs/reference/simulate.md").read_text("utf-8"), re.M
     )
-    assert {made for _, made in lines} == set(ALL) == {path.stem for path in samples.glob("*.csv")}
+    assert {made for _, made in lines} == {*ALL, *STUDY}
+    there = {path.relative_to(samples).with_suffix("").as_posix() for path in samples.rglob("*.csv")}
+    assert there == {*ALL, *STUDY, "study/manifest"}
     monkeypatch.chdir(tmp_path)
     done = CliRunner().invoke(app, shlex.split({made: line for line, made in lines}[name]))
     assert done.exit_code == 0, done.output
@@ -61,7 +67,7 @@ def _numbers(value: Any) -> list[float]:
     return [float(value)] if isinstance(value, int | float) else []
 
 
-@pytest.mark.parametrize("name", ALL)
+@pytest.mark.parametrize("name", [*ALL, *STUDY])
 def test_samples_are_made_by_simulate(samples: Path, name: str) -> None:
     truth = json.loads((samples / f"{name}.truth.json").read_text())
     trial = simulate_trial(**truth["settings"])
@@ -174,3 +180,35 @@ def bone(proximal: Float, radial: Float, *, left: bool) -> Float:
     x = np.cross(y, -radial if left else radial)
     x = x / np.linalg.norm(x)
     return np.stack([x, y, np.cross(x, y)], axis=1)
+
+
+def test_samples_are_found_by_name(samples: Path) -> None:
+    for name in SAMPLES:
+        assert path(name).exists()
+    assert path("elbow_left.landmarks.toml").is_file()
+    assert path("study").is_dir()
+    assert path().resolve() == samples.resolve()
+    with pytest.raises(UsageError, match="no 'kne'; did you mean 'knee'"):
+        path("kne")
+    with pytest.raises(UsageError, match="there are elbow_paper"):
+        path("../README.md")
+    assert {"study/manifest", "study"} & set(SAMPLES) == {"study"}
+    assert set(SAMPLES) == {*ALL, "study"}
+
+
+def test_samples_are_copied_and_nothing_is_replaced(samples: Path, tmp_path: Path) -> None:
+    done = CliRunner().invoke(app, ["samples", "--copy", str(tmp_path / "new")])
+    assert done.exit_code == 0, done.output
+    for file in samples.rglob("*.*"):
+        assert (tmp_path / "new" / file.relative_to(samples)).read_bytes() == file.read_bytes()
+    (tmp_path / "old").mkdir()
+    (tmp_path / "old" / "knee.csv").write_text("mine")
+    with pytest.raises(OutputError, match=r"knee\.csv: exists already"):
+        copy_to(tmp_path / "old")
+    assert [file.name for file in (tmp_path / "old").iterdir()] == ["knee.csv"]
+    assert all(name in CliRunner().invoke(app, ["samples"]).output for name in SAMPLES)
+
+
+def test_the_study_has_a_manifest_of_all_its_trials() -> None:
+    found = find_trials([str(path("study") / "manifest.csv")])
+    assert [trial.columns["subject"] for trial in found.trials] == ["P01", "P01", "P02", "P02", "P03", "P03"]

@@ -15,6 +15,7 @@ TYPE_CHECKING = False  # typing itself would double the time of `elbowscrew --ve
 if TYPE_CHECKING:
     from elbowscrew import geometry as geometry
     from elbowscrew import plots as plots
+    from elbowscrew import samples as samples
     from elbowscrew.errors import ElbowscrewError
     from elbowscrew.interface.analysis import Analysis
     from elbowscrew.interface.calls import (
@@ -107,7 +108,7 @@ _FUNCTIONS = {
     "simulate_trial": "interface.calls",
     "summary_from_analysis": "results.summary",
 }
-_MODULES = ("geometry", "plots")
+_MODULES = ("geometry", "plots", "samples")
 
 
 def __getattr__(name: str) -> object:

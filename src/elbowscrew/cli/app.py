@@ -17,6 +17,7 @@ from elbowscrew.cli.info import info
 from elbowscrew.cli.interpolate import interpolate
 from elbowscrew.cli.paper import paper
 from elbowscrew.cli.report import report
+from elbowscrew.cli.samples import samples
 from elbowscrew.cli.simulate import simulate
 
 
@@ -66,6 +67,7 @@ _COMMANDS: dict[str, Callable[..., Any]] = {
     "info": info,
     "simulate": simulate,
     "paper": paper,
+    "samples": samples,
 }
 for _name, _command in _COMMANDS.items():
     app.command(_name, epilog=epilog(_name))(_command)

@@ -31,6 +31,7 @@ EXAMPLES: Final[dict[str, tuple[str, ...]]] = {
         "elbowscrew simulate knee.csv --joint knee --repetitions 5 --marker-noise 0.3 --skin 5",
     ),
     "paper": ("elbowscrew paper", "elbowscrew paper --figures paper_figures"),
+    "samples": ("elbowscrew samples", "elbowscrew samples --copy elbowscrew_samples"),
 }
 
 
