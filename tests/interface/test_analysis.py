@@ -21,7 +21,7 @@ from elbowscrew.interface.facts import facts
 from elbowscrew.results.writing import results_by_table
 
 
-def test_a_result_read_back_is_the_same_to_the_last_digit(elbow: Analysis, read_back: Analysis) -> None:
+def test_a_result_read_back_is_the_same_but_for_the_last_digit(elbow: Analysis, read_back: Analysis) -> None:
     assert type(read_back) is type(elbow)
     assert set(read_back.tables) == set(results_by_table(elbow))
     for name in (*elbow.tables, "joint", "warnings"):

@@ -95,8 +95,8 @@ def read_result(folder: StrPath) -> Analysis:
     Returns
     -------
     Analysis
-        With all that the files hold, to the last digit: tables, summaries, plots. What they do not hold raises
-        `NotKeptError` when it is asked for; the class says what that is.
+        With all that the files hold, but for the last digit of some numbers: tables, summaries, plots. What they do not
+        hold raises `NotKeptError` when it is asked for; the class says what that is.
 
     Raises
     ------
