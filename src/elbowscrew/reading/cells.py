@@ -121,13 +121,14 @@ def _parse_block(
     as many as the header.
     """
     delimiter = source.delimiter
-    quoted = '"' in "".join(block)
+    text = "\n".join(block)
+    quoted, commas = '"' in text, source.decimal_comma and "," in text
     counts = {line.count(delimiter) + 1 for line in block}
-    mixed = source.decimal_comma and any("," in line for line in block) and any("." in line for line in block)
+    mixed = commas and "." in text
     if not quoted and not mixed and (len(counts) == 1 or shape.group) and all(map(shape.allows, counts)):
-        values = None if source.decimal_comma else _json_numbers(block, counts, columns)
+        plain = text.replace(",", ".").split("\n") if commas else block
+        values = _json_numbers(plain, delimiter, counts, columns)
         if values is None:
-            plain = [line.replace(",", ".") for line in block] if source.decimal_comma else block
             # A blank or a faulty cell is an error: the slow way tells which.
             with suppress(ValueError):
                 values = np.loadtxt(plain, delimiter=delimiter, usecols=columns, comments=None, ndmin=2)
@@ -166,7 +167,9 @@ def _parse_block(
     return shape, np.array(rows, dtype=np.float64).reshape(len(rows), len(columns))
 
 
-def _json_numbers(lines: list[str], counts: set[int], columns: Sequence[int]) -> NDArray[np.float64] | None:
+def _json_numbers(
+    lines: list[str], delimiter: str, counts: set[int], columns: Sequence[int]
+) -> NDArray[np.float64] | None:
     """Numbers of some columns, shape (rows, columns), by a reader of JSON, in half the time of `np.loadtxt`.
 
     None where the first cells of the lines, so many as are needed, are not all numbers as JSON writes them.
@@ -174,7 +177,8 @@ def _json_numbers(lines: list[str], counts: set[int], columns: Sequence[int]) ->
     Parameters
     ----------
     lines : list of str
-        Their cells separated by commas.
+    delimiter : str
+        What separates their cells.
     counts : set of int
         Of the cells that there are in a line.
     columns : sequence of int
@@ -183,10 +187,14 @@ def _json_numbers(lines: list[str], counts: set[int], columns: Sequence[int]) ->
     if not lines:
         return None
     if min(counts) > needed:
-        lines = [line[: -1 - len(line.split(",", needed)[needed])] for line in lines]
+        lines = [line[: -1 - len(line.split(delimiter, needed)[needed])] for line in lines]
     elif len(counts) > 1:
         return None
-    text = ",".join(lines)
+    text = delimiter.join(lines)
+    if delimiter != ",":
+        if "," in text:
+            return None
+        text = text.replace(delimiter, ",")
     # JSON has no integer -0.
     if any(mark in text for mark in _NO_JSON_NUMBER) or "-0," in text or text.endswith("-0"):
         return None
