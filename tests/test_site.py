@@ -110,7 +110,7 @@ def command_lines(root: Path) -> list[tuple[str, str]]:
         for _, block in BLOCK.findall(page.read_text(encoding="utf-8")):
             for line in re.sub(r" *[\\`]\n *", " ", block).splitlines():
                 told = re.search(r"(?:^|\s|/)(elbowscrew [a-z].*)", re.sub(r"^\$ |^PS> ", "", line.strip()))
-                if told and not line.strip().startswith(("#", "`")):
+                if told and not line.strip().startswith(("#", "`", "from ", "import ")):
                     found.append((page.name, told[1]))
     return found
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from elbowscrew import geometry as geometry
     from elbowscrew import plots as plots
     from elbowscrew import samples as samples
-    from elbowscrew.errors import ElbowscrewError
+    from elbowscrew.errors import ElbowscrewError, RecordingError
     from elbowscrew.interface.analysis import Analysis
     from elbowscrew.interface.calls import (
         analyze,
@@ -32,6 +32,8 @@ if TYPE_CHECKING:
     from elbowscrew.motion.interpolation.keyframe_sources import ComparisonPlan
     from elbowscrew.motion.interpolation.rebuilding import keyframes_of
     from elbowscrew.reading.landmarks import read_landmarks
+    from elbowscrew.reading.options import ReadOptions
+    from elbowscrew.reading.plugged import Reader
     from elbowscrew.reading.registry import read_recording
     from elbowscrew.results.keyframe_table import read_keyframes
     from elbowscrew.results.summary import summary_from_analysis
@@ -47,7 +49,10 @@ __all__ = [
     "KeyframeSet",
     "Landmark",
     "Landmarks",
+    "ReadOptions",
+    "Reader",
     "Recording",
+    "RecordingError",
     "RigidBody",
     "Settings",
     "SimulatedTrial",
@@ -82,7 +87,10 @@ _HOME = {
     "KeyframeSet": "model",
     "Landmark": "model",
     "Landmarks": "model",
+    "ReadOptions": "reading.options",
+    "Reader": "reading.plugged",
     "Recording": "model",
+    "RecordingError": "errors",
     "RigidBody": "model",
     "Settings": "settings",
     "SimulatedTrial": "simulate",

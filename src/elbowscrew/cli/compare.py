@@ -114,7 +114,7 @@ def compare(
     from elbowscrew.cli.progress import shown_steps
     from elbowscrew.configuring import settings_from
     from elbowscrew.errors import ElbowscrewError
-    from elbowscrew.reading.registry import ENDINGS, TABLE_ENDINGS, read_recording, recordings_in
+    from elbowscrew.reading.registry import TABLE_ENDINGS, read_recording, recordings_in
     from elbowscrew.results.recording_summary import warnings_summary
     from elbowscrew.results.result_files import COMPARISON
     from elbowscrew.results.staging import check_result_folder
@@ -131,7 +131,7 @@ def compare(
     if trial.is_dir():
         from elbowscrew.comparing import compare_trials
 
-        files = recordings_in(trial, ENDINGS if settings.columns is None else TABLE_ENDINGS)
+        files = recordings_in(trial, None if settings.columns is None else TABLE_ENDINGS)
         with shown_steps("Trials", quiet=quiet) as report:
             over_trials = compare_trials(files, settings, plan, report=report)
         summary = write_comparison(over_trials, target, force=force)

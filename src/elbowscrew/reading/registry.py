@@ -28,6 +28,7 @@ from elbowscrew.reading.cells import parse_number
 from elbowscrew.reading.clock import is_rate
 from elbowscrew.reading.joining import joined
 from elbowscrew.reading.options import ReadOptions
+from elbowscrew.reading.plugged import read_by, reader_of, readers
 from elbowscrew.reading.scale import with_scale_checked
 from elbowscrew.reading.source import TextSource, first_bytes, open_source
 
@@ -201,6 +202,11 @@ def read_recording(
     return recording if units is None else with_scale_checked(recording, units)
 
 
+def all_endings() -> tuple[str, ...]:
+    """How the names of recordings end, those that plug-ins read among them."""
+    return tuple(dict.fromkeys((*ENDINGS, *chain.from_iterable(reader.endings for reader in readers()))))
+
+
 def _column_file(given: str | os.PathLike[str] | ColumnFile | None) -> ColumnFile | None:
     if given is None or isinstance(given, ColumnFile):
         return given
@@ -220,14 +226,32 @@ def _read(file: Path, options: ReadOptions) -> Recording:
         if binary.recognizes(head):
             _check_options(file, binary.name, options, binary.accepts)
             return binary.read(file, options)
-    source = open_source(file)
+    try:
+        source = open_source(file)
+    except RecordingError:
+        found = _read_by_plug_in(file, options)
+        if found is None:
+            raise
+        return found
     first_line = next((line for line in islice(source.lines(), 20) if line.strip(", ;\t")), "")
     cells = [cell.strip().strip('"').strip().casefold() for cell in first_line.split(source.delimiter)]
     for entry in FORMATS:
         if entry.recognizes(cells):
             _check_options(file, entry.name, options, entry.accepts)
             return entry.read(source, options)
-    raise RecordingError(_refusal(source, cells))
+    found = _read_by_plug_in(file, options)
+    if found is None:
+        raise RecordingError(_refusal(source, cells))
+    return found
+
+
+def _read_by_plug_in(file: Path, options: ReadOptions) -> Recording | None:
+    """Read a file that is of none of our formats, if a plug-in's it is; None if not."""
+    reader = reader_of(file)
+    if reader is None:
+        return None
+    _check_options(file, reader.name, options, reader.accepts)
+    return read_by(reader, file, options)
 
 
 def _check_options(path: Path, name: str, options: ReadOptions, accepted: frozenset[str]) -> None:
@@ -256,15 +280,15 @@ def _refusal(source: TextSource, cells: list[str]) -> str:
     )
 
 
-def recordings_in(folder: str | os.PathLike[str], endings: tuple[str, ...] = ENDINGS) -> tuple[Path, ...]:
-    """Files of a folder that may be recordings, by the endings of their names, in the order of these.
+def recordings_in(folder: str | os.PathLike[str], endings: tuple[str, ...] | None = None) -> tuple[Path, ...]:
+    """Files of a folder that may be recordings, by the endings of their names, all of ours by default, in their order.
 
     Raises
     ------
     RecordingError
         If the folder cannot be read, or has none.
     """
-    root = Path(folder)
+    root, endings = Path(folder), endings or all_endings()
     try:
         found = sorted(path for path in root.iterdir() if path.suffix.casefold() in endings and path.is_file())
     except OSError as error:

@@ -12,7 +12,8 @@ from pathlib import Path
 from typing import Final
 
 from elbowscrew.errors import UsageError, files_beside
-from elbowscrew.reading.registry import ENDINGS, FORMATS, TABLE_ENDINGS
+from elbowscrew.reading.plugged import reader_of
+from elbowscrew.reading.registry import FORMATS, TABLE_ENDINGS, all_endings
 from elbowscrew.reading.source import END_OF_STORAGE_HEADER, first_bytes
 from elbowscrew.results.result_files import is_summary
 from elbowscrew.study.folder import MARK
@@ -110,7 +111,7 @@ class _Search:
 
     def __init__(self, recursive: bool, follow_symlinks: bool, exclude: Path | None, any_table: bool) -> None:
         self.any_table = any_table
-        self.endings = TABLE_ENDINGS if any_table else ENDINGS
+        self.endings = TABLE_ENDINGS if any_table else all_endings()
         self.recursive = recursive
         self.follow_symlinks = follow_symlinks
         self.exclude = None if exclude is None else _identity(exclude)
@@ -251,6 +252,8 @@ def _other_table(path: Path, *, any_table: bool) -> str:
     cells = [cell.strip().casefold() for cell in header]
     words = all(cells) and not any(map(_NUMBER.fullmatch, cells)) and len(set(cells)) == len(cells) > 1
     if not words or len(row) != len(header) or any(entry.recognizes(cells) for entry in FORMATS):
+        return ""
+    if reader_of(path) is not None:
         return ""
     return "a table, but not of a recording"
 
