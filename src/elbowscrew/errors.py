@@ -130,7 +130,13 @@ class UsageError(ElbowscrewError):
 
 
 class RecordingError(ElbowscrewError):
-    """The file is missing, damaged, or not a recording that can be read safely."""
+    """The file is missing, damaged, or not a recording that can be read safely.
+
+    Attributes
+    ----------
+    exit_code : int
+        What the command line exits with.
+    """
 
     exit_code = 3
 
