@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import re
 from pathlib import Path
 from typing import Any, Literal, get_args, get_origin, get_type_hints
@@ -82,3 +83,10 @@ def test_keywords_are_stronger_than_settings() -> None:
     found = settings_with(Settings(proximal="A", lowpass_hz=6), {"arm": "B", "keyframes": [0, 9]})
     assert (found.proximal, found.lowpass_hz, found.keyframes) == ("B", 6, (0, 9))
     assert settings_with(None, {}) == Settings()
+
+
+def test_no_public_function_gives_just_anything() -> None:
+    functions = [getattr(elbowscrew, name) for name in elbowscrew.__all__]
+    given = [one.__annotations__["return"] for one in functions if inspect.isfunction(one)]
+    assert len(given) > 12
+    assert not any("Any" in str(one) for one in given)

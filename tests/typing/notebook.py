@@ -15,6 +15,26 @@ def notebook() -> None:
     print(table, joint)  # noqa: T201
 
 
+def interface() -> None:
+    analysis = elbowscrew.analyze("trial.csv", express_in="thigh", lowpass_hz="auto", keyframes=[0, 9], law="best")
+    table = analysis.to_frame("joint", "rad", "m")
+    widest: float = table["axis_cone95_rad"].max()
+    told: str = analysis.summary["motion"]["joint_type"]["type"]
+    ax = analysis.plot.theta(color="red")
+    ax.set_title(told)
+    first, *_ = analysis.plot.error()
+    first.set_ylabel(f"{widest}")
+    again = elbowscrew.read_result("result")
+    again.to_xarray().to_netcdf("trial.nc")
+    study = elbowscrew.batch(["a.csv"], "results", workers=1, figure_format=["none"])
+    angles: list[float] = [study[name].summary["motion"]["theta_max_deg"] for name in study]
+    compared = elbowscrew.compare("trial.csv", joint="knee", plan=elbowscrew.ComparisonPlan(counts=(2,)))
+    trial = elbowscrew.simulate_trial(joint="hip", joint_type="ball", seed=1)
+    motion = elbowscrew.interpolate(analysis, frames=20)
+    shown = elbowscrew.plots.plot_theta(ax, again)
+    print(angles, compared.models.law, trial.truth, motion.angle, shown, elbowscrew.samples.path("knee").name)  # noqa: T201
+
+
 def settings() -> list[Settings]:
     given = Settings(express_in="arm", lowpass_hz=6)
     cutoff: float | str | None = given.lowpass_hz
