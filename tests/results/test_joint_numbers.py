@@ -1,4 +1,4 @@
-"""Numbers of the joint's type as the summary has them."""
+"""Numbers of the joint's type and of the laws as the summary has them."""
 
 from __future__ import annotations
 
@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 
 from elbowscrew import Analysis, analyze, simulate_trial
+from elbowscrew.model import PhaseLaw
 from elbowscrew.results.joint_type_summary import numbers_of_type
+from elbowscrew.results.summary import law_error
 
 
 @pytest.fixture(scope="module")
@@ -40,3 +42,9 @@ def told_line(elbow: Analysis, cone_deg: float) -> dict[str, object]:
     two = numbers_of_type(known)["two_axes"]
     assert two is not None
     return dict(two["axis1"])
+
+
+def test_a_laws_error_is_a_length_or_an_angle() -> None:
+    law = PhaseLaw("cycloidal", None, 0.02)
+    assert law_error(law, as_angle=False) == {"rms_displacement_mm": pytest.approx(20.0), "rms_angle_deg": None}
+    assert law_error(law, as_angle=True) == {"rms_displacement_mm": None, "rms_angle_deg": pytest.approx(3.6 / np.pi)}

@@ -154,6 +154,19 @@ def test_errors_stand_where_their_quantities_do() -> None:
     assert np.nanmax(screw.axis_cone / screw.axis_sd) <= 1.97
 
 
+@pytest.mark.parametrize("poses", [4, 25])
+def test_a_reference_of_many_poses_errs_by_less(poses: int) -> None:
+    """Two poses of one noise make twice its variance, and the mean of n has its n-th part."""
+    recording = simulate_trial(rest_before_s=1.0, seed=2).recording
+    one, many = (
+        analyze(recording, Settings(marker_noise_mm=0.2, reference_window=count)).screw for count in (1, poses)
+    )
+    wide = one.angle > np.radians(60.0)
+    assert wide.any()
+    ratio = many.angle_sd[wide] / one.angle_sd[wide]
+    assert ratio == pytest.approx(np.sqrt(0.5 * (1.0 + 1.0 / poses)), rel=0.02)
+
+
 def test_a_filled_frame_has_no_error_of_its_own() -> None:
     recording = simulate_trial(gaps=3, gap_frames=5, seed=1).recording
     screw = analyze(recording, Settings(marker_noise_mm=0.2)).screw
