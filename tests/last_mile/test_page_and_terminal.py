@@ -260,7 +260,16 @@ def test_table_of_the_bones_angles(told: Told) -> None:
     anatomy = told.summary["motion"]["anatomy"]
     if anatomy is None:
         assert "Angle, deg" not in told.page.text
+        assert "Flexion" not in told.page.terms
         return
+    ranges = {
+        name: " to ".join(dec(anatomy[name][f"{end}_deg"], 1) for end in ("min", "max"))
+        for name in ("flexion", "carrying_angle", "pronation")
+    }
+    assert told.page.terms["Flexion"] == [
+        f"{ranges['flexion']} deg",
+        f"carrying angle {ranges['carrying_angle']}, pronation {ranges['pronation']} deg",
+    ]
     rows = rows_after(told, "Angle, deg")
     assert [[row[0], *row[2:]] for row in rows] == [
         [name, *(dec(anatomy[key][f"{kind}_deg"], 1) for kind in ("start", "min", "max", "range"))]
