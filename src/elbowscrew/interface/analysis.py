@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any, Final, Literal, get_args
 from elbowscrew._version import __version__
 from elbowscrew.choices import AngleUnit, LengthUnit
 from elbowscrew.errors import NotKeptError, UsageError
-from elbowscrew.interface.facts import Fact, facts, warned
 from elbowscrew.interface.listed import joint_estimates, listed_warnings
 from elbowscrew.interface.python_words import in_python
 from elbowscrew.model import Analysis as Findings
@@ -211,15 +210,19 @@ class Analysis(Findings, Viewed):  # noqa: D101 - it has one
     def _title(self) -> str:
         return f"Analysis of {self.summary['source']['name'] or 'a recording in memory'}"
 
+    @property
+    def _facts(self) -> list[tuple[str, str]]:
+        from elbowscrew.interface.facts import facts, warned  # with the words of pages, which need their own library
+
+        return [*facts(self.summary, self.joint_summary), warned(self.summary)]
+
     def __repr__(self) -> str:
-        told = [*facts(self.summary, self.joint_summary), warned(self.summary)]
+        told = self._facts
         width = max(len(name) for name, _ in told)
         return "\n".join([f"<elbowscrew.{self._title}>", *(f"  {name:<{width}}  {text}" for name, text in told)])
 
     def _repr_html_(self) -> str:
-        messages: list[Fact] = [
+        messages: list[tuple[str, str]] = [
             (one["severity"], f"{in_python(one['message'])} ({one['code']})") for one in self.summary["warnings"]
         ]
-        return html_table(
-            self._title, [*facts(self.summary, self.joint_summary), *(messages or [warned(self.summary)])]
-        )
+        return html_table(self._title, [*self._facts[:-1], *(messages or self._facts[-1:])])

@@ -5,14 +5,13 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
-from typing import Unpack
+from typing import TYPE_CHECKING, Unpack
 
 from elbowscrew import comparing, simulate
 from elbowscrew.configuring import settings_with
 from elbowscrew.errors import ElbowscrewError
 from elbowscrew.interface.analysis import Analysis
 from elbowscrew.interface.fields import SettingsFields, SimulationFields
-from elbowscrew.interface.study import StudyResult, run
 from elbowscrew.model import Analysis as Findings
 from elbowscrew.model import Comparison, KeyframeSet, Landmarks, RebuiltMotion, Recording, TrialsComparison
 from elbowscrew.motion import analysis as analyzing
@@ -24,6 +23,9 @@ from elbowscrew.results.keyframe_table import read_keyframes
 from elbowscrew.saving import analyze_file
 from elbowscrew.settings import Settings
 from elbowscrew.simulate import SimulatedTrial, Simulation
+
+if TYPE_CHECKING:
+    from elbowscrew.interface.study import StudyResult
 
 StrPath = str | os.PathLike[str]
 
@@ -277,6 +279,8 @@ def batch(
     >>> study = elbowscrew.batch("trials", "results", lowpass_hz=6)  # doctest: +SKIP
     >>> study.to_frame()["theta_max_deg"].mean()  # doctest: +SKIP
     """
+    from elbowscrew.interface.study import run  # with pages and processes, which one trial does not need
+
     given = [paths] if isinstance(paths, str | os.PathLike) else list(paths)
     return run(
         [os.fspath(path) for path in given],
