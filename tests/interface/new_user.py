@@ -2,6 +2,8 @@
 # A new user's first notebook: every cell is what one would guess. `test_notebook.py` runs them.
 
 # %%
+from pathlib import Path
+
 import matplotlib.pyplot as plt
 import numpy as np
 
@@ -174,7 +176,7 @@ compared = elbowscrew.compare(trial, plan=plan)
 compared
 
 # %%
-compared.models.to_frame().head()
+compared.to_frame().head()
 
 # %%
 knee = elbowscrew.simulate_trial(joint="knee", joint_type="hinge", top_deg=60, seed=3)
@@ -192,9 +194,13 @@ bones.to_frame("anatomy")[["flexion_deg", "carrying_deg", "pronation_deg"]].max(
 bones.plot.anatomy()
 
 # %%
-paths = [samples.path("study") / f"P01_{number}.csv" for number in (1,)]
+paths = [samples.path("study") / f"P01_{number}.csv" for number in (1,)] + ["broken.csv"]
+Path("broken.csv").write_text("no recording")
 study = elbowscrew.batch(paths, "study_results", workers=1, figure_format=["none"])
 study
+
+# %%
+study.failures
 
 # %%
 study.to_frame()[["trial", "theta_max_deg"]]

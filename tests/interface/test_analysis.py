@@ -8,6 +8,7 @@ import pickle
 import re
 from dataclasses import fields
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -58,6 +59,34 @@ def test_what_files_do_not_hold_is_an_error_and_told_by_the_class(elbow: Analysi
     for one in (elbow, read_back):
         with pytest.raises(AttributeError, match="no attribute 'theta'"):
             _ = one.theta  # type: ignore[attr-defined]
+
+
+@pytest.mark.parametrize(
+    ("trial", "settings"),
+    [
+        ({"joint_type": "ball", "joint": "hip"}, {"method": "joint", "express_in": "proximal", "angle_unit": "rad"}),
+        ({"joint_type": "hinge", "gaps": 2}, {"blend": "global", "keyframes": [0, 20, 40, 79], "length_unit": "m"}),
+        ({"joint_type": "two-axes", "located": False}, {"tolerance_mm": 9, "express_in": "lab"}),
+    ],
+)
+def test_results_of_all_kinds_are_read_back(trial: dict[str, Any], settings: dict[str, Any], tmp_path: Path) -> None:
+    located = trial.pop("located", True)
+    recording = elbowscrew.simulate_trial(frames=80, inversion=38, seed=5, **trial).recording
+    if not located:
+        bodies = [body.without_positions() for body in recording.bodies]
+        recording = elbowscrew.Recording.from_bodies(bodies, rate_hz=recording.rate_hz)
+    found = elbowscrew.analyze(recording, **settings)
+    back = elbowscrew.read_result(elbowscrew.save_analysis(found, tmp_path / "r", figure_formats=(), report=False))
+    assert set(back.tables) == set(found.tables)
+    for name in (*found.tables, "joint", "warnings"):
+        ours, theirs = (one.table(name).to_frame() for one in (found, back))  # type: ignore[arg-type]
+        pd.testing.assert_frame_equal(ours, theirs, rtol=5e-16, atol=0.0, check_exact=False)
+    assert repr(back) == repr(found)
+    assert hasattr(back, "keyframes") == (settings.get("method") != "joint")
+    if hasattr(back, "keyframes"):
+        for knots, known in zip(back.keyframes.knots, found.keyframes.knots, strict=True):
+            np.testing.assert_allclose(knots, known, atol=1e-12)
+    assert back.plot.available == found.plot.available
 
 
 def test_a_selection_and_cycles_are_read_back(tmp_path: Path) -> None:

@@ -45,5 +45,9 @@ def test_every_cell_of_a_new_users_notebook_runs(here: Path, capsys: pytest.Capt
         shown = getattr(found, "_repr_html_", None)
         if shown is not None:
             assert shown().startswith("<")
+    assert "no format that is read" in names["study"].failures["broken.csv"]
+    assert "columns FILE.toml" in names["study"].failures["broken.csv"]
+    assert names["study"].names == ("P01_1",)
+    assert repr(names["compared"]).startswith(f"Comparison({len(names['compared'].models)} models: the best ")
     assert (here / "trial.nc").stat().st_size > 10_000
     assert "overwrite=True" in capsys.readouterr().out

@@ -9,12 +9,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowscrew import tables
+from elbowscrew.choices import AngleUnit, LengthUnit
 from elbowscrew.geometry.arrays import Float, Index
 from elbowscrew.model.array_record import ArrayRecord
 from elbowscrew.model.modeled import ModelPhases, PhaseLaw, Selection
 from elbowscrew.model.table_record import TableRecord
 
 if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+
     from elbowscrew.errors import ElbowscrewError
     from elbowscrew.model.modeled import BodyPoints
     from elbowscrew.model.recording import QualityWarning, Recording
@@ -112,6 +116,20 @@ class Comparison(ArrayRecord):
     points: BodyPoints
     warnings: tuple[QualityWarning, ...]
 
+    def __repr__(self) -> str:
+        return f"Comparison({_told(self.models)}; {len(self.warnings)} warnings and notes)"
+
+    def to_frame(self, angle_unit: AngleUnit = "deg", length_unit: LengthUnit = "mm") -> pd.DataFrame:
+        """Return the models and their errors, the best first, as a pandas data frame."""
+        return self.models.to_frame(angle_unit, length_unit)
+
+    def to_xarray(self, angle_unit: AngleUnit = "deg", length_unit: LengthUnit = "mm") -> xr.Dataset:
+        """Return the same as an xarray Dataset over ``rank``; see `TableRecord.to_xarray`."""
+        return self.models.to_xarray(angle_unit, length_unit)
+
+    def _repr_html_(self) -> str:
+        return self.models._repr_html_()
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class ComparedOverTrials(TableRecord):
@@ -171,3 +189,24 @@ class TrialsComparison(ArrayRecord):
     models: ComparedOverTrials
     trials: tuple[Comparison, ...]
     failures: tuple[tuple[str, ElbowscrewError], ...]
+
+    def __repr__(self) -> str:
+        failed = f", {len(self.failures)} failed" if self.failures else ""
+        return f"TrialsComparison({_told(self.models)}; {len(self.trials)} trials{failed})"
+
+    def to_frame(self, angle_unit: AngleUnit = "deg", length_unit: LengthUnit = "mm") -> pd.DataFrame:
+        """Return the models and their errors, the best first, as a pandas data frame."""
+        return self.models.to_frame(angle_unit, length_unit)
+
+    def to_xarray(self, angle_unit: AngleUnit = "deg", length_unit: LengthUnit = "mm") -> xr.Dataset:
+        """Return the same as an xarray Dataset over ``rank``; see `TableRecord.to_xarray`."""
+        return self.models.to_xarray(angle_unit, length_unit)
+
+    def _repr_html_(self) -> str:
+        return self.models._repr_html_()
+
+
+def _told(models: ComparedModels | ComparedOverTrials) -> str:
+    """Say how many models there are, and which is the best."""
+    best = f": the best {models.method[0]}, {models.law[0]} law, {models.blend[0]}" if len(models) else ""
+    return f"{len(models)} models{best}"
