@@ -28,7 +28,16 @@ extensions = [
     "commands",
     "program",
 ]
-exclude_patterns = ["_made", "_static", "_extensions", "schemas", "gallery_scripts"]
+exclude_patterns = [
+    "gallery/*.ipynb",
+    "**/sg_execution_times.rst",
+    "sg_execution_times.rst",
+    "_made",
+    "_static",
+    "_extensions",
+    "schemas",
+    "gallery_scripts",
+]
 suppress_warnings = ["mystnb.unknown_mime_type"]
 
 # ELBOWSCREW_DOCS_RUN=0 builds without running anything: commands and cells are shown as they stand.
