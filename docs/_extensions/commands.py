@@ -48,8 +48,7 @@ class Page:
     def __init__(self) -> None:
         self.folder = Path(tempfile.mkdtemp(prefix="elbowscrew-docs-"))
         self.names: dict[str, Any] = {"__name__": "__main__"}
-        for sample in SAMPLES.iterdir():
-            shutil.copy(sample, self.folder)
+        shutil.copytree(SAMPLES, self.folder, dirs_exist_ok=True)
 
     @contextlib.contextmanager
     def entered(self) -> Iterator[io.StringIO]:
