@@ -165,6 +165,8 @@ class TwoAxesSummary(TypedDict):
     """The same along axis 2."""
     foot2_mm_low: float | None
     foot2_mm_high: float | None
+    order_determined: bool
+    """Whether the motion tells which of both axes is the one in the proximal body."""
 
 
 class CenterSummary(TypedDict):

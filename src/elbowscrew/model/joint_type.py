@@ -107,6 +107,9 @@ class TwoAxes(ArrayRecord):
         from the point nearest the body's origin; None for parallel axes.
     offset : Measure or None
         Distance of parallel axes, m; None where they are not parallel.
+    order_determined : bool
+        Whether the motion tells which of both is the one in the proximal body: a motion about one at a time, from one
+        and the same pose, does not.
     """
 
     axis1: JointLine
@@ -117,6 +120,7 @@ class TwoAxes(ArrayRecord):
     foot1: Measure | None
     foot2: Measure | None
     offset: Measure | None
+    order_determined: bool = True
 
     @property
     def lines(self) -> tuple[JointLine, JointLine]:

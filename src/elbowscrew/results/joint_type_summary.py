@@ -161,6 +161,7 @@ def _two_axes(found: TwoAxes, frame: _Frame) -> TwoAxesSummary:
         "foot2_mm": foot2.value,
         "foot2_mm_low": foot2.low,
         "foot2_mm_high": foot2.high,
+        "order_determined": found.order_determined,
     }
 
 

@@ -257,6 +257,58 @@ def test_the_angles_are_those_that_moved_the_joint() -> None:
     assert found.angle[:, 0].max() >= -found.angle[:, 0].min()
 
 
+def one_at_a_time(exact: mj.MovingJoint, together: float = 0.0) -> Float:
+    """First one angle to and fro, then the other; while the first one moves, the second sways by so much (rad)."""
+    sway = 0.5 - 0.5 * np.cos(np.linspace(0.0, 4.0 * np.pi, 100))
+    first = np.concatenate([2.0 * sway, np.zeros(100)])
+    second = np.concatenate([together * np.sin(np.linspace(0.0, 9.0, 100)), 1.4 * sway])
+    rest = exact.poses[0]
+    one, two = exact.truth["axis1"], dq.transform_lines(rest, exact.truth["axis2"])
+    return dq.multiply(dq.multiply(mj.turned(first, one), mj.turned(second, two)), rest)
+
+
+@pytest.mark.parametrize("between", [90.0, 1.0])
+@pytest.mark.parametrize("noise_known", [True, False])
+def test_axes_that_turn_one_at_a_time_have_no_order(between: float, noise_known: bool) -> None:
+    """Both orders make the very same poses, where each axis turns at zero of the other: none of them is known."""
+    for seed in range(2):
+        rng = np.random.default_rng([31, seed])
+        exact = mj.two_axes(2, (90.0, 90.0), between, 0.04, rng)
+        seen, covariance = mj.noisy(one_at_a_time(exact), rng, ROTATION_DEG, PLACE)
+        found = identify_joint(seen, covariance, seen[0], noise_known=noise_known)
+        assert found.two_axes is not None
+        assert not found.two_axes.order_determined
+        assert found.status == "approximate"
+
+
+@pytest.mark.parametrize("noise_known", [True, False])
+def test_axes_that_turn_together_for_a_while_have_an_order(noise_known: bool) -> None:
+    """And the one that is found is the true one."""
+    for seed in range(3):
+        rng = np.random.default_rng([32, seed])
+        exact = mj.two_axes(2, (90.0, 90.0), 80.0, 0.02, rng)
+        seen, covariance = mj.noisy(one_at_a_time(exact, 0.3), rng, ROTATION_DEG, PLACE)
+        found = identify_joint(seen, covariance, seen[0], noise_known=noise_known).two_axes
+        assert found is not None
+        assert found.order_determined
+        assert mj.angle_between(found.axis1.direction_proximal, exact.truth["axis1"]) < np.radians(1.0)
+        assert mj.angle_between(found.axis2.direction_distal, exact.truth["axis2"]) < np.radians(1.0)
+
+
+def test_white_noise_alone_makes_no_joint_a_free_one() -> None:
+    """It leaves more than 12 mm, of what is a ball or two axes all the same."""
+    for seed in range(2):
+        rng = np.random.default_rng([33, seed])
+        for exact in (mj.two_axes(400, (110.0, 80.0), 85.0, 0.012, rng), mj.ball(400, 80.0, rng)):
+            seen, covariance = mj.noisy(exact.poses, rng, 0.5, 0.008)
+            found = identify_joint(seen, covariance, seen[0], noise_known=False)
+            assert found.type not in ("free", "undetermined"), found.reason
+            assert np.sqrt(np.nanmean(found.residual_translation**2)) > 0.012
+    loose = mj.free(400, 60.0, np.random.default_rng(34))
+    seen, covariance = mj.noisy(loose.poses, np.random.default_rng(35), 0.5, 0.002)
+    assert identify_joint(seen, covariance, seen[0], noise_known=False).type == "free"
+
+
 def test_noise_that_nobody_states_needs_frames_to_tell_it() -> None:
     rng = np.random.default_rng(27)
     exact = mj.hinge(5, 80.0, rng)

@@ -94,6 +94,7 @@ def test_how_undetermined_axes_stand_to_each_other_is_left_open(
     assert axes is not None
     assert not (axes["axis1"]["determined"] and axes["axis2"]["determined"])
     between = {name: value for name, value in axes.items() if name not in ("axis1", "axis2")}
+    assert not between.pop("order_determined")
     assert between == dict.fromkeys(between)
     analysis_table(summary, tmp_path)
     assert "how they stand to each other is undetermined" in " ".join(capsys.readouterr().out.split())

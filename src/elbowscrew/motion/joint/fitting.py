@@ -8,7 +8,7 @@ import numpy as np
 
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.motion.joint.joint_fit import _integrated_autocorrelation
-from elbowscrew.motion.joint.likelihood import Fit, Mechanism, Poses, fit_mechanism, fit_robustly
+from elbowscrew.motion.joint.likelihood import Fit, M, Mechanism, Poses, fit_mechanism, fit_robustly
 from elbowscrew.motion.joint.simple_types import Ball, OneAxis, Rigid
 from elbowscrew.motion.joint.starts import find_two_axes
 from elbowscrew.motion.joint.two_axes import is_phantom
@@ -40,6 +40,11 @@ def fit_type(name: Fitted, poses: Poses, *, robust: bool = False) -> Fit[Mechani
             start = Ball.start(poses.joint)
     fit = fit_mechanism(start, poses, iterations=iterations, tolerance=_TOLERANCE)
     return fit_robustly(fit, poses) if robust else fit
+
+
+def fit_again(start: M, poses: Poses, weight: Float) -> Fit[M]:
+    """Fit a joint from another start, under the weights (F,) that the frames have."""
+    return fit_mechanism(start, poses, iterations=_ITERATIONS, tolerance=_TOLERANCE, weight=weight)
 
 
 def shared_covariance(fit: Fit[Mechanism], *, noise_known: bool) -> Float:

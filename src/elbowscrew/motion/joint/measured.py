@@ -233,6 +233,7 @@ def _doubts_of_type(joint_axis: JointAxis, joint_type: JointType | None) -> list
     if joint_type is None:
         return []
     stated, code = joint_type.status == "forced", "stated-joint"
+    two = joint_type.two_axes
     if stated and joint_type.type in ("hinge", "screw_hinge") and joint_axis.unexplained > LARGEST_UNEXPLAINED:
         message = (
             f"the joint is stated to be {JOINT_TYPE_WORDS[joint_type.type]}, but one axis leaves "
@@ -242,13 +243,20 @@ def _doubts_of_type(joint_axis: JointAxis, joint_type: JointType | None) -> list
     elif any(candidate.type == joint_type.type and not candidate.valid for candidate in joint_type.candidates):
         what = JOINT_TYPE_WORDS[joint_type.type]
         message = f"the joint is stated to be {what}, but the motion does not determine it: it has no angles here"
-    elif joint_type.two_axes is not None and not all(line.determined for line in joint_type.two_axes.lines):
+    elif two is not None and not all(line.determined for line in two.lines):
         told = (
             "the joint is stated to have two axes, but the motion does not determine"
             if stated
             else ("the joint has two axes, but the motion does not determine the directions of")
         )
         message, code = f"{told} both: what each angle is of is as uncertain", code if stated else "axis-undetermined"
+    elif two is not None and not two.order_determined:
+        code = "axes-order"
+        message = (
+            "the joint has two axes, but hardly turns about both at once, so that it does not tell which one is that "
+            "of the proximal body: axes and angles may be the other way round; turn about each at several angles of "
+            "the other"
+        )
     else:
         return []
     return [QualityWarning(code=code, message=message)]

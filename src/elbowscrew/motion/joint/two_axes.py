@@ -24,6 +24,7 @@ _LENGTH: Final = 0.1  # m that weigh as a radian where rotations and shifts are 
 _LARGEST_ANGLE_SD: Final = np.radians(8.0)
 _LARGEST_WINDING: Final = 2.0 * np.pi + 0.5
 _STEP: Final = 1e-6
+_CROSSING_ROUNDS: Final = 4
 _TINY: Final = float(np.finfo(np.float64).tiny)
 _SCALE: Final = np.array([1.0, 1.0, 1.0, _LENGTH, _LENGTH, _LENGTH])
 
@@ -117,6 +118,36 @@ class TwoAxesMechanism(Mechanism):
             at = replace(at, distal=dq.multiply(at.distal, half), between=dq.multiply(at.between, half))
         return replace(at, frames=at.frames * [first, second])
 
+    def exchanged(self) -> Self:
+        """The same lines in the other order: the second is the one in the proximal body.
+
+        They are taken where the frames' angles cross: a motion that turns about one of them at a time, from there and
+        back, is the same in either order.
+        """
+        first, second = self.crossing()
+        proximal = dq.multiply(dq.multiply(self.proximal, about_z(first)), self.between)
+        between = dq.multiply(dq.conjugate(self.between), about_z(-first))
+        return replace(
+            self,
+            proximal=proximal,
+            between=between,
+            distal=dq.multiply(dq.multiply(self.distal, about_z(-second)), between),
+            frames=(self.frames - [first, second])[:, ::-1].copy(),
+        )
+
+    def has_first_axis_of(self, other: TwoAxesMechanism, another: TwoAxesMechanism) -> bool:
+        """Whether the axis in the proximal body is nearer the one of a joint than that of another one."""
+        mine, these, those = (dq.transform_lines(at.proximal, Z_LINE) for at in (self, other, another))
+        return _line_gap(mine, these) < _line_gap(mine, those)
+
+    def crossing(self) -> Float:
+        """Both angles (2,) where each of them is while the other is away."""
+        found = np.median(self.frames, axis=0)
+        for _ in range(_CROSSING_ROUNDS):
+            away = np.abs(self.frames - found)
+            found = np.array([_weighted_median(self.frames[:, k], away[:, 1 - k]) for k in range(2)])
+        return found
+
     def slid(self, first: float, second: float) -> Self:
         """Put the origins of both lines' frames so far (m) along the lines; the joint stays as it is."""
         one, two = about_z(np.zeros(()), first), about_z(np.zeros(()), second)
@@ -201,6 +232,17 @@ def is_phantom(fit: Fit[Mechanism]) -> bool:
     """Whether two axes nearly in one only share out its rotation: their angles wind, or are not determined."""
     winding = np.ptp(fit.mechanism.frames, axis=0).max()
     return bool(angle_sd(fit).max() > _LARGEST_ANGLE_SD or winding > _LARGEST_WINDING)
+
+
+def _line_gap(line: Float, other: Float) -> float:
+    """Between two lines (6,), whichever way they point, a radian weighing as much as 0.1 m."""
+    return min(float(length((line - sense * other) / np.repeat([1.0, _LENGTH], 3))) for sense in (1.0, -1.0))
+
+
+def _weighted_median(values: Float, weight: Float) -> float:
+    order = np.argsort(values)
+    total = np.cumsum(weight[order])
+    return float(values[order[int(np.searchsorted(total, 0.5 * total[-1]))]])
 
 
 def _across(vector: Float) -> NDArray[np.complex128]:

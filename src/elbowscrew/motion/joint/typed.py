@@ -12,14 +12,8 @@ from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.sensitivity import NORMAL_95
 from elbowscrew.model.joint_coordinates import JointCoordinates
 from elbowscrew.model.joint_type import BallJoint, JointLine, JointType, Measure, SecondRotation, TwoAxes
-from elbowscrew.motion.joint.choice import (
-    LARGEST_AXIS_SD,
-    LEAST_RANGE_IN_SD,
-    RMS_TO_RANGE,
-    Choice,
-    choose_type,
-    middle_range,
-)
+from elbowscrew.motion.joint.choice import Choice, choose_type
+from elbowscrew.motion.joint.contest import LARGEST_AXIS_SD, LEAST_RANGE_IN_SD, RMS_TO_RANGE, middle_range
 from elbowscrew.motion.joint.coordinates import coordinates_of
 from elbowscrew.motion.joint.every_frame import Everywhere, FrameNumbers, numbers_everywhere, reference_numbers
 from elbowscrew.motion.joint.fitting import Fitted, frames_that_count_as_one, shared_covariance
@@ -112,7 +106,7 @@ def identify_joint(
         every = every._replace(angle=_near_zero(every.angle))
         allowed = coordinates_of(replace(at, frames=np.zeros((1, 2))), reference)
         interval = interval_of_type(written, most, evidence.at(rows), np.zeros(2))
-        two = _two_axes(written, reference, interval, noise_known=noise_known)
+        two = _two_axes(written, reference, interval, noise_known=noise_known, order_determined=choice.order_told)
         method = interval.decided_by(_TILTS[0])
         if choice.status == "determined" and not all(line.determined for line in two.lines):
             reason = f"{choice.reason}; errors that go together are too large to tell both directions"
@@ -204,13 +198,16 @@ def _to_origin(pose: Float) -> float:
     return -float(dq.pose_from_dual_quat(pose)[1] @ dq.transform_lines(pose, Z_LINE)[:3])
 
 
-def _two_axes(fit: Fit[TwoAxesMechanism], reference: Float, interval: JointInterval, *, noise_known: bool) -> TwoAxes:
+def _two_axes(
+    fit: Fit[TwoAxesMechanism], reference: Float, interval: JointInterval, *, noise_known: bool, order_determined: bool
+) -> TwoAxes:
     at = fit.mechanism
     geometry = axes_geometry(at)
     lines = _lines(at, fit, reference, interval)
     between, parallel = _between(at, interval)
     sd = [interval.radius(row[None]) / NORMAL_95 for row in geometry_slopes(at)]
-    if not all(line.determined for line in lines):
+    determined = all(line.determined for line in lines)
+    if not determined:
         sd = [float("nan")] * len(sd)  # how two axes stand to each other is no better known than they are
     return TwoAxes(
         axis1=lines[0],
@@ -221,6 +218,7 @@ def _two_axes(fit: Fit[TwoAxesMechanism], reference: Float, interval: JointInter
         foot1=None if parallel else Measure(value=geometry.foot1, sd=sd[2]),
         foot2=None if parallel else Measure(value=geometry.foot2, sd=sd[3]),
         offset=Measure(value=geometry.offset, sd=sd[4]) if parallel else None,
+        order_determined=order_determined and determined,
     )
 
 
