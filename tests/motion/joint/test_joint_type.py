@@ -309,6 +309,20 @@ def test_white_noise_alone_makes_no_joint_a_free_one() -> None:
     assert identify_joint(seen, covariance, seen[0], noise_known=False).type == "free"
 
 
+@pytest.mark.parametrize("seed", [2, 15, 26])
+def test_a_screw_hinge_leaves_no_more_than_the_hinge_that_it_may_be(seed: int) -> None:
+    """Of motions that are neither, in which searches of their own end in other minima."""
+    rng = np.random.default_rng([41, seed])
+    exact = mj.free(120, 140.0, rng) if seed % 2 else mj.ball(120, 140.0, rng)
+    seen, covariance = mj.noisy(exact.poses, rng, ROTATION_DEG, PLACE)
+    line, near = mj.line(mj.unit(rng.normal(size=3)), rng.normal(0.0, 0.08, 3)), dq.pose_from_dual_quat(seen[0])[1]
+    hinge = fit_joint(seen, covariance, line, near)
+    screw = fit_joint(seen, covariance, line, near, screw=True, start=hinge)
+    assert screw.noise_ratio**2 * screw.freedom <= hinge.noise_ratio**2 * hinge.freedom * (1.0 + 1e-9)
+    costs = [fit_type(name, Poses.of(seen, covariance)).cost for name in ("hinge", "screw_hinge")]
+    assert costs[1] <= costs[0] * (1.0 + 1e-9)
+
+
 def test_noise_that_nobody_states_needs_frames_to_tell_it() -> None:
     rng = np.random.default_rng(27)
     exact = mj.hinge(5, 80.0, rng)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Final, Literal
 
 import numpy as np
@@ -23,14 +24,17 @@ _LEAST_FREEDOM: Final = 20.0
 
 
 def fit_type(name: Fitted, poses: Poses, *, robust: bool = False) -> Fit[Mechanism]:
-    """Fit one type of joint to poses, from its own start."""
+    """Fit one type of joint to poses, from its own start; a screw-hinge from the hinge, and leaving no more."""
     start: Mechanism
     iterations = _ITERATIONS
     match name:
         case "rigid":
             start = Rigid.start(poses.joint)
         case "hinge" | "screw_hinge":
-            start = OneAxis.start(poses.joint, screw=name == "screw_hinge")
+            start = OneAxis.start(poses.joint)
+            if name == "screw_hinge":
+                hinge = fit_mechanism(start, poses, iterations=iterations, tolerance=_TOLERANCE).mechanism
+                start = replace(hinge, screw=True)
         case "two_axes":
             found = find_two_axes(poses)
             start = found.mechanism.placed(poses.joint)

@@ -83,10 +83,12 @@ def estimate_joint_axis(
     start = transform_lines(joint.reference, mean_line)
     near = pose_from_dual_quat(joint.reference)[1]
     if joint.located:
-        fits = {screw: fit_joint(poses, covariance, start, near, screw=screw, robust=robust) for screw in (False, True)}
+        hinge = fit_joint(poses, covariance, start, near, robust=robust)
+        screw_hinge = fit_joint(poses, covariance, start, near, screw=True, robust=robust, start=hinge)
+        fits = {False: hinge, True: screw_hinge}
     else:  # nothing tells of a slide
-        fits = {False: fit_direction(poses, covariance, robust=robust)}
-    hinge = fits[False]
+        hinge = fit_direction(poses, covariance, robust=robust)
+        fits = {False: hinge}
     about_mean = hinge.angle - np.average(hinge.angle, weights=hinge.weight)
     spread = _rms(about_mean[:, None], hinge.weight)
     unexplained = _rms(hinge.residual[:, :2], hinge.weight) / spread if spread > 0.0 else np.inf

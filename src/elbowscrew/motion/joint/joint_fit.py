@@ -111,7 +111,14 @@ def _whole(covariance: Float, told: tuple[int, ...] | None) -> Float:
 
 
 def fit_joint(
-    joint: Float, covariance: Float, line: Float, near: Float, *, screw: bool = False, robust: bool = False
+    joint: Float,
+    covariance: Float,
+    line: Float,
+    near: Float,
+    *,
+    screw: bool = False,
+    robust: bool = False,
+    start: LineFit | None = None,
 ) -> LineFit:
     """Fit a hinge or screw-hinge to relative poses by maximum likelihood.
 
@@ -129,6 +136,9 @@ def fit_joint(
         Let the slide grow with the angle.
     robust : bool
         Tukey's biweight after a start by weights 1/distance, in place of least squares.
+    start : LineFit, optional
+        Fit of the same poses to go on from, in place of the line: a screw-hinge that goes on from the hinge leaves no
+        more than that.
 
     References
     ----------
@@ -138,9 +148,10 @@ def fit_joint(
     A = _line_pose(line, near)
     # The distal body's line: where the proximal body's is seen from it, in the middle of the motion.
     F = dq.normalize(dq.multiply(dq.conjugate(joint[len(joint) // 2]), A))
-    angle = _angles(joint, A, F)
-    pitch, weight = 0.0, np.ones(len(joint))
-    best = _Step(A, F, angle, pitch)
+    weight = np.ones(len(joint))
+    best = _Step(A, F, _angles(joint, A, F), 0.0)
+    if start is not None:
+        best = _Step(start.proximal, start.distal, start.angle, start.pitch)
     size = np.inf
     for _ in range(_ITERATIONS):
         before = size
