@@ -323,6 +323,46 @@ def test_a_screw_hinge_leaves_no_more_than_the_hinge_that_it_may_be(seed: int) -
     assert costs[1] <= costs[0] * (1.0 + 1e-9)
 
 
+def beside_a_hinge(size_deg: float, seed: int, rest: int = 0) -> tuple[Float, Float]:
+    """Poses of a hinge that turns a little about an axis across it, too, and that axis in the distal body."""
+    rng = np.random.default_rng([43, seed])
+    exact = mj.two_axes(2, (90.0, 90.0), 90.0, 0.002, rng)
+    time = np.arange(400) / 400.0
+    first = 1.05 * (1.0 - np.cos(4.0 * np.pi * time))
+    second = np.radians(0.5 * size_deg) * np.sin(6.0 * np.pi * time)
+    first, second = (np.concatenate([angle, np.full(rest, angle[-1])]) for angle in (first, second))
+    pose = exact.poses[0]
+    one, two = exact.truth["axis1"], dq.transform_lines(pose, exact.truth["axis2"])
+    return dq.multiply(dq.multiply(mj.turned(first, one), mj.turned(second, two)), pose), exact.truth["axis2"]
+
+
+@pytest.mark.parametrize("rest", [0, 1600])
+def test_a_small_second_rotation_is_told_within_its_cone(rest: int) -> None:
+    """A long rest, of which fewer frames decide, is no reason not to know it."""
+    told = []
+    for seed in range(6):
+        exact, axis2 = beside_a_hinge(2.0, seed, rest)
+        seen, covariance = mj.noisy(exact, np.random.default_rng(seed), 0.004, 1e-5)
+        found = identify_joint(seen, covariance, seen[0], noise_known=False)
+        second = found.second_rotation
+        if found.type == "hinge" and second is not None and second.axis is not None:
+            told.append(mj.angle_between(second.axis.direction_distal, axis2) < 1.5 * second.axis.axis_cone)
+            assert second.range == pytest.approx(np.radians(2.0), rel=0.15)
+    assert len(told) >= 2
+    assert all(told)
+
+
+@pytest.mark.parametrize("rotation_deg", [0.1, 0.5])
+def test_noise_is_no_second_rotation(rotation_deg: float) -> None:
+    """Though it is three times the stated one, so that it does not explain what a hinge leaves."""
+    exact, _ = beside_a_hinge(0.0, 1)
+    seen, covariance = mj.noisy(exact, np.random.default_rng(3), rotation_deg, 2e-3 * rotation_deg)
+    found = identify_joint(seen, covariance / 9.0, seen[0], noise_known=True)
+    assert found.type == "hinge"
+    assert "two_axes" in {candidate.type for candidate in found.candidates}
+    assert found.second_rotation is None
+
+
 def test_noise_that_nobody_states_needs_frames_to_tell_it() -> None:
     rng = np.random.default_rng(27)
     exact = mj.hinge(5, 80.0, rng)

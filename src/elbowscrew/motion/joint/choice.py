@@ -12,6 +12,7 @@ from typing import Final, Literal, NamedTuple
 import numpy as np
 
 from elbowscrew.choices import JOINT_TYPE_WORDS
+from elbowscrew.geometry.arrays import Index
 from elbowscrew.model.joint_type import JointTypeName, TypeCandidate
 from elbowscrew.motion.joint.contest import LARGEST_AXIS_SD, NEED_LARGE, NEED_SMALL, ORDER, Contest, over
 from elbowscrew.motion.joint.fitting import Fitted
@@ -33,7 +34,8 @@ _LITTLE: Final = "a second rotation is seen, but is too small to tell its axis"
 class Choice(NamedTuple):
     """The type, how sure it is, why, what all types that were tried leave, and which of two axes goes with which body.
 
-    The last is told where axes in the other order leave much more.
+    The last is told where axes in the other order leave much more. Beside one axis, where two were tried, there is the
+    RMS rotation (rad) that it leaves beyond the noise. All are of those rows of the poses.
     """
 
     type: JointTypeName
@@ -42,6 +44,8 @@ class Choice(NamedTuple):
     candidates: tuple[TypeCandidate, ...]
     fits: dict[str, Fit[Mechanism]]
     order_told: bool
+    rotation_left: float
+    rows: Index
 
 
 def choose_type(
@@ -201,6 +205,17 @@ def _chosen(
         )
         for tried_name, tried in ((k, contest.tried[k]) for k in ORDER if k in contest.tried)
     )
+    tried = contest.tried
+    left = 0.0
+    if "two_axes" in tried and (name == "hinge" or name == "screw_hinge"):
+        left = contest.rotation_beyond_noise(name)
     return Choice(
-        name, status, reason, candidates, {key: tried.fit for key, tried in contest.tried.items()}, order_told
+        type=name,
+        status=status,
+        reason=reason,
+        candidates=candidates,
+        fits={key: one.fit for key, one in tried.items()},
+        order_told=order_told,
+        rotation_left=left,
+        rows=contest.rows,
     )

@@ -95,7 +95,8 @@ class Contest:
     def __init__(
         self, poses: Poses, *, noise_known: bool, robust: bool, one: Literal["hinge", "screw_hinge"] | None = None
     ) -> None:
-        self.poses = poses.at(deciding_frames(poses.joint, _FRAMES))
+        self.rows = deciding_frames(poses.joint, _FRAMES)
+        self.poses = poses.at(self.rows)
         self.consecutive = poses.at(slice(_CONSECUTIVE))
         self.noise_known = noise_known
         self.robust = robust
@@ -168,6 +169,12 @@ class Contest:
             return False
         white = _white_square(settled(fit.mechanism, self.consecutive).residual[:, 3:])
         return bool(fit.residual_translation**2 - white > _LARGEST_LEFT**2)
+
+    def rotation_beyond_noise(self, name: Fitted) -> float:
+        """RMS rotation (rad) that a type leaves and that is not white in time; 0 where that is not half of it."""
+        fit = self[name].fit
+        left, white = fit.residual_rotation**2, _white_square(settled(fit.mechanism, self.consecutive).residual[:, :3])
+        return float(np.sqrt(left - white)) if left >= NEED_LARGE * white else 0.0
 
     def tells_order(self) -> bool:
         """Whether two axes in the other order leave much more than as they are; the order that leaves less is taken."""

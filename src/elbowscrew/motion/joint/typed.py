@@ -28,6 +28,7 @@ _MOST_FRAMES: Final = 5000
 _PARALLEL: Final = np.radians(5.0)
 _SURE: Final = 3.0
 _SHARES_THE_HINGE: Final = 1.5
+_LEAST_BESIDE: Final = np.radians(45.0)
 # Errors that draw the axes together to that extent leave nothing of where they were.
 _LARGEST_UNDONE: Final = 0.36
 # Rows of the tilts and of the shifts of both axes among the 12 shared numbers.
@@ -263,22 +264,24 @@ def _lines(
 
 
 def _second_rotation(choice: Choice, poses: Poses, reference: Float, evidence: Evidence) -> SecondRotation | None:
-    """What turns beside a hinge; None where it was not looked for, as the stated noise explains the hinge."""
+    """What turns beside a hinge; None where it was not looked for, or is white in time, as noise is."""
     if "two_axes" not in choice.fits:
         return None
     two = choice.fits["two_axes"]
     if not isinstance(two.mechanism, TwoAxesMechanism):
         return None
-    few, rows = poses.thinned(len(two.weight))
-    lines = _lines(two.mechanism, two, reference, interval_of_type(two, few, evidence.at(rows)))
+    interval = interval_of_type(two, poses.at(choice.rows), evidence.at(choice.rows))
+    lines = _lines(two.mechanism, two, reference, interval)
     smaller = min(lines, key=lambda line: line.range)
     left = RMS_TO_RANGE * next(c for c in choice.candidates if c.type == choice.type).residual_rotation
     valid = any(candidate.valid for candidate in choice.candidates if candidate.type == "two_axes")
-    # Two axes that share the hinge's own rotation among them are not the hinge's and another.
-    beside = smaller.range < _SHARES_THE_HINGE * left
+    # Two axes that share the hinge's own rotation among them are not the hinge's and another; and of a small rotation
+    # the part across the hinge alone is seen at once, which any axis between there and the hinge has.
+    apart = _between(two.mechanism, interval)[0] >= _LEAST_BESIDE
+    beside = apart and smaller.range < _SHARES_THE_HINGE * left
     if valid and beside and all(line.determined for line in lines):
         return SecondRotation(range=smaller.range, axis=smaller)
-    return SecondRotation(range=left, axis=None)
+    return SecondRotation(range=RMS_TO_RANGE * choice.rotation_left, axis=None) if choice.rotation_left else None
 
 
 def _ball(fit: Fit[Mechanism], at: Ball, interval: JointInterval, joint: Float, *, noise_known: bool) -> BallJoint:
