@@ -59,6 +59,32 @@ def test_a_hinges_angle_is_the_one_that_turned_it(tmp_path: Path) -> None:
     assert np.array(written["angle1_deg"], dtype=float) == pytest.approx(np.degrees(angle), abs=1e-6)
 
 
+@pytest.mark.parametrize(("top_deg", "lost"), [(250.0, slice(40, 260)), (900.0, slice(110, 170))])
+def test_a_hinge_does_not_lose_a_turn_in_a_gap(top_deg: float, lost: slice) -> None:
+    """Theta does not either: over 200 deg the shorter way round is the wrong one."""
+    angle = np.radians(top_deg) * np.sin(np.linspace(0.0, 0.5 * np.pi, 301)) ** 2
+    whole = hinged(angle)
+    body = whole.bodies[0]
+    quat, position = dq.pose_from_dual_quat(body.dual_quat_lab_body)
+    quat[lost] = np.nan
+    gap = Recording.from_bodies([RigidBody.from_quaternions(body.name, quat, position)], rate_hz=100.0)
+    analysis = analyze(gap, Settings(method="joint", tolerance_mm=5.0))
+    found, known = analysis.joint_angles, analysis.screw.valid
+    assert found is not None
+    assert abs(angle[lost.stop] - angle[lost.start - 1]) > np.pi
+    assert found.angle[known, 0] == pytest.approx(angle[known], abs=1e-6)
+    assert analysis.screw.angle[known] == pytest.approx(angle[known], abs=1e-6)
+    model = analysis.interpolated
+    assert np.nanmax(np.abs(model.rms_displacement)) < 0.0051
+
+
+def test_an_exact_hinge_stated_to_have_two_axes_is_told() -> None:
+    """Both axes in one line: two angles of a frame do one and the same."""
+    analysis = analyze(hinged(np.radians(900.0) * np.linspace(0.0, 1.0, 301)), Settings(joint_type="two_axes"))
+    assert "stated-joint" in {warning.code for warning in analysis.warnings}
+    assert analyze(hinged(np.radians(900.0) * np.linspace(0.0, 1.0, 301))).joint_type.type == "hinge"  # type: ignore[union-attr]
+
+
 def test_the_zero_is_the_reference_whichever_it_is() -> None:
     angle = np.radians(80.0) * np.sin(np.linspace(0.0, np.pi, 201)) ** 2
     for row, sense in ((30, 1.0), (70, -1.0)):  # the larger excursion is positive

@@ -12,7 +12,7 @@ from elbowscrew.geometry.arrays import Float, Index
 from elbowscrew.model.joint_coordinates import MOVING_JOINTS, JointCoordinates
 from elbowscrew.model.joint_type import JointType
 from elbowscrew.motion.interpolation.modeling import METHODS, Method, joint_method
-from elbowscrew.motion.joint.coordinates import joint_angles_of
+from elbowscrew.motion.joint.coordinates import joint_angles_of, with_turns_of
 from elbowscrew.motion.screws.measurement import Measurement
 from elbowscrew.motion.screws.uncertainty import fitted_covariance
 
@@ -80,7 +80,8 @@ class ModelJoint(NamedTuple):
             poses = measured.joint.dual_quat_proximal_distal[rows]
             return fitted_covariance(measured.joint, poses, *measured.noise.assumed)
 
-        return joint_angles_of(self.coordinates, pose, covariance, measured.joint.reference_row)
+        angle = joint_angles_of(self.coordinates, pose, covariance, measured.joint.reference_row)
+        return with_turns_of(angle, measured.sense.twist) if angle.shape[1] == 1 else angle
 
 
 def _without_angles(kind: str) -> SettingError:

@@ -189,7 +189,7 @@ class Contest:
             self._take("two_axes", other)
             self.known_heldout.pop("two_axes", None)
         less, more = sorted((fit.variance, other.variance))
-        return more + _EXACT >= NEED_LARGE * (less + _EXACT)
+        return over(more, less) >= NEED_LARGE
 
     def try_all(self) -> None:
         """Fit every type."""
@@ -233,8 +233,8 @@ def _white_square(residual: Float) -> float:
 
 
 def over(simpler: float, richer: float) -> float:
-    """How many times less variance the richer of two types leaves."""
-    return simpler / max(richer, _TINY)
+    """How many times less variance the richer of two types leaves; of poses that both meet exactly, no less."""
+    return (simpler + _EXACT) / (richer + _EXACT)
 
 
 def _heldout_variance(design: Float, whitened: Float, frames: float) -> float:

@@ -117,6 +117,15 @@ def joint_angles_of(
     return np.asarray(angle - _TURN * np.round(angle[reference_row] / _TURN))
 
 
+def with_turns_of(angle: Float, twist: Float) -> Float:
+    """Give angles about one axis (N, 1) the whole turns of a rotation (N,) about nearly the same one.
+
+    From frame to frame alone an angle goes the shorter way, over a gap as well.
+    """
+    turns = np.round((twist[:, None] - angle) / _TURN)
+    return np.asarray(angle + _TURN * np.nan_to_num(turns))
+
+
 def expressed_joint(joint: JointCoordinates, change: Float) -> JointCoordinates:
     """Write a joint in the frame that a pose (8,) of its own frame is given in."""
     return replace(

@@ -13,6 +13,7 @@ from elbowscrew.motion.joint.joint_fit import LineFit, linear_model
 from elbowscrew.motion.joint.likelihood import whitener_of
 
 _LEAST_INFORMATION: Final = 1e-13
+_SAME: Final = 1e-12
 
 
 class Influence(NamedTuple):
@@ -180,8 +181,11 @@ def with_columns(influence: Influence, columns: Float) -> tuple[Influence, Float
 def _across(own: Float) -> Float:
     """Orthonormal rows (F, n - K, n) across the K columns (F, n, K) of each frame, turning no more than these do."""
     turned = np.swapaxes(own, -1, -2)
-    projector = own @ np.linalg.solve(turned @ own, turned)
     rows, count = own.shape[-2:]
+    square = turned @ own
+    # Two columns of a frame may do one and the same, as the angles of parallel axes in one line.
+    square = square + _SAME / max(count, 1) * np.trace(square, axis1=1, axis2=2)[:, None, None] * np.eye(count)
+    projector = own @ np.linalg.solve(square, turned)
     # Fixed directions as far as can be from all frames' columns, made orthogonal to each frame's own.
     fixed = np.linalg.eigh(projector.mean(axis=0))[1][:, : rows - count]
     rest = fixed - projector @ fixed

@@ -13,6 +13,7 @@ from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat
 from elbowscrew.joints import side_of
 from elbowscrew.model import JointAxis, MeanAxis, QualityWarning, RigidBody
 from elbowscrew.model.joint_type import JointAngles, JointType
+from elbowscrew.motion.joint.coordinates import with_turns_of
 from elbowscrew.motion.joint.every_frame import Everywhere
 from elbowscrew.motion.joint.interval import SkinMotion
 from elbowscrew.motion.joint.joint_axis import (
@@ -136,8 +137,9 @@ def measured_joint_angles(
     angle, deviation = joint_type.angle.copy(), np.where(valid[:, None], joint_type.angle_sd, np.nan)
     if settings.reference_window == 1:  # the reference is that very frame
         angle[measured.joint.reference_row], deviation[measured.joint.reference_row] = 0.0, 0.0
-    if angle.shape[1] == 1 and np.nansum(angle[:, 0] * measured.course) < 0.0:
-        angle = -angle
+    if angle.shape[1] == 1:
+        angle = -angle if np.nansum(angle[:, 0] * measured.course) < 0.0 else angle
+        angle = with_turns_of(angle, measured.sense.twist)
     return JointAngles(
         frame=measured.screw.frame,
         time_s=measured.screw.time_s,
