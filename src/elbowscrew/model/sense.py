@@ -46,7 +46,8 @@ class Sense(ArrayRecord):
     jumps : int
         Steps that go beyond by more than 20 deg.
     bridged_rows : tuple of int
-        Rows before gaps over which the whole turns are those that the speed beside them gives: over half a turn.
+        Rows before gaps over which the speed beside them makes the joint turn by over half a turn: the whole turns
+        there are those of that speed (`counted`), or it contradicts them.
     """
 
     signed: bool

@@ -123,6 +123,28 @@ def test_whole_turns_do_not_hang_on_what_is_lost_on_the_way() -> None:
     assert not sense.counted
 
 
+@pytest.mark.parametrize(("top", "lost"), [(250.0, (60.0, 190.0)), (280.0, (40.0, 150.0)), (330.0, (75.0, 220.0))])
+def test_what_a_gap_passes_is_not_what_the_joint_leaves_out(top: float, lost: tuple[float, float]) -> None:
+    """Though more of the circle is unseen in the gap than beyond the top."""
+    angle = top * np.sin(np.linspace(0.0, 0.5 * np.pi, 301)) ** 2
+    quat = hinge(angle)
+    quat[(angle > lost[0]) & (angle < lost[1])] = np.nan
+    known = np.isfinite(quat[:, 0])
+    sense = sense_of(quat, np.arange(301) / 100.0, 0)
+    assert np.degrees(sense.angle[known]) == pytest.approx(angle[known], abs=1e-6)
+    assert sense.bridged_rows == ()
+
+
+def test_a_gap_of_more_than_half_a_turn_is_told() -> None:
+    """Where it leads to is as far the other way round."""
+    angle = 330.0 * np.sin(np.linspace(0.0, 0.5 * np.pi, 301)) ** 2
+    lost = (angle > 41.0) & (angle < 247.0)
+    quat = hinge(angle)
+    quat[lost] = np.nan
+    sense = sense_of(quat, np.arange(301) / 100.0, 0)
+    assert sense.bridged_rows == (int(np.flatnonzero(lost)[0]) - 1,)
+
+
 def test_crank_of_several_turns_is_counted_also_over_a_gap() -> None:
     x = np.linspace(0.0, 1500.0, 400)
     quat = hinge(x)

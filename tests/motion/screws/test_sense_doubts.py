@@ -108,7 +108,9 @@ def test_whole_turns_over_gaps_are_told_with_the_first_gap(rows: tuple[int, ...]
     message = told(sense(counted=True, bridged_rows=rows))["turns-over-gap"]
     assert gaps in message
     assert "after frame 1005)" in message
-    assert "theta after it depends on them" in message
+    assert message.endswith("theta after it is counted by that speed, and depends on that")
+    told_without = told(sense(counted=False, bridged_rows=rows))["turns-over-gap"]
+    assert told_without.endswith("theta after it is told as if it did not, and depends on that")
 
 
 @pytest.mark.parametrize(("amplitude", "tied"), [(60.0, True), (55.0, True), (54.0, False)])

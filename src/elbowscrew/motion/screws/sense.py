@@ -237,39 +237,51 @@ def _whole_turns(psi: Float, good: Bool, rows: Index, time_s: Float) -> tuple[Fl
     step = _wrapped(np.diff(clear))
     span = np.diff(rows[chosen])
     cut = _free_cut(clear, step, span == 1)
+    turning, far = _steps_by_speed(step, span, time_s[chosen])
     if cut is None:
-        count, bridged = _turns_along_time(clear, step, span, time_s[chosen])
-        return count[np.clip(np.cumsum(good) - 1, 0, None)], True, rows[chosen[bridged]]
+        course = clear[0] + np.concatenate([[0.0], np.cumsum(turning)])
+        count = np.round((course - clear) / _TURN)
+        return count[np.clip(np.cumsum(good) - 1, 0, None)], True, rows[chosen[far]]
     # The window of one turn that holds 0, the reference, begins and ends at the cut.
     outside = psi > cut if cut > 0.0 else psi < cut
-    return np.where(outside, -np.sign(cut), 0.0), False, rows[:0]
+    against = np.flatnonzero((turning != step) & _crosses(clear[:-1], turning, cut))
+    return np.where(outside, -np.sign(cut), 0.0), False, rows[chosen[against]]
+
+
+def _crosses(start: Float, move: Float, place: float) -> Bool:
+    """Whether moves from angles go past a place on the circle."""
+    past = (start - place) % _TURN
+    crossed: Bool = (past + move < 0.0) | (past + move >= _TURN)
+    return crossed
 
 
 def _free_cut(psi: Float, step: Float, adjacent: Bool) -> float | None:
-    """Middle of the widest arc of 20 deg or more that no frame lies in and no step crosses; None if there is none."""
+    """Middle of the widest arc of 20 deg or more that no frame lies in and no step crosses; None if there is none.
+
+    An arc that lies within a gap, the shorter way round, is as good as visited: it is taken only if there is no other.
+    """
     place = np.floor((psi + np.pi) * (_BINS / _TURN)).astype(np.intp) % _BINS
     taken = np.flatnonzero(np.bincount(place, minlength=_BINS))
     empty = (np.diff(taken, append=taken[0] + _BINS) - 1) * (_TURN / _BINS)
-    start, move = psi[:-1][adjacent], step[adjacent]
     cuts = []
     for k in np.flatnonzero(empty >= _LEAST_FREE_ARC - 2.0 * _TURN / _BINS):
         lower = psi[place == taken[k]].max()
         upper = psi[place == taken[(k + 1) % taken.size]].min()
         free = (upper - lower) % _TURN or _TURN
         middle = float(_wrapped(lower + 0.5 * free))
-        past = (start - middle) % _TURN
-        if free >= _LEAST_FREE_ARC and not ((past + move < 0.0) | (past + move >= _TURN)).any():
-            cuts.append((float(free), middle))
-    return max(cuts)[1] if cuts else None
+        crossed = _crosses(psi[:-1], step, middle)
+        if free >= _LEAST_FREE_ARC and not crossed[adjacent].any():
+            cuts.append((not crossed.any(), float(free), middle))
+    return max(cuts)[2] if cuts else None
 
 
-def _turns_along_time(psi: Float, step: Float, span: Index, time_s: Float) -> tuple[Float, Index]:
-    """Unwrap the twist, over gaps by the mean of the slopes at their two sides.
+def _steps_by_speed(step: Float, span: Index, time_s: Float) -> tuple[Float, Index]:
+    """Steps of the twist with the whole turns that the mean of the slopes at its two sides gives a gap.
 
     Returns
     -------
-    turns : ndarray, shape (M,)
-    bridged : ndarray of int
+    step : ndarray, shape (M - 1,)
+    far : ndarray of int
         Steps over a gap in which the slopes make the motion turn by more than half a turn.
     """
     course = np.concatenate([[0.0], np.cumsum(step)])
@@ -289,9 +301,7 @@ def _turns_along_time(psi: Float, step: Float, span: Index, time_s: Float) -> tu
     more = np.zeros(step.size)
     turned = slope * (time_s[gap + 1] - time_s[gap])
     more[gap] = np.round((turned - step[gap]) / _TURN)
-    course += _TURN * np.concatenate([[0.0], np.cumsum(more)])
-    turns: Float = np.round((psi[0] + course - psi) / _TURN)
-    return turns, gap[np.abs(turned) > np.pi]
+    return step + _TURN * more, gap[np.abs(turned) > np.pi]
 
 
 def _passed_aside(sheets: _Sheets, phi: Float, noise: float) -> _Sheets:

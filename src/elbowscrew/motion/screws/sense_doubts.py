@@ -59,9 +59,10 @@ def sense_warnings(sense: Sense, frame: NDArray[np.int64], chosen: SignedChoice)
     if sense.bridged_rows:
         first = frame[sense.bridged_rows[0]]
         gaps = "a gap" if len(sense.bridged_rows) == 1 else f"{len(sense.bridged_rows)} gaps"
+        told = "counted by that speed" if sense.counted else "told as if it did not"
         message = (
-            f"the joint turns all the way round, and in {gaps} (the first after frame {first}) by more than half a "
-            "turn: the whole turns there are those of the speed beside the gap, and theta after it depends on them"
+            f"by the speed beside it the joint turns by more than half a turn in {gaps} (the first after frame "
+            f"{first}): which way round, and how often, is not seen; theta after it is {told}, and depends on that"
         )
         found.append(QualityWarning(code="turns-over-gap", message=message))
     return tuple(found)
