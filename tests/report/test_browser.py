@@ -2,14 +2,22 @@
 
 from __future__ import annotations
 
+import io
 import os
+import re
 import shutil
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
 
+import numpy as np
+import pandas as pd
 import pytest
+from drawn_trials import drawn_trial
+
+from elbowscrew.report.trial_page import trial_page
 
 playwright = pytest.importorskip("playwright.sync_api")
 axe = pytest.importorskip("axe_playwright_python.sync_playwright")
@@ -27,6 +35,7 @@ FLAGS = [
     "--disable-sync",
 ]
 TRIAL_MOST_BYTES = 6_000_000
+LONG_TRIAL_MOST_BYTES = 3_000_000
 STATE = "document.getElementById('viewer').dataset"
 
 
@@ -79,14 +88,19 @@ def until(page: Any, condition: Callable[[dict[str, str]], bool]) -> dict[str, s
     return state
 
 
+PIXELS = (
+    "(() => { const space = document.getElementById('space'); const c = document.createElement('canvas');"
+    "c.width = space.width; c.height = space.height;"
+    "const x = c.getContext('2d', {willReadFrequently: true}); x.drawImage(space, 0, 0);"
+    "return x.getImageData(0, 0, c.width, c.height).data; })()"
+)
+
+
 def ink(page: Any) -> int:
     """Pixels of the canvas with something on them."""
     return int(
         page.evaluate(
-            "(() => { const space = document.getElementById('space'); const c = document.createElement('canvas');"
-            "c.width = space.width; c.height = space.height;"
-            "const x = c.getContext('2d', {willReadFrequently: true}); x.drawImage(space, 0, 0);"
-            "const d = x.getImageData(0, 0, c.width, c.height).data;"
+            f"(() => {{ const d = {PIXELS};"
             "let n = 0; for (let k = 3; k < d.length; k += 4) n += d[k] > 0; return n; })()"
         )
     )
@@ -208,6 +222,8 @@ def test_hostile_names_are_text(open_page: Any, hostile: Path, study: Path) -> N
 def test_without_javascript_tables_and_figures_are_there(open_page: Any, result: Path, study: Path, which: str) -> None:
     path = result / "report.html" if which == "trial" else study / "index.html"
     page = open_page(path, java_script_enabled=False)
+    for summary in page.locator("summary").all():
+        summary.click()
     for selector in ("table", "svg.chart"):
         for k in range(page.locator(selector).count()):
             assert page.locator(selector).nth(k).is_visible()
@@ -226,8 +242,112 @@ def test_pages_print(open_page: Any, result: Path, study: Path, which: str) -> N
     assert printed.startswith(b"%PDF")
     assert printed.count(b"/Type /Page\n") + printed.count(b"/Type /Page/") >= 2
     page.emulate_media(media="print")
-    assert not page.locator("#viewer, #tools").first.is_visible()
-    assert page.locator("svg.chart").first.is_visible()
+    assert not page.locator(".tools").first.is_visible()
+    for part in page.locator("svg.chart, table").all():
+        assert part.is_visible()
+    if which == "trial":
+        assert page.locator("#space").is_visible()  # a still of the view
+        assert not page.locator("#play").is_visible()
+        assert not page.locator("summary").first.is_visible()
+
+
+def test_the_page_of_a_long_trial_is_short_until_it_is_unfolded(open_page: Any, tmp_path: Path) -> None:
+    made = trial_page(drawn_trial("long"), tmp_path).encode()
+    assert len(made) < LONG_TRIAL_MOST_BYTES
+    (tmp_path / "report.html").write_bytes(made)
+    page = open_page(tmp_path / "report.html", viewport={"width": 1280, "height": 900})
+    screens = "document.documentElement.scrollHeight / window.innerHeight"
+    assert page.evaluate(screens) < 8.0
+    page.locator("summary", has_text="Table of all phases").click()
+    assert page.evaluate(screens) > 9.0
+
+
+BROKEN_WORDS = """[...document.querySelectorAll('th, td, dt, dd, h1, h2, h3, caption, label')].flatMap((place) => {
+  const texts = document.createTreeWalker(place, NodeFilter.SHOW_TEXT), found = [];
+  for (let node = texts.nextNode(); node; node = texts.nextNode()) {
+    for (const word of node.data.matchAll(/[\\p{L}]+/gu)) {
+      const range = document.createRange();
+      range.setStart(node, word.index);
+      range.setEnd(node, word.index + word[0].length);
+      if (new Set([...range.getClientRects()].map((box) => Math.round(box.top))).size > 1) found.push(word[0]);
+    }
+  }
+  return found;
+})"""
+
+
+def test_no_word_is_broken_on_a_phone(open_page: Any, result: Path) -> None:
+    page = open_page(result / "report.html", viewport={"width": 390, "height": 844})
+    for summary in page.locator("summary").all():
+        summary.click()
+    assert page.evaluate(BROKEN_WORDS) == []
+
+
+def test_in_the_dark_the_page_and_the_view_are_dark_and_on_paper_light(open_page: Any, result: Path) -> None:
+    page = open_page(result / "report.html", color_scheme="dark", viewport={"width": 1280, "height": 900})
+    assert lightness(page.evaluate("getComputedStyle(document.body).backgroundColor")) < 0.2
+    found = axe.Axe().run(page).response
+    assert [fault["id"] for fault in found["violations"] if fault["impact"] in ("serious", "critical")] == []
+    viewer(page)
+    assert mean_ink(page) > 0.35
+    page.evaluate("window.dispatchEvent(new Event('beforeprint'))")
+    assert mean_ink(page) < 0.65
+    page.emulate_media(media="print")
+    assert lightness(page.evaluate("getComputedStyle(document.body).backgroundColor")) > 0.9
+
+
+def lightness(color: str) -> float:
+    return sum(float(part) for part in re.findall(r"[\d.]+", color)[:3]) / 765.0
+
+
+def mean_ink(page: Any) -> float:
+    """Mean lightness of what covers the canvas fully."""
+    return float(
+        page.evaluate(
+            f"(() => {{ const d = {PIXELS}; let n = 0, sum = 0;"
+            " for (let k = 0; k < d.length; k += 4) if (d[k + 3] > 250)"
+            " { n += 1; sum += (d[k] + d[k + 1] + d[k + 2]) / 765; } return sum / n; })()"
+        )
+    )
+
+
+def test_a_chart_tells_the_values_beneath_the_pointer(open_page: Any, result: Path) -> None:
+    page = open_page(result / "report.html", viewport={"width": 1280, "height": 900})
+    chart = page.locator("svg.chart").first
+    chart.scroll_into_view_if_needed()
+    box = chart.bounding_box()
+    page.mouse.move(box["x"] + 0.4 * box["width"], box["y"] + 0.5 * box["height"])
+    told = page.locator(".values").first.inner_text().replace("−", "-")
+    seconds, measured = (float(re.search(rf"{name} (-?[\d.]+)", told)[1]) for name in (r"Time \(s\)", "measured"))  # type: ignore[index]
+    table = pd.read_csv(result / "screw.csv")
+    assert measured == pytest.approx(np.interp(seconds, table["time_s"], table["theta_deg"]), abs=1.5)
+    page.mouse.move(box["x"] + 0.4 * box["width"], box["y"] - 20)
+    assert page.locator(".values").first.inner_text() == ""
+
+
+def test_a_chart_can_be_taken_along_as_picture_and_as_numbers(browser: Any, result: Path) -> None:
+    page = browser.new_page(color_scheme="dark")
+    page.goto((result / "report.html").as_uri())
+    saved = {}
+    for kind in ("SVG", "CSV"):
+        with page.expect_download() as waited:
+            page.get_by_role("button", name=f"Download the chart Angle over time as {kind}").click()
+        assert waited.value.suggested_filename == f"angle-over-time.{kind.lower()}"
+        saved[kind] = Path(waited.value.path()).read_text(encoding="utf-8-sig")
+    page.close()
+    rows = pd.read_csv(io.StringIO(saved["CSV"]))
+    measured = rows[rows["series"] == "measured"]
+    table = pd.read_csv(result / "screw.csv")
+    assert measured["Time (s)"].to_numpy() == pytest.approx(table["time_s"].to_numpy())
+    assert measured["value"].to_numpy() == pytest.approx(table["theta_deg"].to_numpy(), rel=1e-5, abs=1e-6, nan_ok=True)
+    assert set(rows["quantity"]) == {"Angle θ (deg)"}
+    picture = ElementTree.fromstring(saved["SVG"])  # noqa: S314 - a page of ours
+    style = next(part.text or "" for part in picture.iter() if part.tag.endswith("style"))
+    assert ".measured" in style
+    assert "#000000" in style or "rgb(0, 0, 0)" in style  # the colors of paper, from a dark page
+    assert "var(" not in style
+    words = [part.text for part in picture.iter() if part.tag.endswith("text")]
+    assert {"Time (s)", "measured", "keyframes"} <= set(words)
 
 
 @pytest.mark.parametrize("width", [360, 1280])

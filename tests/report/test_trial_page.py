@@ -133,6 +133,15 @@ def test_the_page_says_what_the_summary_says(page: str, result: Path) -> None:
         assert option in text
 
 
+def test_the_contents_lead_to_every_section_and_tables_have_captions(page: str) -> None:
+    contents = re.search(r'<nav class="contents".*?</nav>', page, re.S)
+    assert contents
+    listed = re.findall(r'<a href="#([^"]+)">([^<]+)</a>', contents[0])
+    assert listed == re.findall(r'<h2 id="([^"]+)"[^>]*>([^<]+)</h2>', page)
+    assert len(listed) > 8
+    assert len(re.findall(r"<table", page)) == len(re.findall(r"<table[^>]*>\s*<caption><span>[^<]+", page)) > 5
+
+
 def test_the_same_result_gives_the_same_bytes(result: Path, tmp_path: Path) -> None:
     copy = shutil.copytree(result, tmp_path / "copy")
     before = (copy / "report.html").read_bytes()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterable, Sequence
 from html import escape
 from typing import Final
@@ -95,6 +96,7 @@ class Chart:
         self._inner = (_LEFT, _TOP, size[0] - _RIGHT, size[1] - _BOTTOM)
         self._drawn: list[str] = []
         self._legend: list[tuple[str, str]] = []
+        self._series: list[tuple[str, list[float | None], list[float | None]]] = []
 
     def x(self, values: Float) -> Float:
         """Pixels of data values along."""
@@ -110,6 +112,7 @@ class Chart:
         """Draw a curve, thinned to what the pixels can show."""
         rows = drawn_rows(y, keep_gaps=True, parts=int(self._inner[2] - self._inner[0]))
         self._drawn.append(f'<path class="{look}" d="{path_of(self.x(x[rows]), self.y(y[rows]))}"/>')
+        self._keep(label or look, x[rows], y[rows])
         self._note(look, label)
 
     def band(self, x: Float, low: Float, high: Float, look: str, label: str = "") -> None:
@@ -121,6 +124,9 @@ class Chart:
             along = self.x(np.concatenate([x[part], x[part][::-1]]))
             up = self.y(np.concatenate([low[part], high[part][::-1]]))
             self._drawn.append(f'<path class="{look}" d="{path_of(along, up)}Z"/>')
+        if label:
+            self._keep(f"{label}, lower", x[rows], low[rows])
+            self._keep(f"{label}, upper", x[rows], high[rows])
         self._note(look, label)
 
     def points(self, x: Float, y: Float, look: str, label: str = "", radius: float = 4.0) -> None:
@@ -128,6 +134,8 @@ class Chart:
         for a, b in zip(self.x(x).tolist(), self.y(y).tolist(), strict=True):
             if a == a and b == b:
                 self._drawn.append(f'<circle class="{look}" cx="{a:.1f}" cy="{b:.1f}" r="{radius:g}"/>')
+        if label:
+            self._keep(label, x, y)
         self._note(look, label)
 
     def spans(self, pieces: Iterable[tuple[float, float]], look: str, label: str = "") -> None:
@@ -144,11 +152,14 @@ class Chart:
         if found:
             self._note(look, label)
 
-    def segment(self, x: Sequence[float], y: Sequence[float], look: str, color: str = "", label: str = "") -> None:
-        """Draw one straight piece, in a color of its own if one is given."""
+    def segment(
+        self, x: Sequence[float], y: Sequence[float], look: str, color: str = "", label: str = "", told: str = ""
+    ) -> None:
+        """Draw one straight piece, in a color of its own and with words for those who point at it, if given."""
         shape = path_of(self.x(np.array(x)), self.y(np.array(y)))
         stroke = f' stroke="{color}"' if color else ""
-        self._drawn.append(f'<path class="{look}"{stroke} d="{shape}"/>')
+        end = f"><title>{escape(told)}</title></path>" if told else "/>"
+        self._drawn.append(f'<path class="{look}"{stroke} d="{shape}"{end}')
         self._note(look, label)
 
     def svg(self) -> Markup:
@@ -162,6 +173,7 @@ class Chart:
         return "".join(
             [
                 f'<g transform="translate({offset:g} {lower:g})">',
+                self._values(),
                 f'<clipPath id="{clip}"><rect x="{left:g}" y="{top - 6:g}" width="{right - left:g}" '
                 f'height="{bottom - top + 6:g}"/></clipPath>',
                 *self._grid(),
@@ -209,9 +221,27 @@ class Chart:
         )
         return parts
 
+    def _keep(self, name: str, x: Float, y: Float) -> None:
+        """Keep the values of what is drawn, for those who point at it or take it along."""
+        self._series.append((name, _numbers(x), _numbers(y)))
+
+    def _values(self) -> str:
+        """Values of curves and points, as JSON that is not shown: a page's script tells them."""
+        if not self._series:
+            return ""
+        box, along, up = self._inner, (self._labels[0], *self._x), (self._labels[1], *self._y)
+        told = {"box": box, "along": along, "up": up, "series": self._series}
+        text = json.dumps(told, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
+        return f"<metadata>{escape(text, quote=False)}</metadata>"
+
     def _note(self, look: str, label: str) -> None:
         if label and all(known != label for _, known in self._legend):
             self._legend.append((look, label))
+
+
+def _numbers(values: Float) -> list[float | None]:
+    """Values to seven digits, more than a chart shows; None where one is not known."""
+    return [float(f"{value:.7g}") if np.isfinite(value) else None for value in values.tolist()]
 
 
 def keys_of(legend: Iterable[tuple[str, str]]) -> Markup:

@@ -7,7 +7,9 @@ import functools
 import hashlib
 import json
 import math
+import re
 from collections.abc import Iterable, Mapping, Sequence
+from html import unescape
 from pathlib import Path
 from typing import Any, Final
 
@@ -24,17 +26,20 @@ MARK: Final = 'name="generator" content="elbowscrew'
 UNSHOWABLE: Final = (*UNREADABLE, jinja2.UndefinedError)
 _HERE: Final = Path(__file__).parent
 _NONE: Final = "–"
+_HEADING: Final = re.compile(r'<h2 id="([^"]+)"[^>]*>([^<]*)</h2>')
 
 
-def render(template: str, *, styles: Sequence[str], script: str, data: Any, content: Mapping[str, Any]) -> str:
+def render(
+    template: str, *, styles: Sequence[str], scripts: Sequence[str], data: Any, content: Mapping[str, Any]
+) -> str:
     """Fill a template.
 
     Parameters
     ----------
-    template, script : str
-        Files in ``templates/`` and ``static/``.
-    styles : sequence of str
-        Files in ``static/``, each stronger than the one before.
+    template : str
+        File in ``templates/``.
+    styles, scripts : sequence of str
+        Files in ``static/``, of styles each stronger than the one before.
     data : object
         What the script works on, as JSON.
     content : mapping
@@ -45,7 +50,8 @@ def render(template: str, *, styles: Sequence[str], script: str, data: Any, cont
     str
         The page, whose policy allows its own style and script and nothing else, least of all the network.
     """
-    css, js = "".join(_static(style) for style in styles), _static(script)
+    css = "".join(_static(style) for style in styles)
+    js = "".join(_static(script) for script in scripts)
     policy = (
         f"default-src 'none'; style-src '{_hash(css)}'; script-src '{_hash(js)}'; img-src data:; "
         "base-uri 'none'; form-action 'none'"
@@ -95,7 +101,16 @@ def _environment() -> jinja2.Environment:
         lstrip_blocks=True,
         auto_reload=False,
     )
-    environment.filters.update(number=number, known=known, brief=brief, vector=vector, percent=percent, words=words)
+    environment.filters.update(
+        number=number,
+        known=known,
+        brief=brief,
+        vector=vector,
+        percent=percent,
+        words=words,
+        listed=listed,
+        headings=headings,
+    )
     return environment
 
 
@@ -135,6 +150,18 @@ def vector(values: Iterable[float | None] | None, decimals: int = 1) -> str:
 def percent(share: float | None, decimals: int = 1) -> str:
     """Write a share in percent."""
     return _NONE if share is None else f"{number(100.0 * share, decimals)} %"
+
+
+def headings(html: str) -> list[tuple[str, str]]:
+    """Id and text of each section's heading, for a list of contents."""
+    return [(found[1], unescape(found[2])) for found in _HEADING.finditer(html)]
+
+
+def listed(values: Sequence[Any], most: int = 24) -> str:
+    """Write a list of numbers, a long one by its ends and how many they are."""
+    if len(values) <= most:
+        return words(values)
+    return f"{words(values[:3])}, … {words(values[-1])}; {len(values)} in all"
 
 
 def words(value: Any) -> str:

@@ -117,7 +117,7 @@ def study_page(study: Study, tables: Sequence[str] = ()) -> str:
         "false_alarms": FALSE_ALARMS,
         "least": LEAST,
     }
-    return render("study.html", styles=("page.css", "study.css"), script="study.js", data={}, content=content)
+    return render("study.html", styles=("page.css", "study.css"), scripts=("study.js",), data={}, content=content)
 
 
 def thumbnail(time_s: Float, theta: Float, scale: tuple[float, float]) -> Markup:

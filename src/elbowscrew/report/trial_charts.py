@@ -111,6 +111,7 @@ def axis_chart(trial: TrialView) -> Markup:
     widest = 1.25 * bundle.reach_across(WIDEST)
     angle = np.degrees(trial.angle[bundle.rows])
     colors = [color_of(float(share)) for share in (angle - angle.min()) / (float(np.ptp(angle)) or 1.0)]
+    told = [f"Frame {trial.frame[row]}, θ {value:.1f} deg" for row, value in zip(bundle.rows, angle, strict=True)]
     size = (0.5 * WIDTH, 0.42 * WIDTH)
     end_on = Chart(
         "endon",
@@ -130,8 +131,10 @@ def axis_chart(trial: TrialView) -> Markup:
             region.radius * np.sin(turn[:37]),
             f"band-{name}",
         )
-    for piece, color in zip(np.stack([offset @ direction for direction in across], axis=2), colors, strict=True):
-        end_on.segment(piece[:, 0].tolist(), piece[:, 1].tolist(), "thread", color)
+    for piece, color, note in zip(
+        np.stack([offset @ direction for direction in across], axis=2), colors, told, strict=True
+    ):
+        end_on.segment(piece[:, 0].tolist(), piece[:, 1].tolist(), "thread", color, told=note)
     end_on.points(np.zeros(1), np.zeros(1), "center", radius=3.0)
     side = Chart(
         "side",
@@ -146,8 +149,10 @@ def axis_chart(trial: TrialView) -> Markup:
     along = np.linspace(-bundle.half, bundle.half, 41)
     for name, region in bundle.regions.items():
         side.band(along, -region.reach(along), region.reach(along), f"band-{name}")
-    for piece, color in zip(np.stack([offset @ bundle.direction, offset @ across[1]], axis=2), colors, strict=True):
-        side.segment(piece[:, 0].tolist(), piece[:, 1].tolist(), "thread", color)
+    for piece, color, note in zip(
+        np.stack([offset @ bundle.direction, offset @ across[1]], axis=2), colors, told, strict=True
+    ):
+        side.segment(piece[:, 0].tolist(), piece[:, 1].tolist(), "thread", color, told=note)
     side.segment((-bundle.half, bundle.half), (0.0, 0.0), "joint")
     text = (
         f"The {bundle.name} and the axes of {bundle.rows.size} frames about it, seen along it and from the side; "
@@ -235,7 +240,7 @@ def _color_bar(low: float, high: float, top: float) -> list[str]:
     pieces = 4 * len(COLORS)
     piece = width / pieces
     parts = [
-        f'<rect x="{left + k * piece:.1f}" y="{top:g}" width="{piece + 0.4:.1f}" height="9" '
+        f'<rect class="scale" x="{left + k * piece:.1f}" y="{top:g}" width="{piece + 0.4:.1f}" height="9" '
         f'fill="{color_of(k / (pieces - 1))}"/>'
         for k in range(pieces)
     ]

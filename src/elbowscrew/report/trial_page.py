@@ -41,6 +41,7 @@ from elbowscrew.view.figure_names import FIGURE_ENTRIES, caption_file
 from elbowscrew.view.trial_view import TrialView
 
 _FRAMES_TOLD: Final = 24
+_LONG_TABLE: Final = 8  # rows; one that is longer is folded
 _HARDLY_DEG: Final = 30.0  # a cone wider than this tells of no direction
 _FILES: Final = (
     ("screw.csv", "measured motion and screw axis, frame by frame"),
@@ -110,6 +111,7 @@ def trial_page(trial: TrialView, folder: Path) -> str:
         "laws": " and ".join(dict.fromkeys(law["law"] for law in summary["interpolation"]["phase_laws"])),
         "min_angle_deg": trial.settings.min_angle_deg,
         "axis_sd_deg": trial.settings.axis_sd_deg,
+        "long_table": _LONG_TABLE,
         "hardly_deg": _HARDLY_DEG,
         "theta_chart": theta_chart(trial),
         "axis_chart": axis_chart(trial) if trial.located else None,
@@ -136,7 +138,7 @@ def trial_page(trial: TrialView, folder: Path) -> str:
         "files": [(name, text) for name, text in _FILES if (folder / name).is_file()],
     }
     scene = scene_of(trial) if trial.located else None
-    return render("trial.html", styles=("page.css",), script="trial.js", data=scene, content=content)
+    return render("trial.html", styles=("page.css",), scripts=("page.js", "trial.js"), data=scene, content=content)
 
 
 def space_page(trial: TrialView) -> str:

@@ -1,4 +1,3 @@
-"use strict";
 // The view in space: drawn on a plain canvas, so that it needs neither a library nor a graphics card.
 (() => {
   const scene = JSON.parse(document.getElementById("data").textContent);
@@ -34,10 +33,15 @@
   const path = scene.frame.map((_, k) => moved(k, scene.distal.origin));
   const foot = (p) => add(scene.center, times(dot(less(p, scene.center), scene.direction), scene.direction));
 
+  // Colors of the page, looked up once for each picture; on dark paper the scale of the angle is lighter, as in the charts.
+  let colors = {};
+  const color = (name) => (colors[name] ??= page.color(`--${name}`));
+  const lighter = (hex) => `rgb(${[1, 3, 5].map((k) => Math.min((0.55 * (parseInt(hex.slice(k, k + 2), 16) - 127.5) + 127.5) * 1.5, 255)).join(" ")})`;
   const colorAt = (theta) => {
     const [low, high] = scene.thetaRange;
     const place = Math.min(Math.max((theta - low) / (high - low || 1), 0), 1) * (scene.colors.length - 1);
-    return scene.colors[Math.round(place)];
+    const found = scene.colors[Math.round(place)];
+    return page.isDark() ? lighter(found) : found;
   };
 
   const everything = [...path, ...scene.distal.markers, ...(scene.proximal ? [scene.proximal.origin, ...scene.proximal.markers] : [])]
@@ -95,8 +99,8 @@
     const q = less(p, scene.center);
     return [width / 2 + scale * dot(view.rows[0], q), height / 2 - scale * dot(view.rows[1], q), dot(view.rows[2], q)];
   };
-  const line = (points, color, thick, alpha = 1) => {
-    context.strokeStyle = color;
+  const line = (points, look, thick, alpha = 1) => {
+    context.strokeStyle = look;
     context.lineWidth = thick;
     context.globalAlpha = alpha;
     context.beginPath();
@@ -110,13 +114,13 @@
     context.stroke();
     context.globalAlpha = 1;
   };
-  const disc = (p, radius, color) => {
+  const disc = (p, radius, look) => {
     const [x, y] = screen(p);
-    context.fillStyle = color;
+    context.fillStyle = look;
     context.beginPath();
     context.arc(x, y, radius, 0, 2 * Math.PI);
     context.fill();
-    context.strokeStyle = "#fff";
+    context.strokeStyle = color("paper");
     context.lineWidth = 1;
     context.stroke();
   };
@@ -125,7 +129,7 @@
     ? points.flatMap((p, k) => points.slice(k + 1).flatMap((q) => [p, q, null]))
     : points.flatMap((p) => [origin, p, null]));
   const around = 36;
-  const surface = (about, region, color, alpha) => {
+  const surface = (about, region, look, alpha) => {
     if (!region) return;
     const [angle, radius] = region;
     const steps = 12;
@@ -137,7 +141,7 @@
         return screen(add(add(about.center, times(s, about.direction)), out));
       });
     };
-    context.fillStyle = color;
+    context.fillStyle = look;
     context.globalAlpha = alpha;
     let before = null;
     for (let j = 0; j <= steps; j += 1) {
@@ -161,12 +165,12 @@
   const ends = (axis, share) => [-1, 1].map((way) => add(axis.center, times(way * share * axis.half, axis.direction)));
   // The second axis goes with the distal body.
   const ownAxes = (k) => scene.joint.axes.flatMap((axis, j) => {
-    const color = ["#00507d", "#a34800"][j];
-    if (!axis.moves) return [{ ...axis, color }];
+    const look = color(["proximal-text", "distal-text"][j]);
+    if (!axis.moves) return [{ ...axis, look }];
     const at = moved(k, axis.center);
     if (!at) return [];
     const led = (v) => less(moved(k, add(axis.center, v)), at);
-    return [{ ...axis, color, center: at, direction: led(axis.direction), across: axis.across.map(led) }];
+    return [{ ...axis, look, center: at, direction: led(axis.direction), across: axis.across.map(led) }];
   });
   const center = () => {
     if (!scene.joint.center) return;
@@ -175,7 +179,7 @@
       const seen = scene.joint.semiAxes.map((a) => [scale * dot(view.rows[0], a), scale * dot(view.rows[1], a)]);
       const square = [0, 1].map((i) => [0, 1].map((j) => seen.reduce((sum, a) => sum + a[i] * a[j], 0)));
       const [x, y] = screen(scene.joint.center);
-      context.fillStyle = "#d55e00";
+      context.fillStyle = color("distal");
       context.globalAlpha = 0.25;
       context.beginPath();
       for (let n = 0; n < around; n += 1) {
@@ -187,18 +191,18 @@
       context.fill();
       context.globalAlpha = 1;
     }
-    disc(scene.joint.center, 4.5, "#000");
-    label(add(scene.joint.center, times(16 / scale, view.rows[1])), "center", "#000");
+    disc(scene.joint.center, 4.5, color("measured"));
+    label(add(scene.joint.center, times(16 / scale, view.rows[1])), "center", color("measured"));
   };
-  const label = (p, text, color) => {
+  const label = (p, text, look) => {
     const [x, y] = screen(p);
     context.font = "600 13px system-ui, sans-serif";
     context.textAlign = "center";
     context.textBaseline = "middle";
     context.lineWidth = 3;
-    context.strokeStyle = "#fff";
+    context.strokeStyle = color("paper");
     context.strokeText(text, x, y);
-    context.fillStyle = color;
+    context.fillStyle = look;
     context.fillText(text, x, y);
   };
   const triad = () => {
@@ -211,13 +215,13 @@
     ["x", "y", "z"].forEach((name, k) => {
       const right = view.rows[0][k];
       const up = view.rows[1][k];
-      context.strokeStyle = "#57606a";
+      context.strokeStyle = color("soft");
       context.lineWidth = 1.5;
       context.beginPath();
       context.moveTo(...origin);
       context.lineTo(origin[0] + size * right, origin[1] - size * up);
       context.stroke();
-      context.fillStyle = "#1b1f24";
+      context.fillStyle = color("ink");
       context.fillText(name, origin[0] + (size + 9) * right, origin[1] - (size + 9) * up);
     });
   };
@@ -226,7 +230,7 @@
     const size = 10 ** Math.floor(Math.log10(wanted));
     const length = [5, 2, 1].map((k) => k * size).find((value) => value <= wanted);
     const [x, y] = [width - 24, height - 26];
-    context.strokeStyle = "#1b1f24";
+    context.strokeStyle = color("ink");
     context.lineWidth = 2;
     context.beginPath();
     context.moveTo(x, y);
@@ -234,11 +238,12 @@
     context.stroke();
     context.font = "12px system-ui, sans-serif";
     context.textAlign = "right";
-    context.fillStyle = "#1b1f24";
+    context.fillStyle = color("ink");
     context.fillText(`${length} mm`, x, y - 10);
   };
 
   const draw = () => {
+    colors = {};
     const ratio = window.devicePixelRatio || 1;
     width = canvas.clientWidth || 1;
     height = canvas.clientHeight || 1;
@@ -253,41 +258,41 @@
     scale = (0.46 * Math.min(width, height) * view.zoom) / reach;
     const k = view.frame;
     const here = path[k];
-    if (scene.proximal) line([scene.proximal.origin, foot(scene.proximal.origin)], "#9aa4ae", 9, 0.3);
-    if (here) line([here, foot(here)], "#9aa4ae", 9, 0.3);
-    if (shown("cone")) surface(scene, scene.spread, "#8c959e", 0.1);
+    if (scene.proximal) line([scene.proximal.origin, foot(scene.proximal.origin)], color("limb"), 9, 0.3);
+    if (here) line([here, foot(here)], color("limb"), 9, 0.3);
+    if (shown("cone")) surface(scene, scene.spread, color("region"), 0.1);
     if (shown("axes")) {
       scene.segments.forEach((s, j) => line([s.slice(0, 3), s.slice(3)], colorAt(scene.segmentTheta[j]), 1, 0.7));
     }
-    if (shown("cone")) surface(scene, scene.confidence, "#d55e00", 0.25);
+    if (shown("cone")) surface(scene, scene.confidence, color("distal"), 0.25);
     const own = ownAxes(k);
     // Where the joint has axes of its own, or a center, the mean of the frames' axes is none of them.
-    if (!own.length && !scene.joint.center) line(ends(scene, 1.15), "#000", 2.4);
+    if (!own.length && !scene.joint.center) line(ends(scene, 1.15), color("measured"), 2.4);
     own.forEach((axis) => {
-      if (shown("cone")) surface(axis, axis.known, axis.color, 0.25);
-      line(ends(axis, 1), axis.color, 2.4);
-      label(ends(axis, 1.06)[1], axis.name, axis.color);
+      if (shown("cone")) surface(axis, axis.known, axis.look, 0.25);
+      line(ends(axis, 1), axis.look, 2.4);
+      label(ends(axis, 1.06)[1], axis.name, axis.look);
     });
-    if (shown("path")) line(path, "#d55e00", 2);
+    if (shown("path")) line(path, color("distal"), 2);
     if (shown("moment") && scene.axis[k] && scene.point[k]) {
       const n = scene.axis[k];
       const near = add(scene.point[k], times(dot(less(scene.center, scene.point[k]), n), n));
       const ends = [less(near, times(1.1 * scene.half, n)), add(near, times(1.1 * scene.half, n))];
-      line(ends, "#fff", 6, 0.8);
+      line(ends, color("paper"), 6, 0.8);
       line(ends, colorAt(scene.theta[k]), 3.5);
     }
     if (scene.proximal) {
-      line(joined(scene.proximal.markers, scene.proximal.origin), "#0072b2", 1, 0.5);
-      scene.proximal.markers.forEach((p) => disc(p, 4, "#0072b2"));
-      disc(scene.proximal.origin, 5.5, "#0072b2");
-      label(add(scene.proximal.origin, times(18 / scale, view.rows[1])), scene.proximal.word, "#00507d");
+      line(joined(scene.proximal.markers, scene.proximal.origin), color("proximal"), 1, 0.5);
+      scene.proximal.markers.forEach((p) => disc(p, 4, color("proximal")));
+      disc(scene.proximal.origin, 5.5, color("proximal"));
+      label(add(scene.proximal.origin, times(18 / scale, view.rows[1])), scene.proximal.word, color("proximal-text"));
     }
     if (here) {
       const markers = scene.distal.markers.map((p) => moved(k, p));
-      line(joined(markers, here), "#d55e00", 1, 0.6);
-      markers.forEach((p) => disc(p, 4, "#d55e00"));
-      disc(here, 5.5, "#d55e00");
-      label(add(here, times(18 / scale, view.rows[1])), scene.distal.word, "#a34800");
+      line(joined(markers, here), color("distal"), 1, 0.6);
+      markers.forEach((p) => disc(p, 4, color("distal")));
+      disc(here, 5.5, color("distal"));
+      label(add(here, times(18 / scale, view.rows[1])), scene.distal.word, color("distal-text"));
     }
     center();
     triad();
@@ -369,6 +374,9 @@
     event.preventDefault();
   });
   new ResizeObserver(redraw).observe(canvas);
+  page.dark.addEventListener("change", redraw);
+  window.addEventListener("beforeprint", draw);
+  window.addEventListener("afterprint", redraw);
   look("oblique");
   // Begin where the angle is largest: there the motion shows.
   goTo(scene.theta.reduce((best, theta, k) => (theta !== null && theta > (scene.theta[best] ?? -Infinity) ? k : best), 0));
