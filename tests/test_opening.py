@@ -13,8 +13,9 @@ import pytest
 from elbowscrew.cli import main
 from elbowscrew.errors import OutputError
 from elbowscrew.opening import create, open_bytes, open_own, open_text, read_text, read_toml
+from elbowscrew.results.result_files import BATCH_MARK
 from elbowscrew.results.staging import write_files
-from elbowscrew.study.folder import MARK, at_work, batch_folder
+from elbowscrew.study.folder import at_work, batch_folder
 
 posix = pytest.mark.skipif(sys.platform == "win32", reason="links, pipes and sockets of POSIX")
 PRECIOUS = b"years of work\n"
@@ -105,7 +106,7 @@ def test_nor_for_one_in_a_result(
 
 @posix
 @pytest.mark.parametrize("link", [Path.symlink_to, Path.hardlink_to])
-@pytest.mark.parametrize("name", [MARK, ".elbowscrew-work.lock"])
+@pytest.mark.parametrize("name", [BATCH_MARK, ".elbowscrew-work.lock"])
 def test_a_link_in_the_output_of_a_batch_is_not_followed(
     tmp_path: Path, precious: Path, link: Callable[[Path, Path], None], name: str
 ) -> None:
@@ -117,7 +118,7 @@ def test_a_link_in_the_output_of_a_batch_is_not_followed(
     with pytest.raises(OutputError, match="link to another file"), batch_folder(out):
         pass
     assert precious.read_bytes() == PRECIOUS
-    if name != MARK:
+    if name != BATCH_MARK:
         with pytest.raises(OSError, match="link to another file"), at_work(out):
             pass
 

@@ -31,7 +31,7 @@ from elbowscrew.report.methods import methods_of
 from elbowscrew.report.pages import json_for_script, number
 from elbowscrew.report.scene import MOST_FRAMES, scene_of
 from elbowscrew.report.trial_page import trial_page
-from elbowscrew.results.result_files import RESULT_FILES
+from elbowscrew.results.result_files import BATCH_MARK, RESULT_FILES
 from elbowscrew.results.trial_views import view_of, view_of_result
 from elbowscrew.view.decimation import drawn_rows
 from elbowscrew.view.scene import bodies_in_space, frames_in_space
@@ -131,6 +131,15 @@ def test_the_page_says_what_the_summary_says(page: str, result: Path) -> None:
         assert warning["message"] in text
     for option in summary["settings"]:
         assert option in text
+
+
+def test_a_page_links_to_the_study_whose_batch_made_it(result: Path, tmp_path: Path) -> None:
+    view = view_of_result(result)
+    inside = tmp_path / "study" / "subject 1" / "trial"
+    inside.mkdir(parents=True)
+    assert "all trials of the study" not in trial_page(view, inside)
+    (tmp_path / "study" / BATCH_MARK).touch()
+    assert '<a href="../../index.html">all trials of the study</a>' in trial_page(view, inside)
 
 
 def test_the_contents_lead_to_every_section_and_tables_have_captions(page: str) -> None:

@@ -14,7 +14,8 @@ import pytest
 
 from elbowscrew.disk.temporary import replaced_of
 from elbowscrew.errors import OutputError
-from elbowscrew.study.folder import MARK, at_work, batch_folder
+from elbowscrew.results.result_files import BATCH_MARK
+from elbowscrew.study.folder import at_work, batch_folder
 
 HOLDER = """
 import sys, time
@@ -52,7 +53,7 @@ def test_a_second_batch_is_told_of_the_first_and_a_dead_one_holds_nothing(tmp_pa
     finally:
         end(first)
     with batch_folder(out):
-        assert f"process {os.getpid()}" in (out / MARK).read_text()
+        assert f"process {os.getpid()}" in (out / BATCH_MARK).read_text()
     with batch_folder(out):
         pass
 

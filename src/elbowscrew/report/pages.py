@@ -23,6 +23,8 @@ from elbowscrew.results.trial_views import UNREADABLE
 MARK: Final = 'name="generator" content="elbowscrew'
 """What a page of ours has at its beginning, so that it may be replaced."""
 
+INDEX: Final = "index.html"
+"""The page over a study."""
 UNSHOWABLE: Final = (*UNREADABLE, jinja2.UndefinedError)
 _HERE: Final = Path(__file__).parent
 _NONE: Final = "–"

@@ -16,7 +16,7 @@ from elbowscrew.group.outliers import FALSE_ALARMS, LEAST, Outliers
 from elbowscrew.report.charts import path_of
 from elbowscrew.report.distributions import strip_chart
 from elbowscrew.report.measures import COLUMNS, MEASURES
-from elbowscrew.report.pages import MARK, render
+from elbowscrew.report.pages import INDEX, MARK, render
 from elbowscrew.report.study import Failure, Study, StudyTrial, read_study
 from elbowscrew.report.study_curves import curve_charts, curves_of, left_out_text
 from elbowscrew.report.study_groups import Group, axis_rows, groups_of, number_rows, outlying, values_of
@@ -24,7 +24,6 @@ from elbowscrew.report.study_tables import STUDY_TABLES, TABLE_MARK, study_table
 from elbowscrew.results.staging import write_files
 from elbowscrew.view.decimation import drawn_rows
 
-INDEX: Final = "index.html"
 _THUMB: Final = (132.0, 34.0)
 _THUMB_BUCKETS: Final = 40
 _MOST_STRIPS: Final = 24

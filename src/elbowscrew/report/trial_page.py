@@ -19,7 +19,7 @@ from elbowscrew.report.checklist import MISSING, checklist_of
 from elbowscrew.report.joint_words import joint_sentences
 from elbowscrew.report.methods import citations_of, methods_of
 from elbowscrew.report.methods_file import METHODS
-from elbowscrew.report.pages import MARK, UNSHOWABLE, render, unshowable
+from elbowscrew.report.pages import INDEX, MARK, UNSHOWABLE, render, unshowable
 from elbowscrew.report.scene import WIDEST, scene_of
 from elbowscrew.report.trial_charts import (
     axis_chart,
@@ -31,7 +31,7 @@ from elbowscrew.report.trial_charts import (
 )
 from elbowscrew.results.joint_summary import preferred_fit
 from elbowscrew.results.proof import proof_of
-from elbowscrew.results.result_files import SUMS
+from elbowscrew.results.result_files import BATCH_MARK, SUMS
 from elbowscrew.results.staging import settle, write_files
 from elbowscrew.results.summary import settings_summary
 from elbowscrew.results.summary_reading import SUMMARY
@@ -40,6 +40,8 @@ from elbowscrew.settings import SETTINGS, Settings
 from elbowscrew.view.figure_names import FIGURE_ENTRIES, caption_file
 from elbowscrew.view.trial_view import TrialView
 
+_SCRIPTS: Final = ("page.js", "trial.js")
+_DEEPEST: Final = 8  # folders between a result and that of its study
 _FRAMES_TOLD: Final = 24
 _LONG_TABLE: Final = 8  # rows; one that is longer is folded
 _HARDLY_DEG: Final = 30.0  # a cone wider than this tells of no direction
@@ -135,16 +137,24 @@ def trial_page(trial: TrialView, folder: Path) -> str:
             for name in FIGURE_ENTRIES
             if (folder / "figures" / caption_file(name)).is_file()
         ],
+        "study": _study_page(folder),
         "files": [(name, text) for name, text in _FILES if (folder / name).is_file()],
     }
     scene = scene_of(trial) if trial.located else None
-    return render("trial.html", styles=("page.css",), scripts=("page.js", "trial.js"), data=scene, content=content)
+    return render("trial.html", styles=("page.css",), scripts=_SCRIPTS, data=scene, content=content)
+
+
+def _study_page(folder: Path) -> str | None:
+    """Where the page of the study lies whose batch made a result: the batch's mark is there before its page."""
+    above = folder.absolute().parents[:_DEEPEST]
+    found = next((depth for depth, parent in enumerate(above, 1) if (parent / BATCH_MARK).is_file()), None)
+    return None if found is None else "../" * found + INDEX
 
 
 def space_page(trial: TrialView) -> str:
     """Make a page of the view in space alone, of a trial that has places."""
     return render(
-        "space.html", styles=("page.css",), script="trial.js", data=scene_of(trial), content=_about_space(trial)
+        "space.html", styles=("page.css",), scripts=_SCRIPTS, data=scene_of(trial), content=_about_space(trial)
     )
 
 

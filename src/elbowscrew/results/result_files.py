@@ -18,6 +18,9 @@ from elbowscrew.view.figure_names import FIGURE_ENTRIES, caption_file
 SUMS: Final = "SHA256SUMS"
 """The file that has the digests of all others."""
 
+BATCH_MARK: Final = ".elbowscrew-batch.lock"
+"""Its presence says that a folder is the output of a batch, and the system's lock on it that one is at work there."""
+
 
 def _figure_files(name: str) -> tuple[str, ...]:
     """A figure in all formats, and its caption."""

@@ -13,10 +13,7 @@ from typing import IO, Final
 from elbowscrew.disk.folders import make_parents, sweep
 from elbowscrew.errors import OutputError
 from elbowscrew.opening import open_own
-from elbowscrew.results.result_files import is_stray
-
-MARK: Final = ".elbowscrew-batch.lock"
-"""Its presence says that a folder is the output of a batch, and the system's lock on it that one is at work there."""
+from elbowscrew.results.result_files import BATCH_MARK, is_stray
 
 _WORK: Final = ".elbowscrew-work.lock"
 _LONGEST_WAIT_S: Final = 60.0
@@ -36,8 +33,8 @@ def batch_folder(folder: Path) -> Iterator[None]:
     with ExitStack() as held:
         try:
             _check_folder(folder)
-            make_parents(folder / MARK)
-            _hold(folder, held.enter_context(open_own(folder / MARK)))
+            make_parents(folder / BATCH_MARK)
+            _hold(folder, held.enter_context(open_own(folder / BATCH_MARK)))
             _wait_for_workers(folder)
             sweep(folder, held=True)
         except OSError as error:
@@ -102,7 +99,7 @@ def _check_folder(folder: Path) -> None:
     if folder.resolve() == Path.cwd():
         msg = f"{folder}: is the current folder; give --output a folder of its own"
         raise OutputError(msg)
-    if (folder / MARK).exists():
+    if (folder / BATCH_MARK).exists():
         return
     with os.scandir(folder) as entries:  # it may have a million
         stranger = next((one.name for one in entries if not is_stray(one.name)), None)

@@ -15,8 +15,7 @@ from elbowscrew.errors import UsageError, files_beside
 from elbowscrew.reading.plugged import reader_of
 from elbowscrew.reading.registry import FORMATS, TABLE_ENDINGS, all_endings
 from elbowscrew.reading.source import END_OF_STORAGE_HEADER, first_bytes
-from elbowscrew.results.result_files import is_summary
-from elbowscrew.study.folder import MARK
+from elbowscrew.results.result_files import BATCH_MARK, is_summary
 from elbowscrew.study.manifest import is_manifest, read_manifest
 from elbowscrew.study.trial import Trial
 
@@ -207,7 +206,7 @@ class _Search:
         """Whether a folder is a result, or the output of a batch."""
         if self.exclude is not None and _identity(folder) == self.exclude:
             return True
-        return (folder / MARK).exists() or is_summary(folder / "summary.json")
+        return (folder / BATCH_MARK).exists() or is_summary(folder / "summary.json")
 
     def _candidate(self, path: Path, label: str, *, by_file: bool = True) -> None:
         reason = _other_table(path, any_table=self.any_table)
