@@ -6,7 +6,8 @@ import math
 from collections.abc import Callable
 from pathlib import Path
 
-from elbowscrew.choices import FRAMES, STATED_JOINTS
+from elbowscrew import plug_ins
+from elbowscrew.choices import FRAMES, LAW_NAMES, STATED_JOINTS
 from elbowscrew.errors import asked_back, shown
 
 
@@ -28,6 +29,15 @@ def joint_type(value: object) -> object:
         msg = f"expected auto, {', '.join(STATED_JOINTS)}, found {shown(value)}{mean}"
         raise ValueError(msg)
     return name
+
+
+def law(value: object) -> object:
+    """Take our laws' names, and those of plug-ins, which are looked for where a name is none of ours."""
+    if value is None or value in LAW_NAMES or (isinstance(value, str) and value in plug_ins.names(plug_ins.LAWS)):
+        return value
+    known = (*LAW_NAMES, *plug_ins.names(plug_ins.LAWS))
+    msg = f"expected {', '.join(known)}, found {shown(value)}{asked_back(value, known)}"
+    raise ValueError(msg)
 
 
 def cutoff(value: object) -> object:

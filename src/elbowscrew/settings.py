@@ -17,6 +17,7 @@ from pydantic import BaseModel, field_validator, model_validator
 from elbowscrew import setting_values as taken
 from elbowscrew.choices import (
     FRAMES,
+    LAW_NAMES,
     STATED_JOINTS,
     AngleUnit,
     BlendName,
@@ -161,9 +162,10 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
         shown="dlb, with a tolerance sclerp",
     )
     blend: BlendName = setting("piecewise", "Phase by phase, or all poses at once.", MODEL)
-    law: LawName | None = setting(
-        None, "Law of motion in each phase.", MODEL, shown="cycloidal, with a tolerance linear"
-    )
+    law: LawName | str | None = setting(
+        None, f"Law of motion in each phase: {', '.join(LAW_NAMES)}, or one of a plug-in.", MODEL,
+        metavar="LAW", shown="cycloidal, with a tolerance linear",
+    )  # fmt: skip
     law_peak: float | None = setting(
         None, "Time of the law's highest velocity, as a share of the phase.", MODEL,
         metavar="SHARE", shown="0.5", ge=0.05, le=0.95,
@@ -251,7 +253,7 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
         return self.method or ("dlb" if self.tolerance_mm is None else "sclerp")
 
     @property
-    def model_law(self) -> LawName:
+    def model_law(self) -> str:
         """The law of motion, the default resolved."""
         return self.law or ("cycloidal" if self.tolerance_mm is None else "linear")
 
@@ -268,6 +270,7 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
             raise ValueError(msg)
         return named
 
+    _law = field_validator("law", mode="before")(taken.law)
     _frame = field_validator("express_in", mode="before")(taken.frame)
     _joint_type = field_validator("joint_type", mode="before")(taken.joint_type)
     _cutoff = field_validator("lowpass_hz", mode="before")(taken.cutoff)

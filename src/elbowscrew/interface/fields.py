@@ -69,7 +69,7 @@ class SettingsFields(TypedDict, total=False):
     tolerance_mm: float | str | None
     method: MethodName | None
     blend: BlendName
-    law: LawName | None
+    law: LawName | str | None
     law_peak: float | None
     knots: KnotName
     radius_mm: float | None

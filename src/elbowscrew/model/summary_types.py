@@ -315,7 +315,7 @@ class ModelSummary(TypedDict):
 
     method: MethodName
     blend: BlendName
-    law: LawName
+    law: LawName | str
     knots: KnotName
     keyframes: list[int]
     """Frames of the keyframes."""

@@ -5,18 +5,16 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cache
-from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
 from typing import Final
 
-from elbowscrew.errors import ElbowscrewError, RecordingError, UsageError
+from elbowscrew import plug_ins
+from elbowscrew.errors import ElbowscrewError, RecordingError
 from elbowscrew.model import Recording, Source
 from elbowscrew.opening import sha256_of
 from elbowscrew.reading.options import ReadOptions
 from elbowscrew.reading.source import first_bytes
 
-GROUP: Final = "elbowscrew.readers"
-"""The group of entry points, each of which names a `Reader`."""
 _HEAD_BYTES: Final = 4096
 
 
@@ -56,21 +54,7 @@ def readers() -> tuple[Reader, ...]:
     UsageError
         If one cannot be loaded, or is none.
     """
-    return tuple(_loaded(one) for one in sorted(entry_points(group=GROUP), key=lambda one: one.name))
-
-
-def _loaded(point: EntryPoint) -> Reader:
-    owner = "an unknown distribution" if point.dist is None else f"the distribution {point.dist.name!r}"
-    told = f"the reader {point.name!r} of {owner} ({point.value})"
-    try:
-        found: object = point.load()
-    except Exception as error:  # whatever a module may do when it is imported
-        msg = f"{told} cannot be loaded: {_brief(error)}; mend or uninstall it"
-        raise UsageError(msg) from error
-    if not isinstance(found, Reader):
-        msg = f"{told}: expected an elbowscrew.Reader, found {type(found).__name__}; mend or uninstall it"
-        raise UsageError(msg)
-    return found
+    return tuple(plug_ins.loaded(plug_ins.READERS, name, Reader) for name in plug_ins.names(plug_ins.READERS))
 
 
 def reader_of(file: Path) -> Reader | None:
@@ -111,8 +95,4 @@ def read_by(reader: Reader, file: Path, options: ReadOptions) -> Recording:
 
 
 def _failed(file: Path, reader: Reader, error: Exception) -> RecordingError:
-    return RecordingError(f"{file}: the reader {reader.name!r}, a plug-in, failed: {_brief(error)}")
-
-
-def _brief(error: Exception) -> str:
-    return " ".join(f"{type(error).__name__} {error}".split())
+    return RecordingError(f"{file}: the reader {reader.name!r}, a plug-in, failed: {plug_ins.brief(error)}")

@@ -18,7 +18,7 @@ from elbowscrew.geometry.quaternion import norm
 from elbowscrew.model import KeyframeSet, PhaseLaw
 from elbowscrew.model.joint_coordinates import MOVING_JOINTS, JointCoordinates
 from elbowscrew.motion.interpolation.keyframes import phase_time_share
-from elbowscrew.motion.interpolation.laws import LAWS, named_law
+from elbowscrew.motion.interpolation.laws import LAWS, is_closed, named_law
 from elbowscrew.opening import read_text
 from elbowscrew.quantities import METERS, Quantity
 from elbowscrew.tables import KEYFRAME_JOINT_COLUMNS
@@ -169,7 +169,7 @@ def _laws(table: _Table, first: NDArray[np.intp], law: str | None, law_peak: flo
             msg = f"{place}: the law is the recording's own, which the file does not hold; give --law {', '.join(LAWS)}"
             raise SettingError(msg)
         peak = table.number(peaks[k], table.lines[k], "law_peak") if peaks[k] else None
-        if names[k] not in LAWS or not (peak is None or 0.0 < peak < 1.0):
+        if not is_closed(names[k]) or not (peak is None or 0.0 < peak < 1.0):
             table.refuse(
                 table.lines[k], f"expected a law of {', '.join(LAWS)}, and its peak from 0 to 1, found {names[k]!r}"
             )

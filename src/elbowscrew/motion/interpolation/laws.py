@@ -9,10 +9,12 @@ import numpy as np
 from numpy.polynomial import Polynomial
 from numpy.typing import ArrayLike
 
+from elbowscrew import plug_ins
 from elbowscrew.choices import CLOSED_LAWS, functions_named
-from elbowscrew.errors import SettingError
+from elbowscrew.errors import SettingError, UsageError
 from elbowscrew.geometry.arrays import Float
 
+_ENDS: Final = 1e-9
 _Function = Callable[[Float], Float]
 
 
@@ -194,7 +196,37 @@ def named_law(name: str, peak: float | None = None) -> Law:
     SettingError
         If there is no such law in closed form.
     """
-    if name not in LAWS:
+    if not is_closed(name):
         msg = f"--law {name}: not a law in closed form; expected one of {', '.join(LAWS)}"
         raise SettingError(msg)
-    return LAWS[name] if peak is None else asymmetric(LAWS[name], peak)
+    law = LAWS[name] if name in LAWS else _plugged(name)
+    return law if peak is None else asymmetric(law, peak)
+
+
+def is_closed(name: str) -> bool:
+    """Whether a law is one in closed form: ours, or a plug-in's."""
+    return name in LAWS or name in plug_ins.names(plug_ins.LAWS)
+
+
+def _plugged(name: str) -> Law:
+    """Load a law of another distribution, and check that it is what a law must be.
+
+    Raises
+    ------
+    UsageError
+        If it does not go from 0 to 1, or is not symmetric.
+    """
+    law = plug_ins.loaded(plug_ins.LAWS, name, Law)
+    tau = np.linspace(0.0, 1.0, 101)
+    try:
+        t = np.asarray(law(tau), dtype=np.float64)
+        derivatives = [np.asarray(function(tau), dtype=np.float64) for function in law[1:]]
+    except Exception as error:  # it is not ours
+        msg = f"{plug_ins.told(plug_ins.LAWS, name)} failed: {plug_ins.brief(error)}"
+        raise UsageError(msg) from error
+    fits = all(part.shape == tau.shape and np.isfinite(part).all() for part in (t, *derivatives))
+    if not (fits and abs(t[0]) < _ENDS and np.abs(t + t[::-1] - 1.0).max() < _ENDS):
+        whose = plug_ins.told(plug_ins.LAWS, name)
+        msg = f"{whose}: expected t from 0 to 1, symmetric about tau = 1/2, and its derivatives"
+        raise UsageError(msg)
+    return law
