@@ -141,14 +141,14 @@ def test_the_inversion_among_given_keyframes_is_the_largest_angle() -> None:
 @pytest.mark.parametrize(
     ("settings", "says"),
     [
-        ({"reference": 101}, "--reference 101: no such frame; the file has frames 0 to 100"),
-        ({"inversion": -1}, "--inversion -1: no such frame"),
-        ({"keyframes": (0, 40, 400)}, "--keyframes 400: no such frame"),
+        ({"reference": 101}, "reference=101: no such frame; the file has frames 0 to 100"),
+        ({"inversion": -1}, "inversion=-1: no such frame"),
+        ({"keyframes": (0, 40, 400)}, "keyframes=400: no such frame"),
         ({"inversion": 0}, "not between"),
         ({"inversion": 100}, "not between"),
         ({"inversion": 70}, "tracking lost"),
         ({"keyframes": (0, 70, 100)}, "tracking lost"),
-        ({"reference": 70}, "--reference 70: .* the first frame that has both bodies is 0"),
+        ({"reference": 70}, "reference=70: .* the first frame that has both bodies is 0"),
         ({"reference": 99, "reference_window": 5}, "only 2 measured"),
     ],
 )

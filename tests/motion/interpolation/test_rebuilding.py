@@ -113,7 +113,7 @@ def jointed(**changed: str | tuple[str, ...]) -> str:
             GOOD.format(more=",law,law_peak", a=",cycloidal,1.5", b=",cycloidal,1.5", c=",cycloidal,1.5"),
             "and its peak from 0 to 1, found 'cycloidal'",
         ),
-        (GOOD.format(more=",law", a=",empirical", b=",empirical", c=",empirical"), "give --law"),
+        (GOOD.format(more=",law", a=",empirical", b=",empirical", c=",empirical"), "give law cycloidal"),
         (GOOD.format(more=",method", a=",dlb", b=",dib", c=",dlb"), "method: expected one of"),
         (GOOD.format(more=",law_start_s,law_end_s", a=",1,0", b=",1,0", c=",1,0"), ":2: law_start_s and law_end_s"),
         (GOOD.format(more=",e0", a=",1", b=",1", c=",1"), "stands twice"),
