@@ -348,7 +348,7 @@ def texts_with_numbers(told: Told) -> Iterator[tuple[str, list[str]]]:
         yield r"In the .*Axis 1 is fixed in the .*, axis 2 goes with the ", ["1", "2", "95", "95", "57"]
     else:
         black = "the center" if joint["ball"] is not None else joint_axis
-        yield rf"In the .*Black: {black}", ["95", "95", "57"]
+        yield rf"In the .*Black \(white in the dark\): {black}", ["95", "95", "57"]
     yield r"95 % of the frames’ axes", ["95", "95"] if motion["joint_axis"] else ["95"]
     yield rf"The {joint_axis} and the axes of", [str(min(axis_frames, 60))]
     yield rf"Axes of the frames about the {joint_axis}", [general(settings["min-angle"])]

@@ -16,6 +16,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from drawn_trials import drawn_trial
+from PIL import Image
 
 from elbowscrew.report.trial_page import trial_page
 
@@ -348,6 +349,24 @@ def test_a_chart_can_be_taken_along_as_picture_and_as_numbers(browser: Any, resu
     assert "var(" not in style
     words = [part.text for part in picture.iter() if part.tag.endswith("text")]
     assert {"Time (s)", "measured", "keyframes"} <= set(words)
+
+
+def test_the_view_can_be_taken_along_as_a_still(browser: Any, result: Path) -> None:
+    page = browser.new_page(color_scheme="dark", viewport={"width": 1280, "height": 900})
+    page.goto((result / "report.html").as_uri())
+    page.locator("#scrub").press("Home")
+    size = page.locator("#space").bounding_box()
+    with page.expect_download() as waited:
+        page.get_by_role("button", name="Download the view as PNG").click()
+    assert waited.value.suggested_filename == "frame-0.png"
+    with Image.open(waited.value.path()) as still:
+        assert still.size == pytest.approx((3 * size["width"], 3 * size["height"]), abs=3)
+        levels = np.asarray(still.convert("RGB"))
+    assert (levels[0, 0] == 255).all()  # paper, from a dark page
+    assert (levels.min(axis=2) < 120).sum() > 1000
+    viewer(page)
+    assert mean_ink(page) > 0.35  # the page is as dark as before
+    page.close()
 
 
 @pytest.mark.parametrize("width", [360, 1280])

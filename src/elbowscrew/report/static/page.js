@@ -21,9 +21,15 @@ const page = (() => {
     folded.forEach((part) => { part.open = false; });
   });
 
-  const save = (name, type, text) => {
+  const onPaper = (draw) => {
+    state.printing = true;
+    draw();
+    state.printing = false;
+  };
+
+  const save = (name, blob) => {
     const link = document.createElement("a");
-    link.href = URL.createObjectURL(new Blob([text], { type }));
+    link.href = URL.createObjectURL(blob);
     link.download = name;
     link.click();
     window.setTimeout(() => URL.revokeObjectURL(link.href), 1000);
@@ -105,7 +111,7 @@ const page = (() => {
       button.textContent = kind;
       button.setAttribute("aria-label", `Download the chart ${title} as ${kind}`);
       const name = `${title.toLowerCase().replace(/[^a-z0-9]+/g, "-")}.${kind.toLowerCase()}`;
-      button.addEventListener("click", () => save(name, type, text()));
+      button.addEventListener("click", () => save(name, new Blob([text()], { type })));
       tools.append(button);
     };
     offer("SVG", "image/svg+xml", () => standalone(svg));
@@ -134,5 +140,5 @@ const page = (() => {
     });
   });
 
-  return { color, isDark, dark };
+  return { color, isDark, dark, onPaper, save };
 })();

@@ -242,9 +242,8 @@
     context.fillText(`${length} mm`, x, y - 10);
   };
 
-  const draw = () => {
+  const draw = (ratio = window.devicePixelRatio || 1) => {
     colors = {};
-    const ratio = window.devicePixelRatio || 1;
     width = canvas.clientWidth || 1;
     height = canvas.clientHeight || 1;
     if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio)) {
@@ -344,6 +343,20 @@
   };
 
   play.addEventListener("click", () => setPlaying(!view.playing));
+  // A still as it is seen, at a printer's resolution and in the colors of paper.
+  document.getElementById("still").addEventListener("click", () => {
+    const still = document.createElement("canvas");
+    page.onPaper(() => {
+      draw(Math.max(3, window.devicePixelRatio));
+      [still.width, still.height] = [canvas.width, canvas.height];
+      const ink = still.getContext("2d");
+      ink.fillStyle = color("paper");
+      ink.fillRect(0, 0, still.width, still.height);
+      ink.drawImage(canvas, 0, 0);
+    });
+    draw();
+    still.toBlob((blob) => page.save(`frame-${scene.frame[view.frame]}.png`, blob), "image/png");
+  });
   scrub.max = String(last);
   scrub.addEventListener("input", () => { setPlaying(false); goTo(Number(scrub.value)); });
   speed.addEventListener("change", () => { started = performance.now(); from = scene.time[view.frame]; });
@@ -375,7 +388,7 @@
   });
   new ResizeObserver(redraw).observe(canvas);
   page.dark.addEventListener("change", redraw);
-  window.addEventListener("beforeprint", draw);
+  window.addEventListener("beforeprint", () => draw());
   window.addEventListener("afterprint", redraw);
   look("oblique");
   // Begin where the angle is largest: there the motion shows.
