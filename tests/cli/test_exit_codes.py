@@ -336,3 +336,7 @@ def test_landmarks_of_markers_that_are_not_there_are_told_beside_those_that_are(
     assert_one_line(err)
     assert "EL: there is no marker 'M5'" in err
     assert all(f"Left {body}:Marker{k}" in err for body in ("Upper Arm", "Forearm") for k in (1, 2, 3, 4))
+    code, _, err = run(capsys, "analyze", samples / "elbow_row_tagged.csv", "--landmarks", toml, "-o", tmp_path / "out")
+    assert code == 4
+    assert_one_line(err)
+    assert "give landmarks as coordinates" in err

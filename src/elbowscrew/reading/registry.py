@@ -259,7 +259,8 @@ def _check_options(path: Path, name: str, options: ReadOptions, accepted: frozen
     unknown = sorted(given - accepted)
     if unknown:
         told = ", ".join(key.removesuffix("_hz") for key in unknown)
-        msg = f"{path}: {told}: a file of this format ({name}) states or has no such thing; leave it out"
+        landmarks = ", and give landmarks as coordinates" if "markers" in unknown else ""
+        msg = f"{path}: {told}: a file of this format ({name}) states or has no such thing; leave it out{landmarks}"
         raise SettingError(msg)
 
 
