@@ -70,6 +70,8 @@ FigureName = Literal[
 ]
 """Figures of a trial; their functions stand in `elbowscrew.view.figure_names`."""
 FigureChoice = Literal[FigureName, "all"]
+
+OverlayBy = Literal["condition", "subject"]
 """Figures of a trial, and all that it has anything for."""
 ExportName = Literal["parquet", "mat", "sto"]
 

@@ -6,15 +6,17 @@ Each figure is drawn as narrow as it may be and at two other widths, of trials o
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 from drawn_trials import KINDS, drawn_trial
 from ink import faults_of
 from matplotlib.figure import Figure
 
 from elbowscrew import compare, simulate_trial
+from elbowscrew.group.curves import PERCENT, group_curve
 from elbowscrew.motion.interpolation.keyframe_sources import ComparisonPlan
 from elbowscrew.plots.comparison import comparison_figure
-from elbowscrew.plots.overlay import mean_curve, overlay_figure
+from elbowscrew.plots.overlay import conditions_figure, mean_curve, overlay_figure, subjects_figure
 from elbowscrew.plots.registry import FIGURES
 from elbowscrew.plots.style import letter, new_figure, publication_style, settle
 from elbowscrew.view.figure_names import FIGURE_ENTRIES, has_figure
@@ -65,6 +67,15 @@ def test_nor_are_trials_and_models_beside_each_other() -> None:
     compared = compare(simulate_trial(frames=120, inversion=55).recording, plan=plan)
     with publication_style():
         figures = [overlay_figure([one for one in curves if one], width_mm=width) for width in (60.0, 170.0)]
+        heights = np.linspace(90.0, 150.0, 7)
+        bump = np.radians(np.sin(np.pi * PERCENT / 100.0) ** 2)
+        groups = {
+            name: group_curve({f"s{k}": [one * bump] for k, one in enumerate(heights[:count] + shift)})
+            for name, count, shift in (("slow", 7, 0.0), ("a condition with a long name", 3, 20.0), ("fast", 7, 9.0))
+        }
+        figures += [
+            make(groups, width_mm=width) for make in (conditions_figure, subjects_figure) for width in (60.0, 170.0)
+        ]
         for figure in (*figures, comparison_figure(compared)):
             settle(figure)
             assert faults_of(figure) == []

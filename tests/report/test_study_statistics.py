@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shutil
 from html import unescape
 from pathlib import Path
 
@@ -10,6 +11,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from drawn_trials import elbow_landmarks
+from matplotlib.figure import Figure
 from read_charts import Read, keys_in, picture_in
 from scipy import stats
 from sealed import resealed
@@ -24,7 +26,12 @@ from subject_studies import (
 )
 
 from elbowscrew import analyze, save_analysis, simulate_trial
-from elbowscrew.report import write_study_page
+from elbowscrew.cli import main
+from elbowscrew.plots.overlay import plot_conditions, plot_subjects
+from elbowscrew.report import results_in, write_study_page
+from elbowscrew.report.study import trials_of
+from elbowscrew.report.study_curves import curves_of
+from elbowscrew.report.study_groups import groups_of
 
 NUMBERS = {
     "Largest angle, deg": ("top_deg", 1),
@@ -267,3 +274,67 @@ def test_a_trial_without_a_whole_cycle_is_left_out_and_named(
     assert f"1 trial ({trials[0].folder})" in text_of(tmp_path / "s")
     table = pd.read_csv(tmp_path / "s" / "cycles.csv")
     assert table[table.trial == trials[0].folder].theta_deg.isna().sum() == len(trials[0].cycles_deg)
+
+
+def test_figures_by_condition_and_by_subject_show_the_same_means(made: Path) -> None:
+    study = trials_of(results_in([made]))
+    groups, _ = groups_of(study, study.trials)
+    curves = curves_of(study.trials, groups).of_groups
+    of_subjects = means_of(made)
+    lines = {line.get_label(): line for line in plot_conditions(Figure().add_subplot(), curves).get_lines()}
+    for condition in ("fast", "slow"):
+        stack = of_subjects.loc[condition].to_numpy()
+        assert lines[condition].get_ydata() == pytest.approx(stack.mean(axis=0))
+        drawn = plot_subjects(Figure().add_subplot(), curves[condition], "rad")
+        each = np.stack([np.asarray(line.get_ydata()) for line in drawn.get_lines()])
+        assert np.degrees(each) == pytest.approx(np.vstack([stack, stack.mean(axis=0)]))
+        (band,) = drawn.collections
+        ends = np.asarray(band.get_paths()[0].vertices)
+        at = np.degrees(ends[np.abs(ends[:, 0] - 50.0) < 1e-9, 1])
+        assert at.min() < stack[:, 50].mean() < at.max()
+
+
+@pytest.mark.parametrize("by", ["condition", "subject"])
+def test_the_overlay_by_condition_or_subject_is_written_with_its_caption(made: Path, tmp_path: Path, by: str) -> None:
+    asked = [
+        "report",
+        str(made),
+        "--figures",
+        "overlay",
+        "--by",
+        by,
+        "--figure-format",
+        "svg",
+        "-o",
+        str(tmp_path / "f"),
+    ]
+    assert main(asked) == 0
+    assert {path.name for path in (tmp_path / "f").iterdir()} == {"overlay.svg", "overlay.caption.txt"}
+    caption = (tmp_path / "f" / "overlay.caption.txt").read_text(encoding="utf-8")
+    assert "fast: 8 subjects" in caption
+    assert "95 % interval of the mean at each percent" in caption
+    assert "No band" not in caption
+
+
+def test_what_an_overlay_cannot_be_drawn_by_is_told(
+    few: Path, template: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    shutil.copytree(few, tmp_path / "s")
+    asked = ["report", str(tmp_path / "s"), "--figures", "overlay", "-o", str(tmp_path / "f"), "--figure-format", "svg"]
+    assert main([*asked, "--by", "condition"]) == 0
+    caption = (tmp_path / "f" / "overlay.caption.txt").read_text(encoding="utf-8")
+    assert "No band of fast, slow: fewer than 6 subjects; thin lines are subjects." in caption
+    for refused in (
+        ["report", str(few), "--by", "subject"],
+        ["report", str(few), "--figures", "fig7", "--by", "subject"],
+    ):
+        assert main(refused) == 2
+        assert "--by" in capsys.readouterr().err
+    # Of one trial nothing is said: it is left out, with a warning; of none, that ends it.
+    table = (tmp_path / "s" / "summary.csv").read_text().splitlines()
+    (tmp_path / "s" / "summary.csv").write_text("\n".join([table[0], table[1].replace("fast", ""), *table[2:]]) + "\n")
+    assert main([*asked, "--by", "condition", "--force"]) == 0
+    assert capsys.readouterr().err.count("left out of the overlay") == 1
+    (tmp_path / "s" / "summary.csv").unlink()
+    assert main([*asked, "--by", "condition", "--force"]) == 4
+    assert "manifest's column 'condition'" in capsys.readouterr().err

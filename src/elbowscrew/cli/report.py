@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from elbowscrew.choices import DRAWN_FORMATS
+from elbowscrew.choices import DRAWN_FORMATS, OverlayBy
 from elbowscrew.cli import options
 from elbowscrew.report.names import WIDTHS_MM
 from elbowscrew.view.figure_names import ALL, FIGURE_CHOICES, FIGURE_ENTRIES, OVERLAY
@@ -32,6 +32,14 @@ def report(
             help=f"Write these figures in place of pages, with commas: {', '.join(FIGURE_ENTRIES)} (the last four "
             "the paper's), "
             f"{OVERLAY} (all trials, mean and deviation); {ALL}.",
+        ),
+    ] = None,
+    by: Annotated[
+        OverlayBy | None,
+        typer.Option(
+            rich_help_panel=_FIGURES,
+            help=f"What {OVERLAY} shows: the conditions' means, or the subjects of each, by the manifest's columns.",
+            show_default="all trials",
         ),
     ] = None,
     figure_format: Annotated[
@@ -87,7 +95,13 @@ def report(
     from elbowscrew.report.names import figure_names, width_mm
 
     if not figures:
-        given = {"--figure-format": figure_format, "--output": output, "--font": font, "--force": force or None}
+        given = {
+            "--by": by,
+            "--figure-format": figure_format,
+            "--output": output,
+            "--font": font,
+            "--force": force or None,
+        }
         idle = [name for name, value in given.items() if value is not None]
         if idle or width != "double":
             msg = f"{', '.join(idle or ['--width'])}: belongs to --figures; name some of {', '.join(FIGURE_CHOICES)}"
@@ -107,15 +121,19 @@ def report(
                 "figures"
             )
             raise UsageError(msg)
+        if by is not None and OVERLAY not in names:
+            msg = f"--by {by}: belongs to --figures {OVERLAY}; name it, too"
+            raise UsageError(msg)
         folder = output if output is not None else Path("elbowscrew_figures")
         with shown_steps("Results", quiet=quiet) as step:
             published = save_publication_figures(
-                results_in(results), folder, names, formats, width_mm=wide, font=font, force=force, report=step
+                results_in(results), folder, names, formats, width_mm=wide, by=by, font=font, force=force, report=step
             )
         written = published.files
+        wanted = "whole movement out and back" + ("" if by is None else ", or nothing says its condition or subject")
         for path in published.left_out:
             name = one_line(str(path))
-            tell(f"elbowscrew: warning: {name}: has no movement out and back, and is left out of the overlay")
+            tell(f"elbowscrew: warning: {name}: has no {wanted}, and is left out of the overlay")
         asked_for_all = any(ALL in text.split(",") for text in figures)
         for path, figure in () if asked_for_all else published.not_drawn:
             tell(f"elbowscrew: warning: {one_line(str(path))}: has nothing for the figure {figure}, which is left out")

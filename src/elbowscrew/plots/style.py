@@ -43,6 +43,15 @@ AXES: Final[tuple[dict[str, Any], ...]] = (
     {"color": "#44AA99", "linestyle": (0, (1, 1.2))},
 )
 """The joint's axes, and the angles about them."""
+GROUPS: Final[tuple[dict[str, Any], ...]] = (
+    {"color": "#332288", "linestyle": "-"},
+    {"color": "#8A5A00", "linestyle": (0, (6, 2))},
+    {"color": "#AA4499", "linestyle": (0, (1, 1.2))},
+    {"color": "#117733", "linestyle": (0, (6, 1.5, 1, 1.5))},
+    {"color": "#555555", "linestyle": (0, (3, 1))},
+    {"color": "#0088AA", "linestyle": (0, (8, 1, 1, 1, 1, 1))},
+)
+"""Conditions of a study."""
 PATH: Final[dict[str, Any]] = {"color": GREEN, "linewidth": 1.2}
 PROXIMAL: Final[dict[str, Any]] = {
     "color": "#333333", "marker": "s", "linestyle": "none", "markersize": 3.2, "markeredgewidth": 0.7,
@@ -60,6 +69,12 @@ BAND: Final[dict[str, Any]] = {"facecolor": ORANGE, "edgecolor": "#A86F00", "lin
 SPREAD: Final[dict[str, Any]] = {"facecolor": GREY, "edgecolor": "#999999", "linewidth": 0.4, "zorder": 1}
 # Viridis without its light end, which vanishes on white paper.
 COLORMAP: Final = ListedColormap(mpl.colormaps["viridis"](np.linspace(0.0, 0.88, 256)), name="angle")
+
+
+def tint(color: str) -> str:
+    """Give a color as it would be at a fifth over white."""
+    return "#" + "".join(f"{round(255 - 0.2 * (255 - int(color[k : k + 2], 16))):02X}" for k in (1, 3, 5))
+
 
 MM_PER_INCH: Final = 25.4
 POINTS_PER_MM: Final = 72.0 / MM_PER_INCH

@@ -51,10 +51,9 @@ def overlay_caption(trials: int, cycles: int, unit: AngleUnit) -> str:
     """Describe the figure of several trials."""
     return (
         f"Angle θ ({unit}) of {trials} trials over the time of the movement, each cycle from 0 to 100 % of its own "
-        "time: "
-        f"the mean of each trial's cycles ({cycles} in all; thin grey), the mean of the trials (black) and one "
-        "standard "
-        "deviation between trials to either side (grey band), where all trials are known.\n"
+        f"time: the mean of each trial's cycles ({cycles} in all; thin grey), the mean of the trials (black) and one "
+        "standard deviation between trials to either side (grey band). Cycles that are incomplete or not known "
+        "throughout are left out.\n"
     )
 
 

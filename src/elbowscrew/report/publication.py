@@ -5,16 +5,15 @@ from __future__ import annotations
 import re
 import unicodedata
 from collections.abc import Callable, Sequence
-from functools import partial
 from pathlib import Path
 from typing import Final, NamedTuple
 
-from elbowscrew.errors import SettingError
-from elbowscrew.report.captions import overlay_caption
-from elbowscrew.report.figure_files import figure_files, files_of
+from elbowscrew.choices import OverlayBy
+from elbowscrew.report.figure_files import figure_files
+from elbowscrew.report.overlays import OverlayOfTrials, overlay_of_groups
 from elbowscrew.results.staging import settle, write_files
 from elbowscrew.results.trial_views import view_of_result
-from elbowscrew.view.figure_names import OVERLAY, caption_file, chosen_figures, has_figure
+from elbowscrew.view.figure_names import OVERLAY, chosen_figures, has_figure
 
 _LONGEST_NAME: Final = 80
 
@@ -26,7 +25,8 @@ class Published(NamedTuple):
     ----------
     files : tuple of Path
     left_out : tuple of Path
-        Results that an overlay had to leave out, as they have no movement out and back.
+        Results that an overlay had to leave out: without a whole movement out and back, or without the condition or
+        subject that it is by.
     not_drawn : tuple of (Path, str)
         Results, and the figures asked for that they have nothing for.
     """
@@ -43,6 +43,7 @@ def save_publication_figures(
     formats: Sequence[str],
     *,
     width_mm: float,
+    by: OverlayBy | None = None,
     font: str | None = None,
     force: bool = False,
     report: Callable[[int, int], None] = lambda _done, _total: None,
@@ -60,6 +61,8 @@ def save_publication_figures(
     formats : sequence of {"png", "svg", "pdf", "tiff", "eps"}
     width_mm : float
         Width on paper.
+    by : {"condition", "subject"}, optional
+        What the overlay shows: the conditions' means, or the subjects of each; all trials by default.
     font : str, optional
         Family of the letters; that of each trial's settings by default.
     force : bool
@@ -76,43 +79,36 @@ def save_publication_figures(
     ResultError
         If a result cannot be read.
     SettingError
-        If an overlay is asked for and fewer than two results have a movement out and back.
+        If an overlay is asked for and fewer than two results have a movement out and back, or nothing says the
+        conditions or subjects that it is to be by.
     OutputError
         If a file is there already, or the disk does not take them.
     """
-    from elbowscrew.plots.overlay import LEAST_TRIALS, mean_curve, overlay_figure
-
     contents: dict[str, bytes] = {}
     single = chosen_figures(names)
-    prefixes = _prefixes(results)
-    curves, left_out, not_drawn, units = [], [], [], set()
-    for done, (result, prefix) in enumerate(zip(results, prefixes, strict=True)):
+    overlay = OverlayOfTrials() if OVERLAY in names and by is None else None
+    tables = (*single, "cycles") if overlay is not None else single  # that figure needs the table of cycles, too
+    not_drawn = []
+    for done, (result, prefix) in enumerate(zip(results, _prefixes(results), strict=True)):
         report(done, len(results))
         settle(result)
-        trial = view_of_result(result, single)
+        if not tables:
+            continue
+        trial = view_of_result(result, tables)
         not_drawn += [(result, name) for name in single if not has_figure(name, trial)]
         for name, content in figure_files(trial, single, formats, width_mm, font).items():
             contents[f"{prefix}{name}"] = content
-        if OVERLAY in names:
-            curve = mean_curve(trial)
-            if curve is None:
-                left_out.append(result)
-            else:
-                curves.append(curve)
-                units.add(trial.settings.angle_unit)
-    if OVERLAY in names:
-        if len(curves) < LEAST_TRIALS:
-            msg = (
-                f"--figures overlay: expected at least {LEAST_TRIALS} results with a movement out and back "
-                f"(repetitions.csv), found {len(curves)} of {len(results)}; give more results, or leave overlay out"
-            )
-            raise SettingError(msg)
-        unit = units.pop() if len(units) == 1 else "deg"
-        drawn = files_of({OVERLAY: partial(overlay_figure, curves, width_mm=width_mm, unit=unit)}, formats, font)
-        cycles = sum(curve.cycles for curve in curves)
-        contents |= drawn | {caption_file(OVERLAY): overlay_caption(len(curves), cycles, unit).encode()}
+        if overlay is not None:
+            overlay.add(result, trial)
+    drawn = None
+    if overlay is not None:
+        drawn = overlay.drawn(formats, width_mm, font)
+    elif by is not None:
+        drawn = overlay_of_groups(results, by, formats, width_mm, font)
+    contents |= {} if drawn is None else drawn.files
     write_files(folder, contents, replaceable=("",) if force else None)
-    return Published(tuple(folder / name for name in contents), tuple(left_out), tuple(not_drawn))
+    left_out = () if drawn is None else drawn.left_out
+    return Published(tuple(folder / name for name in contents), left_out, tuple(not_drawn))
 
 
 def _prefixes(results: Sequence[Path]) -> list[str]:

@@ -181,6 +181,30 @@ def _units(header: Sequence[str]) -> Units:
     )
 
 
+def trials_of(results: Sequence[Path]) -> Study:
+    """Read results that may lie in several folders, with subject and condition; trials are named by their paths.
+
+    Both stand in the nearest ``summary.csv`` above a result.
+
+    Raises
+    ------
+    ResultError
+        If a result cannot be read.
+    """
+    names: dict[Path, dict[str, Path]] = {}
+    for result in results:
+        above = result.absolute().parents
+        base = next((folder for folder in above if (folder / "summary.csv").is_file()), above[0])
+        names.setdefault(base, {})[result.absolute().relative_to(base).as_posix()] = result
+    factors: dict[Path, dict[str, str]] = {}
+    for base, inside in names.items():
+        said = _said_of(_rows(base / "summary.csv"), set(inside))
+        for name, result in inside.items():
+            factors[result] = {factor: said_of(said.get(name, {}), factor) for factor in _ALWAYS}
+    trials = tuple(replace(_trial(result, str(result)), factors=factors[result]) for result in results)
+    return Study(name="", trials=trials, factors=_ALWAYS, failures=())
+
+
 def said_of(factors: Mapping[str, str], name: str) -> str:
     """Look up what a table says of a trial, however it writes the name of the column."""
     return next((value for factor, value in factors.items() if factor.strip().casefold() == name), "")
