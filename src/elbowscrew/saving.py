@@ -145,7 +145,7 @@ def write_result(
             from elbowscrew.report.trial_page import PAGE, trial_page
 
             write_new(staged / METHODS, methods_file(view).encode("utf-8", "replace"))
-            write_new(staged / PAGE, trial_page(view, staged).encode("utf-8", "replace"))
+            write_new(staged / PAGE, trial_page(view, staged, place=target).encode("utf-8", "replace"))
     return found
 
 

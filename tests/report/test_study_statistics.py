@@ -25,7 +25,7 @@ from subject_studies import (
     write_made,
 )
 
-from elbowscrew import analyze, save_analysis, simulate_trial
+from elbowscrew import Settings, analyze, save_analysis, simulate_trial
 from elbowscrew.cli import main
 from elbowscrew.plots.overlay import plot_conditions, plot_subjects
 from elbowscrew.report import results_in, write_study_page
@@ -138,6 +138,20 @@ def test_the_long_tables_are_those_of_the_trials_with_their_keys(made: Path, tri
             parts.append(part)
         pd.testing.assert_frame_equal(table, pd.concat(parts, ignore_index=True))
         assert f'<a href="{name}">' in text_of(made)
+
+
+def test_a_trial_in_other_units_stands_in_the_long_tables_in_the_studys(template: Path, tmp_path: Path) -> None:
+    shutil.copytree(template, tmp_path / "a")
+    recording = simulate_trial(frames=60, inversion=30, proximal="moving", seed=1).recording
+    other = Settings(angle_unit="rad", length_unit="m")
+    save_analysis(analyze(recording, other), tmp_path / "b", figure_formats=(), report=False)
+    write_study_page(tmp_path)
+    for name in ("cycles.csv", "repetitions.csv"):
+        table = pd.read_csv(tmp_path / name)
+        one, two = (table[table.trial == trial].drop(columns="trial").reset_index(drop=True) for trial in "ab")
+        pd.testing.assert_frame_equal(one, two, rtol=1e-12)
+        assert table.subject.isna().all()
+    assert "theta_deg" in (tmp_path / "cycles.csv").read_text()
 
 
 def means_of(made: Path) -> pd.DataFrame:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -22,6 +23,7 @@ from elbowscrew.study.folder import batch_folder
 from elbowscrew.study_columns import study_header
 
 SOUND, BROKEN = 48, list(WAYS)
+LEADS_BACK = ' · <a href="../index.html">all trials of the study</a>'.encode()
 
 
 @pytest.fixture(scope="module")
@@ -77,7 +79,12 @@ def test_a_result_is_what_analyze_makes(undisturbed: Path, study: Path, capsys: 
     for row in rows(undisturbed / "summary.csv")[::17]:
         alone = study / "alone" / row["trial"]
         assert main(["analyze", str(study / "data" / row["path"]), "-q", "-o", str(alone), *FAST]) == 0
-        assert contents(alone) == contents(undisturbed / row["trial"])
+        one, other = contents(alone), contents(undisturbed / row["trial"])
+        pages = [found.pop("report.html") for found in (one, other)]
+        assert pages[0] == pages[1].replace(LEADS_BACK, b"")
+        sums = [found.pop("SHA256SUMS").splitlines() for found in (one, other)]
+        assert [line[64:] for line in sums[0] if line not in sums[1]] == [b"  report.html"]
+        assert one == other
         summary = json.loads((alone / "summary.json").read_text())
         assert float(row["rmse_theta_deg"]) == summary["interpolation"]["rmse_theta_deg"]
         assert float(row["point_x_mm"]) == summary["motion"]["mean_axis"]["point_mm"][0]
@@ -88,6 +95,14 @@ def test_the_bytes_do_not_depend_on_who_did_the_work(study: Path, undisturbed: P
     other = study / "other" / undisturbed.name  # the page of a study is called as its folder is
     batch("data", "--recursive", *FAST, *way, "-q", "-o", other, "--restart", folder=study, code=7)
     assert contents(other) == contents(undisturbed)
+
+
+def test_pages_lead_to_the_study_and_the_terminal_says_what_to_open(study: Path, undisturbed: Path) -> None:
+    again = batch("data", "--recursive", *FAST, "-o", "out", folder=study, code=7)
+    assert re.search(r"Open +out/index\.html", again.stdout.replace("\n", ""))
+    page = next(undisturbed.glob("*/report.html")).read_text(encoding="utf-8")
+    assert LEADS_BACK.decode() in page
+    assert len(rows(undisturbed / "cycles.csv")) == 101 * len(rows(undisturbed / "repetitions.csv")) > 0
 
 
 def test_units_change_names_and_values_together(study: Path, undisturbed: Path) -> None:

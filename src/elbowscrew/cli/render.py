@@ -104,6 +104,7 @@ def analysis_table(summary: Summary, folder: Path) -> None:
             f"most (frame {model['max_angle_error_frame']})" + _displacement(model),
         ),
         ("Results", str(folder)),
+        *([("Open", str(page))] if (page := folder / "report.html").is_file() else []),
     ]
     print_rows(printable(summary["source"]["name"] or ""), rows)
 

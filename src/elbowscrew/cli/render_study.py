@@ -83,4 +83,5 @@ def study_table(result: StudyResult) -> None:
     rows += [("", one_line(one.failure.message)) for one in result.failed[:_FAILURES_TOLD]]
     if len(result.failed) > _FAILURES_TOLD:
         rows.append(("", f"and {len(result.failed) - _FAILURES_TOLD} more in failures.csv"))
-    print_rows("", [*rows, ("Tables", f"{result.folder / 'summary.csv'}, {result.folder / 'failures.csv'}")])
+    tables = ", ".join(("summary.csv", "failures.csv", "cycles.csv", "repetitions.csv"))
+    print_rows("", [*rows, ("Tables", f"{tables} in {result.folder}"), ("Open", str(result.folder / "index.html"))])

@@ -79,7 +79,7 @@ def write_trial_page(folder: Path) -> Path:
     return folder / PAGE
 
 
-def trial_page(trial: TrialView, folder: Path) -> str:
+def trial_page(trial: TrialView, folder: Path, *, place: Path | None = None) -> str:
     """Make the page of one trial.
 
     Parameters
@@ -88,6 +88,8 @@ def trial_page(trial: TrialView, folder: Path) -> str:
         From `elbowscrew.results.trial_views.view_of_result`.
     folder : Path
         What else is in it is named.
+    place : Path, optional
+        Where the folder will be, if it is elsewhere while it is made.
 
     Returns
     -------
@@ -137,7 +139,7 @@ def trial_page(trial: TrialView, folder: Path) -> str:
             for name in FIGURE_ENTRIES
             if (folder / "figures" / caption_file(name)).is_file()
         ],
-        "study": _study_page(folder),
+        "study": _study_page(place or folder),
         "files": [(name, text) for name, text in _FILES if (folder / name).is_file()],
     }
     scene = scene_of(trial) if trial.located else None
