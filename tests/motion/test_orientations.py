@@ -149,6 +149,16 @@ def test_an_axis_that_wanders_does_so_without_positions() -> None:
     assert np.isfinite(found.path.direction).all()
 
 
+@pytest.mark.parametrize("express_in", ["lab", "distal"])
+def test_few_orientations_have_an_axis_and_no_cone(express_in: str) -> None:
+    """Too few to tell of a noise that nobody states."""
+    few = bodies((HINGE.proximal_R[:75:14], HINGE.distal_R[:75:14]), None, noise=NOISE)
+    found = analyze(few, Settings(express_in=express_in, joint_type="hinge")).joint_axis.best
+    assert found is not None
+    assert np.isfinite(found.line.direction).all()
+    assert np.isnan([found.axis_sd, found.axis_cone, found.point_radius]).all()
+
+
 def test_two_axes_are_found_by_rotation_alone() -> None:
     joint = two_axes(400, (110.0, 70.0), 80.0, 0.01, np.random.default_rng(7))
     one, other = (analyze(moving(joint, located=located)).joint_type for located in (True, False))

@@ -91,12 +91,13 @@ class LineFit(NamedTuple):
         few to tell of the noise. Of parameters that are not told it is 0.
         """
         scale = np.sqrt(np.maximum(np.diag(self.information), 0.0))
+        unknown = np.full(_whole(self.information, self.told).shape, np.nan)
         told = noise_known or self.freedom >= _LEAST_FREEDOM
         if not told or not (scale > 0.0).all():
-            return np.full(self.information.shape, np.nan)
+            return unknown
         values, vectors = np.linalg.eigh(self.information / np.outer(scale, scale))
         if values[0] < _LEAST_INFORMATION:
-            return np.full(self.information.shape, np.nan)
+            return unknown
         inverse: Float = (vectors / values) @ vectors.T / np.outer(scale, scale)
         least = 1.0 if noise_known else 0.0
         return _whole(inverse * max(self.noise_ratio, least) ** 2 * self.correlation, self.told)
