@@ -41,7 +41,7 @@ NOT_IN_TABLES_OF_JOINT = {
     r"joint_type\.(decided_by|interval_method)": f"{HERE}::test_intervals_name_their_source",
     r"two_axes\.axis.*": f"{HERE}::test_two_axes_are_those_of_the_motion",
     r"two_axes\..*_(low|high)": f"{HERE}::test_two_axes_are_those_of_the_motion",
-    r"two_axes\.parallel_offset_mm": "tests/motion/joint/test_joint_type.py",
+    r"two_axes\.(parallel_offset_mm|order_determined)": "tests/motion/joint/test_joint_type.py",
     r"ball\..*": f"{HERE}::test_the_center_of_a_ball",
     # Of bodies without markers.
     r"noise\.(proximal|distal)(\..*)?": (
