@@ -327,7 +327,7 @@ def test_bodies_of_different_sides_are_refused_with_both_sides_and_the_options(r
         analyze(recording)
     told = str(caught.value)
     assert caught.value.exit_code == 4
-    for word in ("'Upper Arm L' is left", "'Forearm R' is right", "--proximal", "--distal"):
+    for word in ("'Upper Arm L' is left", "'Forearm R' is right", "give both proximal and distal"):
         assert word in told
     named = analyze(recording, Settings(proximal="Upper Arm L", distal="Forearm R"))
     assert "sides-differ" in [warning.code for warning in named.warnings]

@@ -348,8 +348,7 @@ def save_comparison(
     Examples
     --------
     >>> import elbowscrew, tempfile
-    >>> from elbowscrew.motion.interpolation.keyframe_sources import ComparisonPlan
-    >>> plan = ComparisonPlan(laws=("linear",), counts=(2,), data=("raw",))
+    >>> plan = elbowscrew.ComparisonPlan(laws=("linear",), counts=(2,), data=("raw",))
     >>> found = elbowscrew.compare(elbowscrew.simulate_trial(frames=60, inversion=30).recording, plan=plan)
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     (save_comparison(found, f"{folder}/result", figure_formats=()) / "compare.csv").exists()

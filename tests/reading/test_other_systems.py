@@ -174,7 +174,7 @@ def test_markers_of_the_samples_do_not_fit_to_the_last_digit(samples: Path) -> N
         ({"arm_markers": ("UA*",), "forearm_markers": ("X*",)}, "fits 0 markers"),
         ({"arm_markers": ("UA*",), "arm": "arm", "forearm_markers": ("FA*",)}, "give one of them"),
         ({"arm_markers": ("UA*",), "forearm_markers": ("FA1", "FA2", "FA3"), "pose_method": "dual-qr"}, "needs 4"),
-        ({}, "--proximal-markers"),
+        ({}, "give proximal_markers and distal_markers"),
     ],
 )
 def test_choices_of_markers_that_do_not_fit(tmp_path: Path, settings: dict[str, Any], says: str) -> None:

@@ -128,7 +128,7 @@ def test_workers_of_other_versions_are_told_and_cost_no_tables(
     common = ["batch", str(tmp_path / "take.csv"), "-o", str(tmp_path / "out"), "--figure-format", "none", "-q"]
     assert main([*common, "--workers", "1"]) == 0
     before = {path.name: path.read_bytes() for path in (tmp_path / "out").glob("*.csv")}
-    assert set(before) == {"summary.csv", "failures.csv"}
+    assert set(before) == {"summary.csv", "failures.csv", "cycles.csv", "repetitions.csv"}
     with cluster(0) as there:
         address = there.scheduler_address
         with subprocess.Popen(

@@ -159,7 +159,7 @@ def compare(
     --------
     >>> import elbowscrew
     >>> recording = elbowscrew.simulate_trial(marker_noise_mm=0).recording
-    >>> plan = ComparisonPlan(laws=("linear", "polynomial-345"), counts=(2,), data=("raw",))
+    >>> plan = elbowscrew.ComparisonPlan(laws=("linear", "polynomial-345"), counts=(2,), data=("raw",))
     >>> str(elbowscrew.compare(recording, plan=plan).models.law[0])
     'polynomial-345'
     """
@@ -211,9 +211,9 @@ def compare_trials(
     Examples
     --------
     >>> import elbowscrew, tempfile
-    >>> plan = ComparisonPlan(laws=("linear",), counts=(2,), data=("raw",))
+    >>> plan = elbowscrew.ComparisonPlan(laws=("linear",), counts=(2,), data=("raw",))
     >>> with tempfile.TemporaryDirectory() as folder:
-    ...     paths = [Path(folder, f"{seed}.csv") for seed in range(2)]
+    ...     paths = [f"{folder}/{seed}.csv" for seed in range(2)]
     ...     for seed, path in enumerate(paths):
     ...         trial = elbowscrew.simulate_trial(frames=60, inversion=30, seed=seed)
     ...         _ = elbowscrew.save_simulation(trial, path)

@@ -40,11 +40,11 @@ def read_landmarks(path: str | os.PathLike[str]) -> Landmarks:
 
     Examples
     --------
-    >>> import tempfile
+    >>> import pathlib, tempfile
     >>> text = 'side = "left"' + chr(10) + "[landmarks]" + chr(10)
     >>> text += chr(10).join(f'{name} = "marker {name}"' for name in ("EL", "EM", "US", "RS", "GH"))
     >>> with tempfile.TemporaryDirectory() as folder:
-    ...     path = Path(folder, "arm.toml")
+    ...     path = pathlib.Path(folder, "arm.toml")
     ...     _ = path.write_text(text)
     ...     read_landmarks(path).markers
     ('marker EL', 'marker EM', 'marker US', 'marker RS', 'marker GH')

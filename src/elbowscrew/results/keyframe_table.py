@@ -56,10 +56,10 @@ def read_keyframes(
 
     Examples
     --------
-    >>> import tempfile
+    >>> import pathlib, tempfile
     >>> lines = ["time_s,e0,e1,e2,e3,d_x_mm,d_y_mm,d_z_mm", "0,1,0,0,0,0,0,0", "1,0,0,0,1,0,0,10"]
     >>> with tempfile.TemporaryDirectory() as folder:
-    ...     file = Path(folder, "poses.csv")
+    ...     file = pathlib.Path(folder, "poses.csv")
     ...     _ = file.write_text(chr(10).join(lines))
     ...     read_keyframes(file).knot
     array([0., 1.])
