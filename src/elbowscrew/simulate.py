@@ -189,7 +189,8 @@ class SimulatedTrial:
     Attributes
     ----------
     recording : Recording
-        The poses, fitted to the markers as seen.
+        The poses, fitted to the markers as seen. Of how these move among themselves it holds nothing: save the trial
+        and read it for intervals that hold what skin does.
     markers : mapping of str to ndarray, shape (N, M, 3)
         The markers of each body, by the body's name, in the laboratory, meters; NaN where not seen.
     truth : dict
