@@ -23,6 +23,7 @@ from elbowscrew import interpolate as rebuild
 from elbowscrew.cli import main
 from elbowscrew.motion.interpolation.keyframe_sources import ComparisonPlan
 from elbowscrew.results.proof import seal
+from elbowscrew.samples import path
 from elbowscrew.saving import analyze_file
 from elbowscrew.settings import Settings
 
@@ -152,11 +153,18 @@ def _nothing(_folder: Path) -> None:
 
 
 _R, _OUT = "t_elbowscrew", "batch_elbowscrew"
-_TABLES = (f"{_OUT}/summary.csv", f"{_OUT}/failures.csv", f"{_OUT}/index.html")
+_TABLES = tuple(
+    f"{_OUT}/{name}" for name in ("summary.csv", "failures.csv", "cycles.csv", "repetitions.csv", "index.html")
+)
 _SIMULATE = ("simulate", "s.csv", "--frames", "40", "--inversion", "20", "--seed", "3")
 _FIGURES = ("report", _R, "--figures", "theta,error", "--figure-format", "png", "-o", "figs", "-q")
 _DRAWN = tuple(f"figs/{name}.{kind}" for name in ("theta", "error") for kind in ("png", "caption.txt"))
 _PARTS = (*((f"{_OUT}/t{k}",) for k in range(3)), *((table,) for table in _TABLES))
+
+_SAMPLES, _SAMPLE_STUDY = (
+    tuple(sorted(file.relative_to(path()).as_posix() for file in folder.iterdir() if file.is_file()))
+    for folder in (path(), path("study"))
+)
 
 SCENARIOS = (
     Scenario("analyze", ("analyze", "t.csv", *FAST), _trial, ((_R,),), quick=False),  # type: ignore[arg-type]
@@ -177,6 +185,7 @@ SCENARIOS = (
              (("keyframes_motion.csv",),)),
     Scenario("simulate", _SIMULATE, _nothing, (("s.csv", "s.truth.json"),), quick=False),
     Scenario("simulate --force", (*_SIMULATE, "--force"), _simulated, (("s.csv", "s.truth.json"),)),
+    Scenario("samples --copy", ("samples", "--copy", "."), _nothing, (_SAMPLES, _SAMPLE_STUDY), quick=False),
     Scenario("paper --figures", ("paper", "--figures", "figs"), _nothing,
              (("figs/figures_7_and_8.png", "figs/figures_9_and_10.png"),), quick=False),
 )  # fmt: skip

@@ -33,7 +33,7 @@ FAULTS = (
     Fault("SIGINT", KILL, signal.SIGINT),
 )
 CODES = {FAIL: {0, 3, 6, 7}, signal.SIGTERM: {0, 3, 6, 7, 143}, signal.SIGINT: {0, 3, 6, 7, 130}, signal.SIGKILL: {-9}}
-TABLES = ("summary.csv", "failures.csv", "index.html")
+TABLES = ("summary.csv", "failures.csv", "cycles.csv", "repetitions.csv", "index.html")
 TELLING = (3, 7)
 
 

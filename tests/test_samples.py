@@ -209,6 +209,22 @@ def test_samples_are_copied_and_nothing_is_replaced(samples: Path, tmp_path: Pat
     assert all(name in CliRunner().invoke(app, ["samples"]).output for name in SAMPLES)
 
 
+def test_a_copy_that_was_interrupted_is_finished(samples: Path, tmp_path: Path) -> None:
+    files = copy_to(tmp_path)
+    kept = tmp_path / "study" / "manifest.csv"
+    before = kept.stat().st_mtime_ns
+    for file in files:
+        if file != kept:
+            file.unlink()
+    assert copy_to(tmp_path) == files
+    assert all(file.read_bytes() == (samples / file.relative_to(tmp_path)).read_bytes() for file in files)
+    assert kept.stat().st_mtime_ns == before
+    kept.unlink()
+    kept.symlink_to(samples / "study" / "manifest.csv")
+    with pytest.raises(OutputError, match=r"manifest\.csv: exists already"):
+        copy_to(tmp_path)
+
+
 def test_the_study_has_a_manifest_of_all_its_trials() -> None:
     found = find_trials([str(path("study") / "manifest.csv")])
     assert [trial.columns["subject"] for trial in found.trials] == ["P01", "P01", "P02", "P02", "P03", "P03"]

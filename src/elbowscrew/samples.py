@@ -8,12 +8,14 @@
 from __future__ import annotations
 
 import difflib
+import filecmp
 import os
 from pathlib import Path
 from typing import Final
 
+from elbowscrew.disk.folders import sweep
 from elbowscrew.errors import OutputError, UsageError, shown
-from elbowscrew.results.staging import write_files
+from elbowscrew.results.staging import output_error, write_files
 
 SAMPLES: Final[dict[str, str]] = {
     "elbow_paper": "an elbow that flexes, 450 frames with the inversion at 211, as in the paper",
@@ -65,7 +67,7 @@ def path(name: str = "") -> Path:
 
 
 def copy_to(folder: str | os.PathLike[str]) -> tuple[Path, ...]:
-    """Copy all samples into a folder, which is made.
+    """Copy all samples into a folder, which is made; those that are there already are left as they are.
 
     Parameters
     ----------
@@ -79,15 +81,37 @@ def copy_to(folder: str | os.PathLike[str]) -> tuple[Path, ...]:
     Raises
     ------
     OutputError
-        If one of them is there already, or the disk does not take them.
+        If there is something else of the name of one of them, or the disk does not take them.
     """
     target, source = Path(folder), path()
     names = sorted(file.relative_to(source) for file in source.rglob("*") if file.is_file())
-    there = [target / name for name in names if os.path.lexists(target / name)]
-    if there:
-        msg = f"{there[0]}: exists already; give another folder"
-        raise OutputError(msg)
-    for inside in dict.fromkeys(name.parent for name in names):
-        contents = {name.name: (source / name).read_bytes() for name in names if name.parent == inside}
+    for inside in {name.parent for name in names}:
+        _finish_or_undo(target / inside)
+    missing = [name for name in names if not _is_copied(source / name, target / name)]
+    for inside in dict.fromkeys(name.parent for name in missing):
+        contents = {name.name: (source / name).read_bytes() for name in missing if name.parent == inside}
         write_files(target / inside, contents, replaceable=None)
     return tuple(target / name for name in names)
+
+
+def _finish_or_undo(folder: Path) -> None:
+    """Clear away what an interrupted copy left."""
+    try:
+        if folder.is_dir():
+            sweep(folder)
+    except OSError as error:
+        raise output_error(folder, error) from error
+
+
+def _is_copied(sample: Path, copied: Path) -> bool:
+    """Whether a copy is there; what else is there is the user's own."""
+    if not os.path.lexists(copied):
+        return False
+    try:
+        same = copied.is_file() and not copied.is_symlink() and filecmp.cmp(sample, copied, shallow=False)
+    except OSError:
+        same = False
+    if not same:
+        msg = f"{copied}: exists already; give another folder"
+        raise OutputError(msg)
+    return True

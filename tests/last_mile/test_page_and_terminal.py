@@ -507,8 +507,9 @@ def test_terminal(told: Told) -> None:
             *([] if model["points"]["from"] == "markers" else [general(model["points"]["radius_of_gyration_mm"])]),
         ],
     }
-    assert set(said) == {*expected, "Results"}
+    assert set(said) == {*expected, "Results", "Open"}
     assert said["Results"] == str(told.folder)
+    assert said["Open"] == str(told.folder / "report.html")
     for name, values in expected.items():
         assert numbers(said[name], *names_of(told)) == [plain(value) for value in values], said[name]
     assert ("without a sense" in said["Angle θ"]) == (not motion["signed"])

@@ -116,4 +116,4 @@ def test_a_rotation_too_small_for_an_axis_is_told_with_its_size_and_the_limit() 
     assert text.startswith(
         f"the largest rotation since the reference is {largest:.3g} deg, less than the 60 deg an axis needs"
     )
-    assert text.endswith("(--min-angle sets the limit)")
+    assert text.endswith("(min_angle_deg sets the limit)")
