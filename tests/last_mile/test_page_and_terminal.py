@@ -25,12 +25,13 @@ def dec(value: Any, decimals: int = 2) -> str:
 
 
 def brief(value: float | None) -> str:
-    """Two digits that count, written out."""
+    """Two digits that count, written out; of less than 1e-4 one, with its power of ten."""
     if value is None:
         return NONE
-    return np.format_float_positional(
-        float(f"{value:.1e}"), min_digits=max(1 - math.floor(math.log10(value)), 0), trim="-"
-    )
+    if value < 1e-4:
+        return f"{value:.0e}".replace("-", "−")
+    decimals = max(1 - math.floor(math.log10(value)), 0)
+    return f"{float(f'{value:.1e}'):.{decimals}f}"
 
 
 def plain(text: str) -> str:
@@ -81,11 +82,24 @@ def test_header_and_cards(told: Told) -> None:
         f"{dec(motion['theta_max_deg'], 1)} deg",
         f"frame {motion['theta_max_frame']}; lowest {dec(motion['theta_min_deg'], 1)} deg{signed}",
     ]
-    axis = motion["joint_axis"]
-    value, about = cards["Joint axis known within"]
-    if axis is None:
-        assert value == NONE
-        assert not numbers(about)
+    axis, two, ball = motion["joint_axis"], told.joint["two_axes"], told.joint["ball"]
+    value, about = cards[f"{'Both axes' if two else 'Center' if ball else 'Joint axis'} known within"]
+    if two:
+        words = trial["joint"]
+        assert axis is None
+        assert value == f"{brief(two['axis1']['cone95_deg'])} and {brief(two['axis2']['cone95_deg'])} deg"
+        assert about == (
+            f"95 %, two axes ({told.joint['joint_type']['status']}), the first in the {words['proximal']}, "
+            f"the second in the {words['distal']}"
+        )
+    elif ball:
+        assert axis is None
+        assert (value, about) == (
+            f"{brief(ball['radius95_mm'])} mm",
+            f"95 %, ball ({told.joint['joint_type']['status']})",
+        )
+    elif axis is None:
+        assert (value, about) == (NONE, "the motion has no single axis")
     else:
         assert value == f"{brief(axis['axis_cone95_deg'])} deg, {brief(axis['point_radius95_mm'])} mm"
         assert about.startswith(f"95 %, {axis['model'].replace('_', '-')}")
