@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from elbowscrew import Analysis, analyze, simulate_trial
-from elbowscrew.model import PhaseLaw
+from elbowscrew import save_analysis, simulate_trial, summary_from_analysis
+from elbowscrew.cli.render_joint import joint_axis_text
+from elbowscrew.model import Analysis, PhaseLaw
+from elbowscrew.motion.analysis import analyze
 from elbowscrew.results.joint_type_summary import numbers_of_type
 from elbowscrew.results.summary import law_error
 
@@ -30,6 +33,27 @@ def test_a_cone_short_of_a_right_angle_is_told(elbow: Analysis, cone_deg: float)
 def test_a_cone_of_a_right_angle_or_more_says_nothing(elbow: Analysis, cone_deg: float) -> None:
     line = told_line(elbow, cone_deg)
     assert (line["determined"], line["cone95_deg"], line["radius95_mm"]) == (False, None, None)
+
+
+def test_an_open_order_is_told_wherever_the_axes_are(elbow: Analysis, tmp_path: Path) -> None:
+    """On the terminal, on the page's card, and in its sentences; where the order is known nobody speaks of it."""
+    found = elbow.joint_type
+    assert found is not None
+    assert found.two_axes is not None
+    said = {}
+    for known in (True, False):
+        two = replace(found.two_axes, order_determined=known)
+        one = replace(elbow, joint_type=replace(found, status="determined", two_axes=two))
+        folder = save_analysis(one, tmp_path / str(known), figure_formats=())
+        page = (folder / "report.html").read_text("utf-8")
+        terminal = joint_axis_text(summary_from_analysis(one)["motion"], located=True)
+        said[known] = [
+            "which one is the proximal body's is open" in terminal,
+            "which one is the upper arm’s is open" in page,
+            "the first in the upper arm, the second in the forearm" not in page,
+            "Which axis is that of the upper arm is open" in page,
+        ]
+    assert said == {True: [False] * 4, False: [True] * 4}
 
 
 def told_line(elbow: Analysis, cone_deg: float) -> dict[str, object]:

@@ -105,9 +105,13 @@ def place_text(point_mm: Vector | None) -> str:
 
 
 def _axes_or_center(motion: MotionSummary, whose: str) -> str:
+    from elbowscrew.model.joint_summary_types import order_is_open
+
     found, axes, ball = motion["joint_type"], motion["joint_numbers"]["two_axes"], motion["joint_numbers"]["ball"]
     if axes is not None:
         told = f"{_one_of_two(axes['axis1'], 'proximal')}; {_one_of_two(axes['axis2'], 'distal')}"
+        if order_is_open(axes):
+            told += "; which one is the proximal body's is open"
         if axes["angle_between_deg"] is None:
             return f"{told}; how they stand to each other is undetermined ({_stands_on(found, whose)})"
         apart = f"{axes['angle_between_deg']:.1f} deg"

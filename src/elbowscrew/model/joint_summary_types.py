@@ -169,6 +169,11 @@ class TwoAxesSummary(TypedDict):
     """Whether the motion tells which of both axes is the one in the proximal body."""
 
 
+def order_is_open(axes: TwoAxesSummary) -> bool:
+    """Whether both axes are known, but not which of them is the proximal body's."""
+    return axes["axis1"]["determined"] and axes["axis2"]["determined"] and not axes["order_determined"]
+
+
 class CenterSummary(TypedDict):
     """One estimate of a center."""
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from elbowscrew.model.joint_summary_types import JointSummary, TwoAxesSummary
+from elbowscrew.model.joint_summary_types import JointSummary, TwoAxesSummary, order_is_open
 from elbowscrew.report.pages import number, vector
 from elbowscrew.view.trial_view import TrialView
 
@@ -18,6 +18,9 @@ def _sentences(view: TrialView) -> Iterator[str]:
     joint = view.joint_summary
     two, ball = joint["two_axes"], joint["ball"]
     if two is not None:
+        if order_is_open(two):
+            proximal = view.named_joint.proximal.name
+            yield f"Which axis is that of the {proximal} is open: the motion hardly turns about both at once."
         yield _apart(two)
     if ball is not None:
         within = "" if ball["radius95_mm"] is None else f", within {number(ball['radius95_mm'])} mm"
