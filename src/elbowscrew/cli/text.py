@@ -6,15 +6,18 @@ import os
 import sys
 from collections.abc import Iterable
 from contextlib import suppress
+from typing import TextIO
 
 from elbowscrew.errors import OutputError, shortened
 
 
 def tell(text: str) -> None:
-    """Write a line to standard error; that nobody takes it stops no work."""
-    with suppress(OSError, ValueError):
+    """Write a line to standard error; that nobody takes it stops no work, and changes no exit code."""
+    try:
         sys.stderr.write(f"{text}\n")
         sys.stderr.flush()
+    except (OSError, ValueError):
+        _forget(sys.stderr)
 
 
 def emit(text: str) -> None:
@@ -37,10 +40,15 @@ def emit(text: str) -> None:
 
 
 def forget_output() -> None:
-    """Let what is still written to standard output, by the interpreter's own last flush too, go nowhere."""
+    """Let what is still written to standard output go nowhere."""
+    _forget(sys.stdout)
+
+
+def _forget(stream: TextIO) -> None:
+    """Let what is still written to a stream, by the interpreter's own last flush too, go nowhere."""
     with suppress(OSError, ValueError):
         nowhere = os.open(os.devnull, os.O_WRONLY)
-        os.dup2(nowhere, sys.stdout.fileno())
+        os.dup2(nowhere, stream.fileno())
         os.close(nowhere)
 
 
