@@ -7,14 +7,13 @@
 
 from __future__ import annotations
 
-import difflib
 import filecmp
 import os
 from pathlib import Path
 from typing import Final
 
 from elbowscrew.disk.folders import sweep
-from elbowscrew.errors import OutputError, UsageError, shown
+from elbowscrew.errors import OutputError, UsageError, did_you_mean, shown
 from elbowscrew.results.staging import output_error, write_files
 
 SAMPLES: Final[dict[str, str]] = {
@@ -59,9 +58,8 @@ def path(name: str = "") -> Path:
     if name in SAMPLES and not found.is_dir():
         found = folder / f"{name}.csv"
     if not found.resolve().is_relative_to(folder.resolve()) or not found.exists():
-        near = difflib.get_close_matches(name, SAMPLES, n=1)
-        hint = f"did you mean {near[0]!r}?" if near else f"there are {', '.join(SAMPLES)}"
-        msg = f"samples: there is no {shown(name)}; {hint}"
+        hint = did_you_mean(name, tuple(SAMPLES)) or f"; there are {', '.join(SAMPLES)}"
+        msg = f"samples: there is no {shown(name)}{hint}"
         raise UsageError(msg)
     return found
 

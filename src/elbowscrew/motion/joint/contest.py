@@ -103,6 +103,7 @@ class Contest:
         self.stated_one = one
         self.tried: dict[Fitted, Tried] = {}
         self.known_heldout: dict[Fitted, float] = {}
+        self.successive: dict[Fitted, Fit[Mechanism]] = {}
 
     @property
     def order(self) -> tuple[Fitted, ...]:
@@ -117,6 +118,15 @@ class Contest:
     def _take(self, name: Fitted, fit: Fit[Mechanism]) -> None:
         deviation = np.sqrt(np.diag(shared_covariance(fit, noise_known=self.noise_known)))
         self.tried[name] = Tried(fit, _is_valid(name, fit, deviation), deviation)
+        self.known_heldout.pop(name, None)
+        self.successive.pop(name, None)
+
+    def _on_successive_frames(self, name: Fitted) -> Fit[Mechanism]:
+        """A type as it was fitted, put on the frames that stand side by side."""
+        fit = self[name].fit
+        if name not in self.successive:
+            self.successive[name] = settled(fit.mechanism, self.consecutive)
+        return self.successive[name]
 
     def heldout(self, name: Fitted) -> float:
         """Held-out variance of a type, found when it is first asked for."""
@@ -159,21 +169,20 @@ class Contest:
         From third differences of successive frames, so that the motion, which is smooth, has no share; by the median,
         which is less than the mean, so that outliers and gaps do not raise it.
         """
-        fit = self[name].fit
-        return _white_square(settled(fit.mechanism, self.consecutive).whitened) / fit.frame_freedom
+        return _white_square(self._on_successive_frames(name).whitened) / self[name].fit.frame_freedom
 
     def too_far(self, name: Fitted) -> bool:
         """Whether a type leaves more than a joint may, noise that is white in time aside."""
         fit = self[name].fit
         if fit.residual_translation <= _LARGEST_LEFT:
             return False
-        white = _white_square(settled(fit.mechanism, self.consecutive).residual[:, 3:])
+        white = _white_square(self._on_successive_frames(name).residual[:, 3:])
         return bool(fit.residual_translation**2 - white > _LARGEST_LEFT**2)
 
     def rotation_beyond_noise(self, name: Fitted) -> float:
         """RMS rotation (rad) that a type leaves and that is not white in time; 0 where that is not half of it."""
         fit = self[name].fit
-        left, white = fit.residual_rotation**2, _white_square(settled(fit.mechanism, self.consecutive).residual[:, :3])
+        left, white = fit.residual_rotation**2, _white_square(self._on_successive_frames(name).residual[:, :3])
         return float(np.sqrt(left - white)) if left >= NEED_LARGE * white else 0.0
 
     def tells_order(self) -> bool:
@@ -187,7 +196,6 @@ class Contest:
             return True
         if other.cost < fit.cost:
             self._take("two_axes", other)
-            self.known_heldout.pop("two_axes", None)
         less, more = sorted((fit.variance, other.variance))
         return over(more, less) >= NEED_LARGE
 
