@@ -7,17 +7,21 @@ import shutil
 import subprocess
 import sys
 import threading
+import time
 from collections.abc import Iterator
 from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 import pytest
+from hazards import Hazard, work
 
 from elbowscrew import save_simulation, simulate_trial
 from elbowscrew.cli import main
 from elbowscrew.errors import UsageError
 from elbowscrew.study.executors import open_executor
+from elbowscrew.study.outcome import Failure
+from elbowscrew.study.running import run_tasks
 
 distributed: Any = pytest.importorskip("distributed")
 psutil: Any = import_module("psutil")  # Dask's own
@@ -154,3 +158,19 @@ def test_a_cluster_without_workers_is_told_and_waited_for_on_request_alone() -> 
         with open_executor(there.scheduler_address, 1, 60.0)() as executor:
             assert executor.submit(max, 1, 2).result() == 2
         later.join()
+
+
+def test_a_cluster_that_loses_its_workers_for_good_is_not_waited_for(tmp_path: Path) -> None:
+    tasks = [Hazard(f"t{index}", "", str(tmp_path)) for index in range(8)]
+    done: list[int] = []
+    with cluster(1) as there:
+
+        def lose_all(index: int, _failure: Failure | None) -> None:
+            done.append(index)
+            there.scale(0)
+            while there.scheduler.workers:
+                time.sleep(0.01)
+
+        with pytest.raises(UsageError, match=r"no worker after 0.3 s; start some"):
+            run_tasks(tasks, work, open_executor(there.scheduler_address, 1, 0.3), 1, lose_all)
+    assert 0 < len(done) < len(tasks)
