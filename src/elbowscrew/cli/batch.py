@@ -100,7 +100,8 @@ def batch(
     from elbowscrew.cli.progress import shown_progress
     from elbowscrew.configuring import settings_from
     from elbowscrew.errors import ResultError
-    from elbowscrew.study.executors import LOCAL_CLUSTER, available_cores, open_executor
+    from elbowscrew.study.cluster import LOCAL_CLUSTER
+    from elbowscrew.study.executors import available_cores, open_executor
     from elbowscrew.study.study import run_study
     from elbowscrew.study.trials import find_trials
 
