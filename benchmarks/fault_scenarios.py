@@ -98,6 +98,16 @@ def _result_with_old_page(folder: Path) -> None:
     seal(result)
 
 
+def _result_and_bone(folder: Path) -> None:
+    _result_with_old_page(folder)
+    (folder / "bone.obj").write_text("v 0 0 0\nv 9 0 0\nv 0 9 0\nf 1 2 3\n", encoding="utf-8")
+
+
+def _result_and_clip(folder: Path) -> None:
+    _result(folder)
+    (folder / "view.png").write_text("old", encoding="utf-8")
+
+
 def _study(folder: Path) -> None:
     for k in range(2):
         _trial(folder, f"in/t{k}.csv", seed=k)
@@ -173,6 +183,10 @@ SCENARIOS = (
     Scenario("batch", ("batch", "in", *FAST), _study, _PARTS, passing=_TABLES, quick=False),
     Scenario("batch again", ("batch", "in", *FAST), _study_done, _PARTS, passing=_TABLES),
     Scenario("report", ("report", _R, "-q"), _result_with_old_page, ((f"{_R}/report.html", f"{_R}/SHA256SUMS"),)),
+    Scenario("report --mesh", ("report", _R, "--mesh", "arm=bone.obj", "-q"), _result_and_bone,
+             ((f"{_R}/meshes.json", f"{_R}/report.html", f"{_R}/SHA256SUMS"),), quick=False),
+    Scenario("report --clip --force", ("report", _R, "--clip", "view.png", "--force", "-q"), _result_and_clip,
+             (("view.png",),), quick=False),
     Scenario("report of all", ("report", ".", "-q"), _result_with_old_page,
              ((f"{_R}/report.html", f"{_R}/SHA256SUMS"), ("index.html",)), quick=False),
     Scenario("report --figures", _FIGURES, _result, (_DRAWN,), quick=False),

@@ -333,6 +333,6 @@ def test_an_elbows_landmarks_are_written_as_they_are_read(tmp_path: Path) -> Non
         assert found.by_name[name].frame == mark.frame
         assert found.by_name[name].point == pytest.approx(mark.point, abs=5.1e-6)
     save_simulation(trial, tmp_path / "t.csv", landmarks=True, overwrite=True)
-    with pytest.raises(UsageError, match="only an elbow has landmarks"):
-        save_simulation(simulate_trial(joint="knee", **SHORT), tmp_path / "k.csv", landmarks=True)
+    with pytest.raises(UsageError, match="only an elbow and a knee have landmarks"):
+        save_simulation(simulate_trial(joint="wrist", **SHORT), tmp_path / "k.csv", landmarks=True)
     assert not list(tmp_path.glob("k.*"))

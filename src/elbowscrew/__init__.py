@@ -28,10 +28,20 @@ if TYPE_CHECKING:
         simulate_trial,
     )
     from elbowscrew.interface.study import StudyResult
-    from elbowscrew.model import Comparison, KeyframeSet, Landmark, Landmarks, Recording, RigidBody, TrialsComparison
+    from elbowscrew.model import (
+        Comparison,
+        KeyframeSet,
+        Landmark,
+        Landmarks,
+        Mesh,
+        Recording,
+        RigidBody,
+        TrialsComparison,
+    )
     from elbowscrew.motion.interpolation.keyframe_sources import ComparisonPlan
     from elbowscrew.motion.interpolation.rebuilding import keyframes_of
     from elbowscrew.reading.landmarks import read_landmarks
+    from elbowscrew.reading.meshes import read_mesh
     from elbowscrew.reading.options import ReadOptions
     from elbowscrew.reading.plugged import Reader
     from elbowscrew.reading.registry import read_recording
@@ -49,6 +59,7 @@ __all__ = [
     "KeyframeSet",
     "Landmark",
     "Landmarks",
+    "Mesh",
     "ReadOptions",
     "Reader",
     "Recording",
@@ -68,6 +79,7 @@ __all__ = [
     "keyframes_of",
     "read_keyframes",
     "read_landmarks",
+    "read_mesh",
     "read_recording",
     "read_result",
     "save_analysis",
@@ -87,6 +99,7 @@ _HOME = {
     "KeyframeSet": "model",
     "Landmark": "model",
     "Landmarks": "model",
+    "Mesh": "model",
     "ReadOptions": "reading.options",
     "Reader": "reading.plugged",
     "Recording": "model",
@@ -107,6 +120,7 @@ _FUNCTIONS = {
     "keyframes_of": "motion.interpolation.rebuilding",
     "read_keyframes": "results.keyframe_table",
     "read_landmarks": "reading.landmarks",
+    "read_mesh": "reading.meshes",
     "read_recording": "reading.registry",
     "read_result": "interface.calls",
     "save_analysis": "saving",

@@ -50,6 +50,11 @@ class Joint:
     distal: Segment
     angles: tuple[str, str, str]
 
+    @property
+    def angle_keys(self) -> tuple[str, ...]:
+        """The angles' names as keys and attributes have them."""
+        return tuple(name.replace(" ", "_") for name in self.angles)
+
 
 def _segment(name: str, *spoken: str, short: str = "") -> Segment:
     return Segment(name=name, short=short or name, spoken=frozenset(spoken))
@@ -115,8 +120,6 @@ JOINTS: Final = tuple(
     )
 )
 """Every joint; one with several pairs of segments stands once for each, the common one first."""
-
-ELBOW: Final = next(joint for joint in JOINTS if joint.name == "elbow")
 
 _SEGMENTS: Final = tuple(dict.fromkeys(segment for joint in JOINTS for segment in (joint.proximal, joint.distal)))
 

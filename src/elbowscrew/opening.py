@@ -71,12 +71,22 @@ def read_text(path: Path, encoding: str = "utf-8", largest: int = _LARGEST) -> s
     UnicodeDecodeError
         If it is not text.
     """
-    return _decoded(_read_bytes(path, largest), encoding)
+    return _decoded(read_bytes(path, largest), encoding)
 
 
-def _read_bytes(path: Path, largest: int) -> bytes:
+def read_bytes(path: Path, largest: int) -> bytes:
+    """Read a file, and an error if it has more than so many bytes; as `open_bytes`.
+
+    Raises
+    ------
+    OSError
+        As `open_bytes`, and if the file is larger.
+    """
     with open_bytes(path) as stream:
-        content = stream.read(largest + 1)
+        size = min(os.fstat(stream.fileno()).st_size, largest)  # a buffer for more would be made at once
+        content = stream.read(size + 1)
+        if size < len(content) <= largest:  # it has grown
+            content += stream.read(largest + 1 - len(content))
     if len(content) > largest:
         raise OSError(errno.EFBIG, f"it has over {largest} bytes")
     return content
@@ -101,7 +111,7 @@ def read_toml_and_digest(path: Path) -> tuple[dict[str, Any], str]:
     ValueError
         If it is not TOML, or tables are in it deeper than anybody means.
     """
-    content = _read_bytes(path, _LARGEST_TOML)
+    content = read_bytes(path, _LARGEST_TOML)
     text = _decoded(content, "utf-8-sig")
     try:
         return tomllib.loads(text), hashlib.sha256(content).hexdigest()

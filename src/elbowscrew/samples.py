@@ -22,7 +22,7 @@ SAMPLES: Final[dict[str, str]] = {
     "elbow_left": "a left elbow; with landmarks",
     "elbow_moving_arm_mm": "an elbow whose upper arm moves, in millimeters, with frames that were not tracked",
     "elbow_row_tagged": "an elbow in the row-tagged layout",
-    "knee": "a knee",
+    "knee": "a right knee; with landmarks",
     "study": "a folder: two trials of each of three subjects, with a manifest",
 }
 """What there is, by name."""

@@ -6,6 +6,7 @@ import json
 import os
 import tempfile
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
@@ -13,12 +14,14 @@ from elbowscrew.choices import DRAWN_FORMATS
 from elbowscrew.errors import ElbowscrewError, UsageError
 from elbowscrew.model import Analysis, Comparison, Landmarks, RebuiltMotion, TrialsComparison
 from elbowscrew.model.comparison_summary_types import ComparisonSummary, TrialsSummary
+from elbowscrew.model.mesh import Mesh
 from elbowscrew.model.summary_types import Summary
 from elbowscrew.motion.analysis import analyze
 from elbowscrew.opening import write_new
 from elbowscrew.reading.registry import read_recording
 from elbowscrew.results.exporting import check_exports, write_exports
 from elbowscrew.results.joint_summary import joint_summary
+from elbowscrew.results.meshes_file import MESHES, meshes_file, placed_meshes
 from elbowscrew.results.result_files import COMPARISON
 from elbowscrew.results.staging import result_folder, write_files
 from elbowscrew.results.summary import summary_from_analysis
@@ -69,6 +72,7 @@ def save_analysis(
     figure_formats: Sequence[str] | None = None,
     exports: Sequence[str] | None = None,
     report: bool = True,
+    meshes: Mapping[str, Mesh] | None = None,
 ) -> Path:
     """Write tables, ``summary.json``, ``joint.json``, ``figures/``, ``report.html`` and ``methods.txt`` into a folder.
 
@@ -91,6 +95,8 @@ def save_analysis(
         Formats of other programs to write the tables in, too; those of the analysis' settings by default.
     report : bool
         Write the page, and the methods as text.
+    meshes : mapping of str to Mesh, optional
+        Bones to draw in space, from `elbowscrew.read_mesh`, by the segment or the name of their body, in its frame.
 
     Returns
     -------
@@ -102,7 +108,7 @@ def save_analysis(
     OutputError
         If a result is there already, or the disk does not take it.
     UsageError
-        If a format is not known, or its library is not installed.
+        If a format is not known, or its library is not installed, or a mesh is of no body of the trial.
 
     Examples
     --------
@@ -113,7 +119,9 @@ def save_analysis(
     True
     """
     target = Path(folder)
-    write_result(analysis, target, force=overwrite, figure_formats=figure_formats, exports=exports, report=report)
+    write_result(
+        analysis, target, force=overwrite, figure_formats=figure_formats, exports=exports, report=report, meshes=meshes
+    )
     return target
 
 
@@ -125,6 +133,7 @@ def write_result(
     figure_formats: Sequence[str] | None = None,
     exports: Sequence[str] | None = None,
     report: bool = True,
+    meshes: Mapping[str, Mesh] | None = None,
 ) -> Summary:
     """Do what `save_analysis` does, and give the summary that was written."""
     formats = _known_formats(analysis.settings.figure_formats if figure_formats is None else tuple(figure_formats))
@@ -136,6 +145,9 @@ def write_result(
         _write_json(staged / JOINT, joint)
         figures = chosen_figures(analysis.settings.figures)
         view = view_of_analysis(analysis, found, joint, figures if formats else ())
+        if meshes:
+            view = replace(view, meshes=placed_meshes(view, meshes))
+            write_new(staged / MESHES, meshes_file(view.meshes))
         if formats:
             _write_figures(staged, view, figures, formats)
         write_exports(staged, analysis, found, others)
@@ -196,7 +208,7 @@ def save_simulation(
     length_unit : {"m", "cm", "mm"}
         Unit in the export; the row-tagged layout has meters always.
     landmarks : bool
-        Write the elbow's landmarks, too, to the same name with ``.landmarks.toml``.
+        Write the landmarks of an elbow or a knee, too, to the same name with ``.landmarks.toml``.
     overwrite : bool
         Replace files of an earlier simulation.
 
@@ -243,9 +255,9 @@ def save_simulation(
     }
     if landmarks:
         if trial.landmarks is None:
-            msg = "--landmarks: only an elbow has landmarks; leave the option out, or give --joint elbow"
+            msg = "--landmarks: only an elbow and a knee have landmarks; leave it out, or give --joint elbow or knee"
             raise UsageError(msg)
-        about = "landmarks of a synthetic elbow, in the frames of its two bodies"
+        about = f"landmarks of a synthetic {trial.landmarks.joint}, in the frames of its two bodies"
         contents[export.with_suffix(".landmarks.toml").name] = landmarks_lines(trial.landmarks, about)
     write_files(export.parent, contents, replaceable=("synthetic",) if overwrite else None)
     return tuple(export.parent / name for name in contents)

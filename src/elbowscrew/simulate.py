@@ -15,12 +15,13 @@ from elbowscrew.geometry.arrays import Bool, Float
 from elbowscrew.geometry.dual_quaternion import dual_quat_from_pose, multiply, transform_points
 from elbowscrew.joints import joints_of
 from elbowscrew.model import Landmarks, Recording, RigidBody, TrackingLoss
+from elbowscrew.model.anatomy import LANDMARKS_OF
 from elbowscrew.motion.interpolation.laws import LAWS
 from elbowscrew.simulated_joint import (
     Geometry,
     JointCourse,
     ball,
-    elbow_landmarks,
+    landmarks_of,
     mirrors,
     odd_course,
     one_axis,
@@ -196,7 +197,7 @@ class SimulatedTrial:
     truth : dict
         The joint's type, axes or center, and angles, ready for JSON; units in the names (`docs/reference/simulate.md`).
     landmarks : Landmarks or None
-        Of an elbow: where its bones are.
+        Of an elbow or a knee: where its bones are.
     """
 
     recording: Recording
@@ -271,7 +272,7 @@ def simulate_trial(simulation: Simulation | None = None, **settings: Any) -> Sim
         truth["slide_mm"] = (1000.0 * course.slide).tolist()
     if wanted.skin_mm > 0.0:
         truth["skin"] = {name: moved.truth for name, moved in zip(names, skin, strict=True)}
-    landmarks = elbow_landmarks(wanted.side or "right") if wanted.joint == "elbow" else None
+    landmarks = next((landmarks_of(one, wanted.side or "right") for one in LANDMARKS_OF if one == wanted.joint), None)
     return SimulatedTrial(recording=recording, markers=markers, truth=truth, landmarks=landmarks)
 
 

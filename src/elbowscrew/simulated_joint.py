@@ -16,7 +16,7 @@ from elbowscrew.geometry.dual_quaternion import (
     transform_lines,
     transform_points,
 )
-from elbowscrew.model.anatomy import LANDMARK_BODIES, Landmark, Landmarks, Side
+from elbowscrew.model.anatomy import LANDMARK_BODIES, LANDMARKS_OF, BonyJoint, Landmark, Landmarks, Side
 
 # An adult's arm: the line through the elbow in the arm's frame, tilted as the trochlea is; the forearm's line from the
 # head of the ulna past the capitulum, with the arm at rest; the segments' markers.
@@ -29,13 +29,25 @@ _FOREARM_CENTER: Final = np.array([0.018, -0.251, 0.037])
 _FOREARM_TURN: Final = np.array([0.09, 0.21, -0.06])
 _ARM_MARKERS: Final = np.array([[38, 12, 31], [-41, 27, 8], [9, -44, -28], [-6, 5, -47]]) * 1e-3
 _FOREARM_MARKERS: Final = np.array([[35, 33, -9], [-37, 14, 25], [-11, -45, 19], [28, -21, -38]]) * 1e-3
-# An elbow's landmarks with the forearm at rest, in the arm's frame: its line is 3.8 deg off that of the epicondyles.
-_LANDMARKS: Final = {
-    "EL": np.array([37.6, -128.1, 7.5]) * 1e-3,
-    "EM": np.array([-25.6, -130.9, 17.5]) * 1e-3,
-    "GH": np.array([12.0, 140.0, -94.0]) * 1e-3,
-    "US": np.array([24.0, -368.0, 60.0]) * 1e-3,
-    "RS": np.array([58.0, -366.0, 22.0]) * 1e-3,
+# Landmarks of a right limb with its distal body at rest, in the proximal body's frame, mm: the line of the epicondyles
+# is 3.7 deg off the hinge in an elbow and 3.2 deg in a knee, which flexes the other way: so it has its front behind.
+_LANDMARKS: Final[dict[BonyJoint, dict[str, tuple[float, float, float]]]] = {
+    "elbow": {
+        "EL": (37.6, -128.1, 7.5),
+        "EM": (-25.6, -130.9, 17.5),
+        "GH": (12.0, 140.0, -94.0),
+        "US": (24.0, -368.0, 60.0),
+        "RS": (58.0, -366.0, 22.0),
+    },
+    "knee": {
+        "FLE": (-36.7, -215.3, 19.4),
+        "FME": (46.7, -210.7, 10.6),
+        "HC": (-17.0, 193.0, 64.0),
+        "LC": (-30.8, -235.0, 12.7),
+        "MC": (43.2, -235.0, 14.0),
+        "LM": (-26.4, -602.4, -69.7),
+        "MM": (40.6, -598.6, -42.2),
+    },
 }
 _SIZES: Final = {
     "elbow": 1.0, "wrist": 0.8, "knee": 1.6, "ankle": 1.5, "hip": 1.5, "shoulder": 1.1, "finger": 0.3,
@@ -93,12 +105,12 @@ class Geometry(NamedTuple):
         )
 
 
-def elbow_landmarks(side: Side) -> Landmarks:
-    """Landmarks of the elbow that moves in a synthetic trial, as coordinates in the frames of its two bodies."""
-    start, mirror = Geometry.of("elbow", side).start, mirrors(side)[0]
+def landmarks_of(joint: BonyJoint, side: Side) -> Landmarks:
+    """Landmarks of the joint that moves in a synthetic trial, as coordinates in the frames of its two bodies."""
+    start, mirror = Geometry.of(joint, side).start, mirrors(side)[0]
     found: dict[str, Any] = {}
-    for name, body in LANDMARK_BODIES.items():
-        point = mirror * _LANDMARKS[name]
+    for name in LANDMARKS_OF[joint]:
+        body, point = LANDMARK_BODIES[name], 1e-3 * mirror * np.array(_LANDMARKS[joint][name])
         found[name] = Landmark(
             point=point if body == "proximal" else transform_points(conjugate(start), point), frame=body
         )

@@ -106,6 +106,8 @@ STUDY_COLUMNS: Final = (
     *_study_range("flexion"),
     *_study_range("carrying_angle"),
     *_study_range("pronation"),
+    *_study_range("adduction"),
+    *_study_range("internal_rotation"),
     _study(Quantity.LABEL, *_BONES, "axis", name="epicondyle_axis"),
     *_study_limits(Quantity.ANGLE, "epicondyle_angle", "axis_angle_deg"),
     *_study_limits(Quantity.LENGTH, "epicondyle_distance", "axis_distance_mm"),

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Any, Final, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -119,15 +119,23 @@ CYCLE_COLUMNS: Final = (
     _column("theta", "angle", Quantity.ANGLE),
 )
 
-ANATOMY_COLUMNS: Final = (
-    _column("frame", "frame", Quantity.INTEGER),
-    _column("time_s", "time_s", Quantity.NUMBER),
-    _column("flexion", "flexion", Quantity.ANGLE),
-    _column("carrying", "carrying_angle", Quantity.ANGLE),
-    _column("pronation", "pronation", Quantity.ANGLE),
-    _column("axis_angle", "axis_angle", Quantity.ANGLE),
-    _column("axis_distance", "axis_distance", Quantity.LENGTH),
-)
+
+def _anatomy(**angles: str) -> tuple[Column, ...]:
+    """Columns of a joint whose angles have these names, each of an attribute."""
+    return (
+        _column("frame", "frame", Quantity.INTEGER),
+        _column("time_s", "time_s", Quantity.NUMBER),
+        *(_column(name, attribute, Quantity.ANGLE) for name, attribute in angles.items()),
+        _column("axis_angle", "axis_angle", Quantity.ANGLE),
+        _column("axis_distance", "axis_distance", Quantity.LENGTH),
+    )
+
+
+ANATOMY_COLUMNS: Final[dict[Literal["elbow", "knee"], tuple[Column, ...]]] = {
+    "elbow": _anatomy(flexion="flexion", carrying="carrying_angle", pronation="pronation"),
+    "knee": _anatomy(flexion="flexion", adduction="adduction", internal_rotation="internal_rotation"),
+}
+"""By the joint that the landmarks are of."""
 
 
 def _joint_angles(*names: str) -> tuple[Column, ...]:
@@ -275,11 +283,11 @@ TABLES: Final = {
     "repetitions": REPETITION_COLUMNS,
     "cycles": CYCLE_COLUMNS,
     "repetition_curve": CURVE_COLUMNS,
-    "anatomy": ANATOMY_COLUMNS,
+    "anatomy": ANATOMY_COLUMNS["elbow"],
     "joint_angles": JOINT_ANGLE_COLUMNS[2],
     "axis_path": AXIS_PATH_COLUMNS,
 }
-"""The tables of a result, each a file of its name, and their columns: those of the joint's angles with two axes."""
+"""The tables of a result, each a file of its name, and their columns: of a joint with two axes, and of an elbow."""
 
 
 def attributes(read: Sequence[NDArray[Any]], table: tuple[Column, ...]) -> dict[str, NDArray[Any]]:

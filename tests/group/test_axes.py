@@ -7,7 +7,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from elbowscrew.geometry.arrays import Float
-from elbowscrew.group.axes import group_axis, in_humerus
+from elbowscrew.group.axes import group_axis, in_bone
 from elbowscrew.model.anatomy import Side
 
 # A right arm in its humerus' own frame: forward, proximal, to the right.
@@ -24,8 +24,8 @@ def test_one_axis_in_clusters_that_lie_anyhow_and_on_both_sides(side: Side) -> N
         turn, shift = Rotation.random(rng=seed), np.random.default_rng(seed).standard_normal(3)
         landmarks = {name: turn.apply(mirror * place) + shift for name, place in LANDMARKS.items()}
         sense = 1.0 if seed % 2 else -1.0
-        direction, point = in_humerus(
-            sense * turn.apply(mirror * DIRECTION), turn.apply(mirror * POINT) + shift, landmarks, side
+        direction, point = in_bone(
+            sense * turn.apply(mirror * DIRECTION), turn.apply(mirror * POINT) + shift, landmarks, side, "elbow"
         )
         assert sense * direction == pytest.approx(DIRECTION)
         assert point == pytest.approx(POINT - [0.0, -0.3, 0.0])

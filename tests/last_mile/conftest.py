@@ -29,7 +29,7 @@ TRIALS: dict[str, tuple[str, tuple[str, ...]]] = {
     "paper": ("elbow_paper.csv", ()),
     "left": ("elbow_left.csv", ("--landmarks", "marks.toml", "--express-in", "lab", "--keyframes", "0,70,150,230,299",
                                 "--radius", "40", "--knots", "chord", "--method", "dib")),
-    "knee": ("knee.csv", ("--tolerance", "2mm")),
+    "knee": ("knee.csv", ("--landmarks", "knee.landmarks.toml", "--tolerance", "2mm")),
     "cycles": ("cycles.csv", ("--reference", "33", "--step", "20", "--angle-unit", "rad", "--length-unit", "m",
                               "--express-in", "proximal")),
     "lost": ("lost.csv", ("--law", "harmonic", "--phases", "whole", "--marker-noise", "0.4", "--reference", "5",
@@ -53,7 +53,8 @@ def told(request: pytest.FixtureRequest, root: Path, tmp_path_factory: pytest.Te
             write_columns(path, two_axes() if source == "two_axes.csv" else ball(), header={"Take Name": source[:-4]})
     if "--landmarks" in options:
         (folder / "marks.toml").write_text(LANDMARKS, encoding="utf-8")
-        options = tuple(str(folder / "marks.toml") if option == "marks.toml" else option for option in options)
+        places = {"marks.toml": folder, "knee.landmarks.toml": root / "sample_data"}
+        options = tuple(str(places[option] / option) if option in places else option for option in options)
     out = folder / "result"
     options = ("--figure-format", "none", *options)
     return Told(out, path, options, said("analyze", str(path), "-o", str(out), *options))

@@ -33,6 +33,16 @@ FRAMES = {
     "distal": "the {distal}'s frame at the reference, which is that of a cluster and not of a bone",
     "lab": "the laboratory frame, with the {proximal} where it was at the reference",
 }
+BONES = {
+    True: (
+        "humerus and forearm by the sequence Z-X-Y of the International Society of Biomechanics (Wu and others 2005)",
+        "flexion, carrying angle (varus positive) and pronation (0 in supination)",
+    ),
+    False: (
+        "femur and tibia by the joint coordinate system of Grood and Suntay (1983)",
+        "flexion, adduction (varus positive) and internal rotation",
+    ),
+}
 METHODS = {"dlb": "(DLB)", "dib": "(DIB)", "sclerp": "(ScLERP)"}
 
 
@@ -63,7 +73,7 @@ def expected_of(told: Told) -> dict[str, str]:
         + f", {frames - measured - filled} lost",
         "Coordinate systems": "axes in " + FRAMES[told.frame_of_screws].format(**words)
         + (
-            "; anatomical angles between the bones' frames of the ISB (Wu and others 2005)"
+            f"; anatomical angles between {BONES['EL' in marks][0]}"
             if marks else "; no landmarks were given"
         ),
         "Axes": f"helical axes for rotations of {settings['min-angle']:g}° and more",
@@ -85,7 +95,7 @@ def expected_of(told: Told) -> dict[str, str]:
     )
     sense = "signed by the dominant axis" if motion["signed"] else "without a sense"
     found["Angles and their convention"] = f"rotation θ about the finite helical axis since the reference, {sense}" + (
-        "; flexion, carrying angle (varus positive), pronation by the sequence Z-X-Y" if marks else ""
+        f"; {BONES['EL' in marks][1]}, by the sequence Z-X-Y" if marks else ""
     )
     bodies = {body.name: body for body in told.recording.bodies}
     still = summary["trial"]["proximal"] is None
@@ -116,7 +126,7 @@ def expected_of(told: Told) -> dict[str, str]:
             f"ICC(A,1) of θ over the cycles {again['icc']:.3f}; largest θ ± {again['theta_max_sd_deg']:.2g}° (SD)"
         )
     if marks:
-        found["Landmarks"] = ", ".join(mark for mark in LANDMARKS) + " by coordinates"
+        found["Landmarks"] = ", ".join(mark for mark in LANDMARKS if mark in marks) + " by coordinates"
         angle, far = (
             [joint["anatomy"][f"{name}{end}"] for end in ("", "_low", "_high")]
             for name in ("axis_angle_deg", "axis_distance_mm")

@@ -270,27 +270,33 @@ def test_tables_of_the_model(told: Told) -> None:
     ]
 
 
+BONE_ANGLES = {
+    "elbow": ("flexion", "carrying_angle", "pronation"),
+    "knee": ("flexion", "adduction", "internal_rotation"),
+}
+
+
 def test_table_of_the_bones_angles(told: Told) -> None:
     anatomy = told.summary["motion"]["anatomy"]
     if anatomy is None:
         assert "Angle, deg" not in told.page.text
         assert "Flexion" not in told.page.terms
         return
-    ranges = {
-        name: " to ".join(dec(anatomy[name][f"{end}_deg"], 1) for end in ("min", "max"))
-        for name in ("flexion", "carrying_angle", "pronation")
-    }
-    assert told.page.terms["Flexion"] == [
-        f"{ranges['flexion']} deg",
-        f"carrying angle {ranges['carrying_angle']}, pronation {ranges['pronation']} deg",
-    ]
+    names = BONE_ANGLES[anatomy["joint"]]
+    ranges = {name: " to ".join(dec(anatomy[name][f"{end}_deg"], 1) for end in ("min", "max")) for name in names}
+    others = ", ".join(f"{name.replace('_', ' ')} {ranges[name]}" for name in names[1:])
+    assert told.page.terms["Flexion"] == [f"{ranges['flexion']} deg", f"{others} deg"]
     rows = rows_after(told, "Angle, deg")
     assert [[row[0], *row[2:]] for row in rows] == [
         [name, *(dec(anatomy[key][f"{kind}_deg"], 1) for kind in ("start", "min", "max", "range"))]
-        for name, key in (("Flexion", "flexion"), ("Carrying angle", "carrying_angle"), ("Pronation", "pronation"))
+        for name, key in ((name.replace("_", " ").capitalize(), name) for name in names)
     ]
+    start = {
+        "elbow": "arm. Angles of the forearm against the humerus",
+        "knee": "leg. Angles of the tibia against the femur",
+    }
     assert any(
-        text.startswith(f"{anatomy['side'].capitalize()} arm. Angles of the forearm") for text in told.page.texts
+        text.startswith(f"{anatomy['side'].capitalize()} {start[anatomy['joint']]} by ") for text in told.page.texts
     )
 
 
@@ -537,7 +543,7 @@ def test_terminal(told: Told) -> None:
 def anatomy_numbers(anatomy: Any) -> dict[str, list[str]]:
     if anatomy is None:
         return {}
-    angles = [anatomy[name] for name in ("flexion", "carrying_angle", "pronation")]
+    angles = [anatomy[name] for name in BONE_ANGLES[anatomy["joint"]]]
     ends = [f"{name}{end}" for name in ("axis_angle_deg", "axis_distance_mm") for end in ("", "_low", "_high")]
     return {
         "Anatomy": [dec(angle[f"{kind}_deg"]) for angle in angles for kind in ("min", "max", "start")],

@@ -46,7 +46,7 @@ NAMED: dict[str, tuple[str | int, ...]] = {
     "landmarks_side": (*BONES, "side"),
     **{
         f"{angle}_{kind}": (*BONES, angle, f"{kind}_deg")
-        for angle in ("flexion", "carrying_angle", "pronation")
+        for angle in ("flexion", "carrying_angle", "pronation", "adduction", "internal_rotation")
         for kind in ("start", "min", "max", "range")
     },
     "epicondyle_axis": (*BONES, "axis"),
@@ -89,9 +89,10 @@ def test_cells_are_those_of_the_results(
         shutil.copy(root / "sample_data" / name, data / name)
     write_columns(data / "ball.csv", two_rotations)
     (data / "trials.csv").write_text(
-        "path,distal,proximal,landmarks\nelbow_left.csv,,,arm.toml\nknee.csv,,,\nball.csv,Thigh,none,\n"
+        "path,distal,proximal,landmarks\nelbow_left.csv,,,arm.toml\nknee.csv,,,leg.toml\nball.csv,Thigh,none,\n"
     )
     shutil.copy(root / "sample_data" / "elbow_left.landmarks.toml", data / "arm.toml")
+    shutil.copy(root / "sample_data" / "knee.landmarks.toml", data / "leg.toml")
     units = ["--angle-unit", angle, "--length-unit", length]
     asked = ["batch", str(data / "trials.csv"), "-o", str(out), "-q", "--figure-format", "none"]
     assert main([*asked, *units]) == 0, capsys.readouterr().err
@@ -116,6 +117,6 @@ def test_cells_are_those_of_the_results(
                 assert match is None or match[1] in (angle, length), column
     assert {"", "screw_hinge"} <= set(table["joint_model"])
     assert {0, 1} == set(table["signed"])
-    assert list(table["landmarks_side"]) == ["", "left", ""]
+    assert list(table["landmarks_side"]) == ["", "left", "right"]
     sides = set(zip(table["joint_name"], table["joint_side"], strict=True))
     assert sides == {("joint", ""), ("elbow", "left"), ("knee", "")}

@@ -34,14 +34,18 @@ def test_names_and_coordinates(tmp_path: Path) -> None:
     assert found.side == "right"
     assert found.source == str(path)
     assert list(found.by_name) == list(LANDMARKS)
-    assert found.EL.markers == ("lateral_epicondyle",)
-    assert found.US.markers == ("wrist front", "Wrist:Marker 002")
-    assert found.EL.point is None
-    assert [found.EM.frame, found.RS.frame, found.GH.frame] == ["proximal", "distal", "lab"]
-    assert found.EM.point == pytest.approx([0.030, -0.131, 0.0045], abs=1e-15)
-    assert found.GH.point == pytest.approx([10.0, -10.0, 0.0], abs=1e-15)
+    assert found.by_name["EL"].markers == ("lateral_epicondyle",)
+    assert found.by_name["US"].markers == ("wrist front", "Wrist:Marker 002")
+    assert found.by_name["EL"].point is None
+    assert [found.by_name["EM"].frame, found.by_name["RS"].frame, found.by_name["GH"].frame] == [
+        "proximal",
+        "distal",
+        "lab",
+    ]
+    assert found.by_name["EM"].point == pytest.approx([0.030, -0.131, 0.0045], abs=1e-15)
+    assert found.by_name["GH"].point == pytest.approx([10.0, -10.0, 0.0], abs=1e-15)
     assert found.markers == ("lateral_epicondyle", "wrist front", "Wrist:Marker 002")
-    assert read_landmarks(str(path)).EL.markers == found.EL.markers
+    assert read_landmarks(str(path)).by_name["EL"].markers == found.by_name["EL"].markers
 
 
 def test_the_documents_example_is_one(root: Path, tmp_path: Path) -> None:

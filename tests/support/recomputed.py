@@ -178,7 +178,7 @@ def _landmarks(told: Told) -> dict[str, Any] | None:
     if path is None:
         return None
     given = tomllib.loads(Path(path).read_text(encoding="utf-8"))
-    called = {"arm": "proximal", "forearm": "distal"}
+    called = {"arm": "proximal", "forearm": "distal", "thigh": "proximal", "shank": "distal"}
     return {
         "side": given["side"],
         **{name: {**mark, "body": called.get(mark["body"], mark["body"])} for name, mark in given["landmarks"].items()},
@@ -894,27 +894,36 @@ def _bodies(told: Told) -> dict[str, Any]:
     }
 
 
+ON_PROXIMAL = ("EL", "EM", "GH", "FLE", "FME", "HC")
+ANGLES = {
+    "flexion": "flexion", "carrying_angle": "carrying", "pronation": "pronation", "adduction": "adduction",
+    "internal_rotation": "internal_rotation",
+}  # fmt: skip
+
+
 def _anatomy(told: Told) -> dict[str, Any]:
     """Epicondyles and the joint's axis: the angle between the lines, and how far it passes from the middle."""
     joint, marks = told.joint, told.summary["landmarks"]
     R, t = pose_of(joint["bodies"]["proximal_in_lab"])
     places = {}
-    for name in ("EL", "EM", "GH", "US", "RS"):
-        place, own = np.array(marks[name]["mm"]), "distal" if name in ("US", "RS") else "proximal"
+    for name in set(marks) - {"side"}:
+        place, own = np.array(marks[name]["mm"]), "proximal" if name in ON_PROXIMAL else "distal"
         assert marks[name]["body"] in ("lab", own)
         places[name] = R.T @ (place - t) if marks[name]["body"] == "lab" else place
-    line = (places["EL"] - places["EM"]) / np.linalg.norm(places["EL"] - places["EM"])
-    middle = 0.5 * (places["EL"] + places["EM"])
+    lateral, medial = (places[name] for name in (("EL", "EM") if "EL" in places else ("FLE", "FME")))
+    line = (lateral - medial) / np.linalg.norm(lateral - medial)
+    middle = 0.5 * (lateral + medial)
     fit = joint["mean_axis"] or joint[joint["preferred"]]
     n, p = np.array(fit["direction_in_proximal"]), np.array(fit["point_in_proximal_mm"])
     off = float(angle_between(n, line))
     J, j = pose_of(joint["bodies"]["distal_in_proximal"])
     return {
+        "joint": "elbow" if "EL" in places else "knee",
         "side": marks["side"],
         "axis": "joint_axis",
         "axis_angle_deg": min(off, 180.0 - off),
         "axis_distance_mm": float(np.linalg.norm(np.cross(middle - p, n))),
-        "landmark_sensitivity_deg_per_mm": float(np.degrees(1.0 / np.linalg.norm(places["EL"] - places["EM"]))),
+        "landmark_sensitivity_deg_per_mm": float(np.degrees(1.0 / np.linalg.norm(lateral - medial))),
         "joint_center_in_proximal_mm": middle,
         "joint_center_in_distal_mm": J.T @ (middle - j),
         "epicondyle_direction_in_proximal": line,
@@ -928,8 +937,11 @@ def _angles_of_bones(told: Told) -> dict[str, Any] | None:
     if found is None:
         return None
     table = told.table("anatomy")[told.screw["valid"] == 1]
-    ranges = {}
-    for name, column in (("flexion", "flexion"), ("carrying_angle", "carrying"), ("pronation", "pronation")):
+    ranges: dict[str, Any] = {}
+    for name, column in ANGLES.items():
+        if f"{column}_deg" not in table:
+            ranges[name] = None
+            continue
         angle = table[f"{column}_deg"].dropna()
         low, high = angle.min(), angle.max()
         ranges[name] = {"start_deg": angle.iloc[0], "min_deg": low, "max_deg": high, "range_deg": high - low}

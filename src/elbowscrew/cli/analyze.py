@@ -30,6 +30,8 @@ def analyze(
     *,
     given: dict[str, Any],
     landmarks: options.LandmarksFile = None,
+    mesh: options.MeshFiles = None,
+    mesh_unit: options.MeshUnit = None,
     page: Annotated[
         bool,
         typer.Option(
@@ -65,11 +67,12 @@ def analyze(
     check_result_folder(target, force=force)  # before the work, not after it
     check_output(settings)
     placed = None if landmarks is None else read_landmarks(landmarks)
+    bones = options.meshes(mesh, mesh_unit)
     with shown_stages(quiet=quiet) as begin:
         begin(f"Analyzing {trial.name}")
         analysis = analyze_file(trial, settings, distal_path=distal_path, landmarks=placed)
         begin(f"Writing {target}")
-        summary = write_result(analysis, target, force=force, report=page)
+        summary = write_result(analysis, target, force=force, report=page, meshes=bones)
     render.warnings(summary["warnings"])
     if json_output:
         render.json_object(summary)

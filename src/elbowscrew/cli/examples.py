@@ -19,6 +19,7 @@ EXAMPLES: Final[dict[str, tuple[str, ...]]] = {
         "elbowscrew report results",
         "elbowscrew report trial_elbowscrew --figures theta,joint --width single --figure-format pdf",
         "elbowscrew report results --figures overlay",
+        "elbowscrew report trial_elbowscrew --clip view.gif",
     ),
     "compare": (
         "elbowscrew compare trial.csv",

@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from elbowscrew.errors import UsageError
+from elbowscrew.choices import LengthUnit
+from elbowscrew.errors import UsageError, shown
 
 if TYPE_CHECKING:
+    from elbowscrew.model.mesh import Mesh
     from elbowscrew.motion.interpolation.keyframe_sources import ComparisonPlan
 
 LandmarksFile = Annotated[
@@ -18,6 +20,20 @@ LandmarksFile = Annotated[
     typer.Option(metavar="FILE.toml", rich_help_panel="Bodies and file", help="Landmarks, for the anatomical angles."),
 ]
 
+MeshFiles = Annotated[
+    list[str] | None,
+    typer.Option(
+        metavar="BODY=FILE",
+        rich_help_panel="Bones in space",
+        help="A bone's surface (stl, obj, ply) in the frame of its body, as in thigh=femur.stl. Repeat the option.",
+    ),
+]
+MeshUnit = Annotated[
+    LengthUnit | None,
+    typer.Option(
+        rich_help_panel="Bones in space", help="Unit of the meshes, which they do not state.", show_default="mm"
+    ),
+]
 
 TrialFile = Annotated[
     Path,
@@ -36,6 +52,32 @@ DistalFile = Annotated[
         show_default=False,
     ),
 ]
+
+
+def meshes(given: Sequence[str] | None, unit: LengthUnit | None) -> dict[str, Mesh]:
+    """Read the bones that ``--mesh`` names, by their bodies.
+
+    Raises
+    ------
+    UsageError
+        If one is not ``BODY=FILE``, a body is named twice, or a file is no mesh.
+    """
+    from elbowscrew.reading.meshes import read_mesh
+
+    if unit is not None and not given:
+        msg = "--mesh-unit: belongs to --mesh; give it, too"
+        raise UsageError(msg)
+    found: dict[str, Mesh] = {}
+    for text in given or ():
+        body, sign, file = text.partition("=")
+        if not (body.strip() and sign and file.strip()):
+            msg = f"--mesh {shown(text)}: expected a body and a file, as in thigh=femur.stl"
+            raise UsageError(msg)
+        if body.strip() in found:
+            msg = f"--mesh: {shown(body.strip())} is given twice; a body has one mesh"
+            raise UsageError(msg)
+        found[body.strip()] = read_mesh(Path(file.strip()), unit or "mm")
+    return found
 
 
 def parts(option: str, given: Sequence[str] | None, *, once: bool = True) -> tuple[str, ...] | None:

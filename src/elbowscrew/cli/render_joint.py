@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Literal
 
 from elbowscrew.choices import FUNCTIONAL_AXIS_WORDS
 from elbowscrew.cli.text import rounded, vector_text
+from elbowscrew.joints import joints_of
 
 if TYPE_CHECKING:
     from elbowscrew.model.joint_summary_types import (
@@ -52,7 +53,9 @@ def anatomy_rows(found: AnglesOfBones | None) -> Iterator[tuple[str, str]]:
     """Tell the bones' angles, and the axis against the line of the epicondyles."""
     if found is None:
         return
-    angles = ", ".join(_range_text(name, found[name]) for name in ("flexion", "carrying_angle", "pronation"))
+    joint = joints_of(found["joint"])[0]
+    ranges = [(name, found[key]) for name, key in zip(joint.angles, joint.angle_keys, strict=True)]  # type: ignore[literal-required]
+    angles = ", ".join(_range_text(name, angle) for name, angle in ranges)
     yield "Anatomy", f"{found['side']} side: {angles}"
     if found["axis"] is None:
         yield "Epicondyles", "the motion shows no axis to hold against their line"
@@ -69,8 +72,7 @@ def anatomy_rows(found: AnglesOfBones | None) -> Iterator[tuple[str, str]]:
     )
 
 
-def _range_text(name: str, found: AngleRange) -> str:
-    word = name.replace("_", " ")
+def _range_text(word: str, found: AngleRange) -> str:
     if found["start_deg"] is None:
         return f"{word} not known"
     low, high, start = (rounded(found[key]) for key in ("min_deg", "max_deg", "start_deg"))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -11,6 +11,9 @@ from elbowscrew.choices import DRAWN_FORMATS, OverlayBy
 from elbowscrew.cli import options
 from elbowscrew.report.names import WIDTHS_MM
 from elbowscrew.view.figure_names import ALL, FIGURE_CHOICES, FIGURE_ENTRIES, OVERLAY
+
+if TYPE_CHECKING:
+    from elbowscrew.model.mesh import Mesh
 
 _PAGES, _FIGURES = "Pages", "Figures for publication"
 
@@ -24,6 +27,17 @@ def report(
             show_default=False,
         ),
     ],
+    mesh: options.MeshFiles = None,
+    mesh_unit: options.MeshUnit = None,
+    clip: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE",
+            rich_help_panel="Bones in space",
+            help="Write the view in space in place of pages: a clip (gif, or webm with ffmpeg) or a still (png).",
+            show_default=False,
+        ),
+    ] = None,
     figures: Annotated[
         list[str] | None,
         typer.Option(
@@ -94,23 +108,33 @@ def report(
     from elbowscrew.report import remake_pages, results_in
     from elbowscrew.report.names import figure_names, width_mm
 
+    bones = options.meshes(mesh, mesh_unit)
+    if clip is not None and figures:
+        msg = "--clip, --figures: each is written in place of pages; ask for them one after the other"
+        raise UsageError(msg)
     if not figures:
         given = {
             "--by": by,
             "--figure-format": figure_format,
             "--output": output,
             "--font": font,
-            "--force": force or None,
+            "--force": (force and clip is None) or None,
         }
         idle = [name for name, value in given.items() if value is not None]
         if idle or width != "double":
             msg = f"{', '.join(idle or ['--width'])}: belongs to --figures; name some of {', '.join(FIGURE_CHOICES)}"
             raise UsageError(msg)
-        with shown_steps("Pages", quiet=quiet) as step:
-            written, errors = remake_pages(results, report=step)
+        if clip is not None:
+            written, errors = (_clip(results, clip, bones, force=force),), ()
+        else:
+            with shown_steps("Pages", quiet=quiet) as step:
+                written, errors = remake_pages(results, report=step, meshes=bones)
     else:
         from elbowscrew.report.publication import save_publication_figures
 
+        if bones:
+            msg = "--mesh: bones are drawn in the pages, and --figures makes none; leave one of the two out"
+            raise UsageError(msg)
         errors = ()
         names, wide = figure_names(figures), width_mm(width)
         formats = list(options.parts("figure-format", figure_format) or ("pdf",))
@@ -144,3 +168,15 @@ def report(
         tell(f"elbowscrew: error: {one_line(str(error))}")
     if errors:
         raise errors[0]
+
+
+def _clip(results: list[Path], clip: Path, bones: dict[str, Mesh], *, force: bool) -> Path:
+    from elbowscrew.errors import UsageError
+    from elbowscrew.report import results_in
+    from elbowscrew.report.clip import write_clip
+
+    inside = results_in(results)
+    if len(inside) != 1:
+        msg = f"--clip: shows one trial, and there are {len(inside)} results; give the folder of one"
+        raise UsageError(msg)
+    return write_clip(inside[0], clip, meshes=bones, force=force)

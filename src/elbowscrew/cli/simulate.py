@@ -98,7 +98,9 @@ def simulate(
     ] = "m",
     landmarks: Annotated[
         bool,
-        typer.Option("--landmarks", rich_help_panel=_OUTPUT, help="Write an elbow's landmarks: <OUT>.landmarks.toml."),
+        typer.Option(
+            "--landmarks", rich_help_panel=_OUTPUT, help="Write landmarks of an elbow or a knee: <OUT>.landmarks.toml."
+        ),
     ] = False,
     force: Annotated[
         bool, typer.Option("--force", rich_help_panel=_OUTPUT, help="Replace an earlier simulation.")

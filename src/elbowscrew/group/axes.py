@@ -1,4 +1,4 @@
-"""The mean of subjects' axes in the humerus' own frame, and how far they lie apart."""
+"""The mean of subjects' axes in the proximal bone's own frame, and how far they lie apart."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ import numpy as np
 from elbowscrew.geometry._small_angle import length
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.quaternion import rotation_matrix_from_quat
-from elbowscrew.model.anatomy import Side
-from elbowscrew.motion.anatomy.anatomy import humerus_frame
+from elbowscrew.model.anatomy import BonyJoint, Side
+from elbowscrew.motion.anatomy.bone_frames import epicondyles, frame_of_proximal
 from elbowscrew.motion.difference import angle_of_lines, piercing
 
 _MIRROR: Final[Float] = np.array([1.0, 1.0, -1.0])
@@ -20,7 +20,7 @@ _MIRROR: Final[Float] = np.array([1.0, 1.0, -1.0])
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GroupAxis:
-    """The mean axis of one condition, in the ISB's frame of the humerus, right and left arms alike.
+    """The mean axis of one condition, in the frame of the humerus or the femur, right and left limbs alike.
 
     Attributes
     ----------
@@ -44,17 +44,21 @@ class GroupAxis:
     point_sd: float
 
 
-def in_humerus(direction: Float, point: Float, landmarks: Mapping[str, Float], side: Side) -> tuple[Float, Float]:
-    """Write an axis in the humerus' frame as a right arm has it, its point from the middle of the epicondyles.
+def in_bone(
+    direction: Float, point: Float, landmarks: Mapping[str, Float], side: Side, joint: BonyJoint
+) -> tuple[Float, Float]:
+    """Write an axis in the proximal bone's frame as a right limb has it, its point from the middle of the epicondyles.
 
     Parameters
     ----------
     direction, point : ndarray, shape (3,)
         In the proximal body's frame; the point in meters, NaN where not known.
     landmarks : mapping of str to ndarray, shape (3,)
-        GH, EL and EM in that frame, meters.
+        Those of the proximal bone in that frame, meters.
     side : {"right", "left"}
-        A left arm is mirrored in the sagittal plane, as the ISB does.
+        A left limb is mirrored in the sagittal plane, as the ISB does.
+    joint : {"elbow", "knee"}
+        Of which the landmarks are.
 
     Returns
     -------
@@ -63,12 +67,12 @@ def in_humerus(direction: Float, point: Float, landmarks: Mapping[str, Float], s
 
     References
     ----------
-    Wu and others 2005, J Biomech 38:981-992.
+    Wu and others 2005, J Biomech 38:981-992; Grood and Suntay 1983, J Biomech Eng 105:136-144.
     """
-    gh, el, em = (landmarks[name] for name in ("GH", "EL", "EM"))
-    to_humerus = rotation_matrix_from_quat(humerus_frame(gh, el, em, side)[:4]).T
+    to_bone = rotation_matrix_from_quat(frame_of_proximal(landmarks, side, joint)[:4]).T
+    lateral, medial = epicondyles(landmarks, joint)
     mirror = _MIRROR if side == "left" else 1.0
-    return mirror * (to_humerus @ direction), mirror * (to_humerus @ (point - 0.5 * (el + em)))
+    return mirror * (to_bone @ direction), mirror * (to_bone @ (point - 0.5 * (lateral + medial)))
 
 
 def group_axis(axes: Mapping[str, Sequence[tuple[Float, Float]]]) -> GroupAxis:
@@ -77,7 +81,7 @@ def group_axis(axes: Mapping[str, Sequence[tuple[Float, Float]]]) -> GroupAxis:
     Parameters
     ----------
     axes : mapping of str to sequence of (ndarray, ndarray)
-        Direction and point of the axis in each trial of each subject, from `in_humerus`.
+        Direction and point of the axis in each trial of each subject, from `in_bone`.
     """
     directions = [np.stack([direction for direction, _ in axes[name]]) for name in sorted(axes)]
     of_subjects = np.stack([_mean_direction(one) for one in directions])

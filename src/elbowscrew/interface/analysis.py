@@ -30,8 +30,10 @@ if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
 
+    from elbowscrew.interface.calls import StrPath
     from elbowscrew.interface.plotting import Plots
     from elbowscrew.interface.space import SpaceView
+    from elbowscrew.model import Mesh
 
 TableName = Literal[
     "screw", "interpolation", "keyframes", "instantaneous", "steps", "repetitions", "cycles", "repetition_curve",
@@ -189,22 +191,25 @@ class Analysis(Findings, Viewed):  # noqa: D101 - it has one
 
         return Plots(self._view)
 
-    def view_3d(self, height: int = 720) -> SpaceView:
+    def view_3d(self, height: int = 720, meshes: Mapping[str, Mesh | StrPath] | None = None) -> SpaceView:
         """Show bodies, axes and motion in space, in a notebook: to turn, to zoom and to play, as on the trial's page.
 
         Parameters
         ----------
         height : int
             Pixels.
+        meshes : mapping of str to Mesh or path-like, optional
+            Bones by the segment or the name of their body, in its frame: what `elbowscrew.read_mesh` gives, or files in
+            millimeters. Those of the result by default.
 
         Raises
         ------
         UsageError
-            If positions were not measured, so that nothing has a place.
+            If positions were not measured, so that nothing has a place, or a mesh is none or of no body of the trial.
         """
         from elbowscrew.interface.space import SpaceView
 
-        return SpaceView.of(self._view, height)
+        return SpaceView.of(self._view, height, meshes)
 
     @property
     def _title(self) -> str:

@@ -15,6 +15,8 @@ _NUMBER: Final = re.compile(r"[+-]?\d+(\.\d+)?")
 _OTHERS: Final = {
     "force": "overwrite=True",
     "landmarks": "landmarks",
+    "mesh": "meshes",
+    "mesh-unit": "unit",
     "output": "folder",
     "recursive": "recursive=True",
 }

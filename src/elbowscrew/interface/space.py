@@ -3,11 +3,17 @@
 from __future__ import annotations
 
 import html
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from typing import Final
 
 from elbowscrew.errors import UsageError
+from elbowscrew.interface.calls import StrPath
+from elbowscrew.interface.python_words import public
+from elbowscrew.model.mesh import Mesh
+from elbowscrew.reading.meshes import read_mesh
 from elbowscrew.report.trial_page import space_page
+from elbowscrew.results.meshes_file import placed_meshes
 from elbowscrew.view.trial_view import TrialView
 
 _LEAST_PIXELS: Final = 100
@@ -29,7 +35,7 @@ class SpaceView:
     height: int
 
     @classmethod
-    def of(cls, view: TrialView, height: int) -> SpaceView:
+    def of(cls, view: TrialView, height: int, meshes: Mapping[str, Mesh | StrPath] | None) -> SpaceView:
         """Make the view of a trial; see `Analysis.view_3d`."""
         if not view.located:
             msg = "there are orientations and no positions, so that nothing has a place in space"
@@ -37,6 +43,9 @@ class SpaceView:
         if height < _LEAST_PIXELS:
             msg = f"height: expected {_LEAST_PIXELS} pixels at least, found {height}"
             raise UsageError(msg)
+        read = {name: one if isinstance(one, Mesh) else public(read_mesh)(one) for name, one in (meshes or {}).items()}
+        if read:
+            view = replace(view, meshes=public(placed_meshes)(view, read))
         return cls(space_page(view), height)
 
     def __repr__(self) -> str:

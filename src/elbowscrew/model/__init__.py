@@ -4,6 +4,7 @@ from elbowscrew.model.anatomy import AnatomicalMotion, Landmark, Landmarks
 from elbowscrew.model.axes import HelicalSteps, InstantaneousMotion
 from elbowscrew.model.comparison import ComparedModels, ComparedOverTrials, Comparison, TrialsComparison
 from elbowscrew.model.joint_axis import AxisPath, AxisWander, FittedJoint, JointAxis, LineEstimate, MeanLine, PoseNoise
+from elbowscrew.model.mesh import Mesh
 from elbowscrew.model.modeled import (
     BodyPoints,
     InterpolatedMotion,
@@ -60,6 +61,7 @@ __all__ = [
     "MarkerMotion",
     "MeanAxis",
     "MeanLine",
+    "Mesh",
     "ModelPhases",
     "MovementPhases",
     "PhaseLaw",

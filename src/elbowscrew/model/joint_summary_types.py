@@ -12,7 +12,7 @@ from pydantic import Field
 from typing_extensions import TypedDict
 
 from elbowscrew.choices import ExpressIn
-from elbowscrew.model.anatomy import FunctionalAxisName, Side
+from elbowscrew.model.anatomy import BonyJoint, FunctionalAxisName, Side
 from elbowscrew.model.joint_type import JointTypeName
 
 Vector = Annotated[list[float], Field(min_length=3, max_length=3)]
@@ -293,11 +293,13 @@ class RepeatabilitySummary(TypedDict):
 
 
 class AxisAgainstBones(TypedDict):
-    """The axis that the elbow flexes about, against the bones.
+    """The axis that the joint flexes about, against the bones.
 
     Low and high are 95 % limits for the clusters' frames; the error of the landmarks themselves is not in them.
     """
 
+    joint: BonyJoint
+    """The joint that the landmarks are of."""
     side: Side
     axis: FunctionalAxisName | None
     """The joint's axis, its mean where it wanders, or the first of two axes; None where the motion shows none."""

@@ -203,12 +203,17 @@ class AngleRange(TypedDict):
 
 
 class AnglesOfBones(AxisAgainstBones):
-    """The elbow's angles by the landmarks, and the axis that it flexes about against the bones."""
+    """The joint's angles by the landmarks, and the axis that it flexes about against the bones."""
 
     flexion: AngleRange
-    carrying_angle: AngleRange
-    """Varus positive, so that a valgus elbow's is negative."""
-    pronation: AngleRange
+    carrying_angle: AngleRange | None
+    """Of an elbow; varus positive, so that a valgus elbow's is negative."""
+    pronation: AngleRange | None
+    """Of an elbow."""
+    adduction: AngleRange | None
+    """Of a knee; varus positive."""
+    internal_rotation: AngleRange | None
+    """Of a knee."""
 
 
 class MotionSummary(TypedDict):
@@ -360,19 +365,33 @@ class LandmarkSummary(TypedDict):
 
 
 class LandmarksSummary(TypedDict):
-    """The landmarks as they were asked for."""
+    """The landmarks as they were asked for: all of one joint."""
 
     side: Side
-    EL: LandmarkSummary
+    EL: NotRequired[LandmarkSummary]
     """Lateral epicondyle."""
-    EM: LandmarkSummary
+    EM: NotRequired[LandmarkSummary]
     """Medial epicondyle."""
-    US: LandmarkSummary
+    US: NotRequired[LandmarkSummary]
     """Ulnar styloid."""
-    RS: LandmarkSummary
+    RS: NotRequired[LandmarkSummary]
     """Radial styloid."""
-    GH: LandmarkSummary
+    GH: NotRequired[LandmarkSummary]
     """Center of the glenohumeral joint."""
+    FLE: NotRequired[LandmarkSummary]
+    """Lateral femoral epicondyle."""
+    FME: NotRequired[LandmarkSummary]
+    """Medial femoral epicondyle."""
+    HC: NotRequired[LandmarkSummary]
+    """Center of the hip."""
+    LC: NotRequired[LandmarkSummary]
+    """Lateral tibial condyle."""
+    MC: NotRequired[LandmarkSummary]
+    """Medial tibial condyle."""
+    LM: NotRequired[LandmarkSummary]
+    """Lateral malleolus."""
+    MM: NotRequired[LandmarkSummary]
+    """Medial malleolus."""
 
 
 class Summary(TypedDict):

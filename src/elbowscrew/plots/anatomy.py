@@ -1,8 +1,6 @@
-"""The bones' angles by the ISB's sequence: over time, and against flexion."""
+"""The bones' angles: over time, and against flexion."""
 
 from __future__ import annotations
-
-from typing import Final
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -19,11 +17,9 @@ from elbowscrew.view.decimation import drawn_rows
 from elbowscrew.view.long_trials import shown_part
 from elbowscrew.view.trial_view import TrialView
 
-_ANGLES: Final = {"flexion": "Flexion", "carrying_angle": "Carrying angle", "pronation": "Pronation"}
-
 
 def anatomy_figure(analysis: Analysis | TrialView, *, width_mm: float = WIDTH_MM) -> Figure:
-    """Make the figure of flexion, carrying angle and pronation over time, and of the latter two against flexion."""
+    """Make the figure of the bones' three angles over time, and of the latter two against flexion."""
     view = view_of(analysis)
     shown, stretch = shown_part(view)
     if width_mm < NARROW_MM:
@@ -35,10 +31,11 @@ def anatomy_figure(analysis: Analysis | TrialView, *, width_mm: float = WIDTH_MM
     panels = overview_grid(figure, view, stretch, 3, grid[0])
     cells = grid[1].subgridspec(2, 1)
     against = [figure.add_subplot(cells[k, 0]) for k in range(2)]
-    for ax, name in zip(panels[-3:], _ANGLES, strict=True):
+    names = view.named_joint.angle_keys
+    for ax, name in zip(panels[-3:], names, strict=True):
         plot_anatomical_angle(ax, shown, name).set_xlabel("")
     panels[-1].set_xlabel("Time (s)")
-    for ax, name in zip(against, ("carrying_angle", "pronation"), strict=True):
+    for ax, name in zip(against, names[1:], strict=True):
         plot_against_flexion(ax, shown, name)
     style.letter(*panels, *against)
     style.legend(figure, *panels, *against)
@@ -46,7 +43,7 @@ def anatomy_figure(analysis: Analysis | TrialView, *, width_mm: float = WIDTH_MM
 
 
 def plot_anatomical_angle(ax: Axes, analysis: Analysis | TrialView, name: str) -> Axes:
-    """Draw an angle over time: ``flexion``, ``carrying_angle`` or ``pronation``."""
+    """Draw an angle of the joint, one of its `angle_keys`, over time."""
     view = view_of(analysis)
     line(ax, view.time_s, _values(view, name), label="measured", **style.MEASURED)
     mark_tracking(ax, view)
@@ -55,7 +52,7 @@ def plot_anatomical_angle(ax: Axes, analysis: Analysis | TrialView, name: str) -
 
 
 def plot_against_flexion(ax: Axes, analysis: Analysis | TrialView, name: str) -> Axes:
-    """Draw carrying angle or pronation against flexion."""
+    """Draw another angle of the joint against flexion."""
     view = view_of(analysis)
     flexion, values = _values(view, "flexion"), _values(view, name)
     rows = drawn_rows(flexion, values, keep_gaps=True)
@@ -72,4 +69,4 @@ def _values(view: TrialView, name: str) -> Float:
 
 
 def _label(view: TrialView, name: str) -> str:
-    return f"{_ANGLES[name]} ({view.settings.angle_unit})"
+    return f"{name.replace('_', ' ').capitalize()} ({view.settings.angle_unit})"

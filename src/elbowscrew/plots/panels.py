@@ -87,9 +87,9 @@ _PANELS: Final[dict[FigureName, Callable[[TrialView], tuple[Panel, ...]]]] = {
     "joint": _joint,
     "slide": lambda _view: (Panel(plot_slide),),
     "error": lambda view: (Panel(plot_angle_error), *([Panel(plot_rms_displacement)] if view.located else [])),
-    "anatomy": lambda _view: (
-        *_over(plot_anatomical_angle, "name", "flexion", "carrying_angle", "pronation"),
-        *_over(plot_against_flexion, "name", "carrying_angle", "pronation"),
+    "anatomy": lambda view: (
+        *_over(plot_anatomical_angle, "name", *view.named_joint.angle_keys),
+        *_over(plot_against_flexion, "name", *view.named_joint.angle_keys[1:]),
     ),
     "velocity": lambda view: (Panel(plot_angular_velocity), *([Panel(plot_slide_velocity)] if view.located else [])),
     "instantaneous_axes": lambda _view: tuple(

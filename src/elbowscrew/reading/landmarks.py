@@ -11,18 +11,22 @@ from typing import Any, Final, get_args
 import numpy as np
 
 from elbowscrew.errors import UsageError, shown, why_unreadable
-from elbowscrew.model.anatomy import LANDMARKS, Landmark, LandmarkFrame, Landmarks, Side
+from elbowscrew.joints import joints_of
+from elbowscrew.model.anatomy import LANDMARKS, LANDMARKS_OF, BonyJoint, Landmark, LandmarkFrame, Landmarks, Side
 from elbowscrew.opening import read_toml
 
 _FARTHEST_MM: Final = 10_000.0
 _SIDES: Final = get_args(Side)
-_FRAMES: Final[dict[str, LandmarkFrame]] = {"arm": "proximal", "forearm": "distal", "lab": "lab"}
-"""Words of the file for the frames, an elbow's own."""
-_EXPECTED: Final = 'a marker\'s name, a list of names, or { body = "arm", mm = [x, y, z] }'
+
+
+def _frames(joint: BonyJoint) -> dict[str, LandmarkFrame]:
+    """Words of the file for the frames, the joint's own."""
+    own = joints_of(joint)[0]
+    return {own.proximal.short: "proximal", own.distal.short: "distal", "lab": "lab"}
 
 
 def read_landmarks(path: str | os.PathLike[str]) -> Landmarks:
-    """Read the landmarks of an arm; ``docs/explanation/anatomy.md`` says how the file looks.
+    """Read the landmarks of an elbow or a knee; ``docs/explanation/anatomy.md`` says how the file looks.
 
     Parameters
     ----------
@@ -60,11 +64,13 @@ def read_landmarks(path: str | os.PathLike[str]) -> Landmarks:
     if not isinstance(given, dict):
         faults.append(f"landmarks: expected a table, [landmarks] on a line of its own, found {shown(given)}")
         given = {}
-    faults += _unknown(given, LANDMARKS, "landmark")
-    missing = [f"{name} ({what})" for name, what in LANDMARKS.items() if name not in given]
+    joint = _joint_of(given)
+    faults += _unknown(given, LANDMARKS_OF[joint], "landmark")
+    missing = [f"{name} ({LANDMARKS[name]})" for name in LANDMARKS_OF[joint] if name not in given]
     if missing:
-        faults.append(f"missing in [landmarks]: {', '.join(missing)}; give each {_EXPECTED}")
-    found = {name: _landmark(name, given[name], faults) for name in LANDMARKS if name in given}
+        other = "" if given else f" (of a knee: {', '.join(LANDMARKS_OF['knee'])})"
+        faults.append(f"missing in [landmarks]: {', '.join(missing)}{other}; give each {_expected(joint)}")
+    found = {name: _landmark(name, given[name], joint, faults) for name in LANDMARKS_OF[joint] if name in given}
     if faults:
         msg = f"{file}: {'; '.join(faults)}"
         raise UsageError(msg)
@@ -82,28 +88,37 @@ def _read_toml(file: Path) -> dict[str, Any]:
         raise UsageError(msg) from error
 
 
-def _landmark(name: str, value: object, faults: list[str]) -> Landmark | None:
+def _joint_of(given: Mapping[str, Any]) -> BonyJoint:
+    """Tell the joint that most of these landmarks are of; of none, an elbow."""
+    return max(LANDMARKS_OF, key=lambda joint: len(set(given) & set(LANDMARKS_OF[joint])))
+
+
+def _expected(joint: BonyJoint) -> str:
+    return f'a marker\'s name, a list of names, or {{ body = "{next(iter(_frames(joint)))}", mm = [x, y, z] }}'
+
+
+def _landmark(name: str, value: object, joint: BonyJoint, faults: list[str]) -> Landmark | None:
     """Build one landmark; what is wrong with it is added to the faults."""
     before = len(faults)
     location = f"landmarks.{name}"
     if isinstance(value, dict):
-        faults += [f"{location}: {fault}" for fault in _coordinate_faults(value)]
+        faults += [f"{location}: {fault}" for fault in _coordinate_faults(value, _frames(joint))]
         if len(faults) > before:
             return None
-        return Landmark(point=np.array(value["mm"], dtype=np.float64) / 1000.0, frame=_FRAMES[value["body"]])
+        return Landmark(point=np.array(value["mm"], dtype=np.float64) / 1000.0, frame=_frames(joint)[value["body"]])
     given = value if isinstance(value, list) else [value]
     markers = tuple(marker for marker in given if isinstance(marker, str) and marker.strip())
     if not markers or len(markers) < len(given):
-        faults.append(f"{location}: expected {_EXPECTED}, found {shown(value)}")
+        faults.append(f"{location}: expected {_expected(joint)}, found {shown(value)}")
         return None
     return Landmark(markers=markers)
 
 
-def _coordinate_faults(table: Mapping[str, Any]) -> list[str]:
+def _coordinate_faults(table: Mapping[str, Any], frames: Mapping[str, LandmarkFrame]) -> list[str]:
     faults = _unknown(table, ("body", "mm"), "key")
     body, mm = table.get("body"), table.get("mm")
-    if not isinstance(body, str) or body not in _FRAMES:
-        faults.append(f"body: expected {_either(tuple(_FRAMES))}, found {_found(table, 'body')}")
+    if not isinstance(body, str) or body not in frames:
+        faults.append(f"body: expected {_either(tuple(frames))}, found {_found(table, 'body')}")
     if not isinstance(mm, list) or len(mm) != 3 or any(type(x) not in (int, float) for x in mm):
         faults.append(f"mm: expected three numbers, [x, y, z], found {_found(table, 'mm')}")
     elif not all(abs(x) <= _FARTHEST_MM for x in mm):

@@ -5,21 +5,27 @@ Everything is imported where it is used: an analysis starts without the template
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from itertools import count
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from elbowscrew.errors import ElbowscrewError, ResultError, files_beside
 
+if TYPE_CHECKING:
+    from elbowscrew.model.mesh import Mesh
 
-def write_trial_page(folder: Path) -> Path:
+
+def write_trial_page(folder: Path, meshes: Mapping[str, Mesh] | None = None) -> Path:
     """Write ``report.html`` of one result folder, whole or not at all.
 
     Parameters
     ----------
     folder : Path
         As `elbowscrew.save_analysis` wrote it. A page of ours is replaced, and its digest in ``SHA256SUMS``.
+    meshes : mapping of str to Mesh, optional
+        Bones to draw, by the segment or the name of their body; they are kept in ``meshes.json``. Those of the result
+        by default.
 
     Returns
     -------
@@ -30,12 +36,14 @@ def write_trial_page(folder: Path) -> Path:
     ------
     ResultError
         If the folder holds no finished result, or a damaged one.
+    UsageError
+        If a mesh is of no body of the trial.
     OutputError
         If something else has the page's name, or the disk does not take it.
     """
     from elbowscrew.report.trial_page import write_trial_page as write
 
-    return write(folder)
+    return write(folder, meshes)
 
 
 def write_study_page(folder: Path) -> Path:
@@ -74,7 +82,11 @@ class Remade(NamedTuple):
     errors: tuple[ElbowscrewError, ...]
 
 
-def remake_pages(folders: Iterable[Path], report: Callable[[int, int], None] = lambda _done, _total: None) -> Remade:
+def remake_pages(
+    folders: Iterable[Path],
+    report: Callable[[int, int], None] = lambda _done, _total: None,
+    meshes: Mapping[str, Mesh] | None = None,
+) -> Remade:
     """Make the pages of result folders anew; in a folder that holds some, theirs and the one over all of them.
 
     Parameters
@@ -82,6 +94,8 @@ def remake_pages(folders: Iterable[Path], report: Callable[[int, int], None] = l
     folders : iterable of Path
     report : callable, optional
         Called with how many results have their page, and how many there are.
+    meshes : mapping of str to Mesh, optional
+        Bones to draw in the page of each result.
 
     Returns
     -------
@@ -106,7 +120,7 @@ def remake_pages(folders: Iterable[Path], report: Callable[[int, int], None] = l
         told: set[Path] = set()
         for result in results:
             try:
-                files.append(write_trial_page(result))
+                files.append(write_trial_page(result, meshes))
             except ElbowscrewError as error:
                 errors.append(error)
                 told.add(result)

@@ -2,15 +2,75 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from typing import Final, NamedTuple
 
 from elbowscrew.choices import FUNCTIONAL_AXIS_WORDS
 from elbowscrew.joints import Joint
-from elbowscrew.model.anatomy import LANDMARKS
+from elbowscrew.model.anatomy import LANDMARKS, BonyJoint
 from elbowscrew.model.joint_summary_types import AnatomySummary, AxisAgainstBones
-from elbowscrew.model.summary_types import LandmarksSummary
+from elbowscrew.model.summary_types import AngleRange, LandmarksSummary
 from elbowscrew.report.pages import number, vector
 from elbowscrew.view.trial_view import TrialView
+
+
+class BoneWords(NamedTuple):
+    """How a joint's bones and angles are told of.
+
+    Attributes
+    ----------
+    limb, distal, proximal : str
+        As in "Angles of the distal bone against the proximal one of a right limb".
+    sequence : str
+        Whose the frames and the sequence are.
+    senses : tuple of str
+        What is positive of each angle, for a table.
+    listed : str
+        The angles in a sentence, with what needs to be said of their signs.
+    """
+
+    limb: str
+    distal: str
+    proximal: str
+    sequence: str
+    senses: tuple[str, str, str]
+    listed: str
+
+
+BONE_WORDS: Final[Mapping[BonyJoint, BoneWords]] = {
+    "elbow": BoneWords(
+        "arm",
+        "forearm",
+        "humerus",
+        "the sequence Z-X-Y of the International Society of Biomechanics (Wu and others 2005)",
+        ("flexion", "varus, so that a valgus elbow’s is negative", "pronation, from supination on"),
+        "flexion, carrying angle (varus positive) and pronation (0 in supination)",
+    ),
+    "knee": BoneWords(
+        "leg",
+        "tibia",
+        "femur",
+        "the joint coordinate system of Grood and Suntay (1983)",
+        ("flexion", "adduction (varus)", "internal rotation"),
+        "flexion, adduction (varus positive) and internal rotation",
+    ),
+}
+
+
+def bone_words(view: TrialView) -> BoneWords | None:
+    """How the bones are told of; None without landmarks."""
+    found = view.joint_summary["anatomy"]
+    return None if found is None else BONE_WORDS[found["joint"]]
+
+
+def bone_angles(view: TrialView) -> tuple[tuple[str, str, AngleRange], ...]:
+    """Name, positive sense and range of each angle of the bones; nothing without landmarks."""
+    words, found = bone_words(view), view.summary["motion"]["anatomy"]
+    if words is None or found is None:
+        return ()
+    joint = view.named_joint
+    ranges = [found[key] for key in joint.angle_keys]  # type: ignore[literal-required]
+    return tuple(zip(joint.angles, words.senses, ranges, strict=True))
 
 
 def bones_sentences(view: TrialView) -> tuple[str, ...]:
@@ -61,10 +121,10 @@ def bones_methods(view: TrialView) -> Iterator[str]:
     found, marks = view.joint_summary["anatomy"], view.summary["landmarks"]
     if found is None or marks is None:
         return
+    words = BONE_WORDS[found["joint"]]
     yield (
-        "Flexion, carrying angle (varus positive) and pronation (0 in supination) were computed by the sequence Z-X-Y "
-        "of the International Society of Biomechanics (Wu and others 2005) from landmarks of the "
-        f"{found['side']} arm ({landmark_sources(marks)}); signs mean the same on both sides."
+        f"{words.listed[0].upper()}{words.listed[1:]} were computed by {words.sequence} from landmarks of the "
+        f"{found['side']} {words.limb} ({landmark_sources(marks)}); signs mean the same on both sides."
     )
     if found["axis"] is None:
         return
@@ -86,8 +146,9 @@ def axis_against_epicondyles(found: AxisAgainstBones) -> str:
 
 def landmark_sources(marks: LandmarksSummary) -> str:
     """Which landmarks are of markers, and which were given as coordinates."""
-    by_markers = [name for name in LANDMARKS if "markers" in marks[name]]  # type: ignore[literal-required]
-    given = [name for name in LANDMARKS if name not in by_markers]
+    of_joint = [name for name in LANDMARKS if name in marks]
+    by_markers = [name for name in of_joint if "markers" in marks[name]]  # type: ignore[literal-required]
+    given = [name for name in of_joint if name not in by_markers]
     told = [f"{', '.join(by_markers)} from markers"] if by_markers else []
     return "; ".join([*told, *([f"{', '.join(given)} by coordinates"] if given else [])])
 

@@ -10,6 +10,7 @@ import numpy as np
 from elbowscrew.choices import JOINT_TYPE_WORDS, AngleUnit
 from elbowscrew.geometry.sensitivity import NORMAL_95
 from elbowscrew.model import Comparison, TrialsComparison
+from elbowscrew.report.bones_words import bone_words
 from elbowscrew.report.caption_words import (
     KEYFRAMES,
     PARTS,
@@ -171,11 +172,13 @@ def _error(view: TrialView) -> Iterator[str]:
 
 def _anatomy(view: TrialView) -> Iterator[str]:
     shown, stretch = shown_part(view)
-    side = "" if view.summary["landmarks"] is None else f" ({view.summary['landmarks']['side']} side)"
+    words, marks = bone_words(view), view.summary["landmarks"]
+    by = "" if words is None or marks is None else f" by {words.sequence} ({marks['side']} side)"
     a, b, c, d, e = letters_of_panels(stretch, 5)
+    first, second, third = view.named_joint.angles
     yield (
-        f"{a}Flexion, {b}carrying angle (varus positive) and {c}pronation by the ISB's sequence Z-X-Y{side} over time; "
-        f"{d}carrying angle and {e}pronation against flexion (diamond: start)."
+        f"{a}{first.capitalize()}, {b}{second} (varus positive) and {c}{third}{by} over time; "
+        f"{d}{second} and {e}{third} against {first} (diamond: start)."
     )
     yield from overview(stretch)
     yield from shading(shown)

@@ -14,7 +14,7 @@ import numpy as np
 from elbowscrew.choices import JOINT_TYPE_WORDS
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.model.summary_types import QualitySummary
-from elbowscrew.report.bones_words import axis_against_epicondyles, landmark_sources
+from elbowscrew.report.bones_words import axis_against_epicondyles, bone_words, landmark_sources
 from elbowscrew.report.methods import frame_words, method_words
 from elbowscrew.view.trial_view import TrialView
 
@@ -129,8 +129,8 @@ def _coordinates(view: TrialView) -> str:
     whose = "a cluster" if view.located else "a sensor"
     told = f"axes in {frame_words(view)}"
     told += "" if view.settings.express_in == "lab" else f", which is that of {whose} and not of a bone"
-    if view.has_landmarks:
-        return f"{told}; anatomical angles between the bones' frames of the ISB (Wu and others 2005)"
+    if (words := bone_words(view)) is not None:
+        return f"{told}; anatomical angles between {words.proximal} and {words.distal} by {words.sequence}"
     return f"{told}; no landmarks were given"
 
 
@@ -143,8 +143,8 @@ def _reference(view: TrialView) -> str:
 def _angles(view: TrialView) -> str:
     signed = "signed by the dominant axis" if view.summary["motion"]["signed"] else "without a sense"
     told = f"rotation θ about the finite helical axis since the reference, {signed}"
-    if view.has_landmarks:
-        return f"{told}; flexion, carrying angle (varus positive), pronation by the sequence Z-X-Y"
+    if (words := bone_words(view)) is not None:
+        return f"{told}; {words.listed}, by the sequence Z-X-Y"
     return told
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Final
 
+from elbowscrew.model.anatomy import BonyJoint
 from elbowscrew.model.joint_summary_types import JointSummary, NoiseOfBodies
 from elbowscrew.model.summary_types import ModelSummary, TrialSummary
 from elbowscrew.report.bones_words import bones_methods
@@ -42,6 +43,11 @@ ISB: Final = (
     "various joints for the reporting of human joint motion, part II: shoulder, elbow, wrist and hand. Journal of "
     "Biomechanics 38 (2005) 981-992. doi:10.1016/j.jbiomech.2004.05.042"
 )
+GROOD_SUNTAY: Final = (
+    "Grood ES, Suntay WJ. A joint coordinate system for the clinical description of three-dimensional motions: "
+    "application to the knee. Journal of Biomechanical Engineering 105 (1983) 136-144. doi:10.1115/1.3138397"
+)
+_OF_BONES: Final[dict[BonyJoint, str]] = {"elbow": ISB, "knee": GROOD_SUNTAY}
 
 
 def methods_of(trial: TrialView) -> str:
@@ -61,7 +67,8 @@ def methods_of(trial: TrialView) -> str:
 
 def citations_of(trial: TrialView) -> tuple[str, ...]:
     """Say what to cite."""
-    of_bones = () if trial.summary["landmarks"] is None else (ISB,)
+    anatomy = trial.joint_summary["anatomy"]
+    of_bones = () if anatomy is None else (_OF_BONES[anatomy["joint"]],)
     return (f"elbowscrew, version {trial.summary['elbowscrew']} (BSD-3-Clause).", PAPER, *of_bones)
 
 

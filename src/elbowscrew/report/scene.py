@@ -12,7 +12,14 @@ from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat, transform_p
 from elbowscrew.geometry.quaternion import rotate
 from elbowscrew.report.charts import COLORS
 from elbowscrew.view.joint_space import joint_in_body
-from elbowscrew.view.scene import Region, bodies_in_space, directions_across, frames_in_space, joint_bundle
+from elbowscrew.view.scene import (
+    Region,
+    bodies_in_space,
+    bones_in_space,
+    directions_across,
+    frames_in_space,
+    joint_bundle,
+)
 from elbowscrew.view.trial_view import TrialView
 
 MOST_FRAMES: Final = 900
@@ -21,6 +28,7 @@ WIDEST: Final = 1.0
 """Half-angle (rad) of the widest region that is drawn; a wider one hides all else."""
 _DECIMALS: Final = 2
 _PURE_DECIMALS: Final = 5
+_BONE_DECIMALS: Final = 1
 
 
 def scene_of(trial: TrialView) -> dict[str, Any]:
@@ -64,6 +72,7 @@ def scene_of(trial: TrialView) -> dict[str, Any]:
         "joint": _joint(trial, bundle.half),
         "proximal": proximal,
         "distal": distal,
+        "bones": _bones(trial),
         "colors": list(COLORS),
     }
 
@@ -85,6 +94,18 @@ def _body(word: str, origin: Float | None, markers: Float | None) -> dict[str, A
         "origin": _rounded(1000.0 * origin, _DECIMALS),
         "markers": [] if markers is None else _rounded(1000.0 * markers, _DECIMALS),
     }
+
+
+def _bones(trial: TrialView) -> list[dict[str, Any]]:
+    """Give the bones' triangles at the reference, all numbers in a row."""
+    return [
+        {
+            "of": end,
+            "vertices": _rounded(1000.0 * vertices.reshape(-1), _BONE_DECIMALS),
+            "faces": trial.meshes[end].faces.reshape(-1).tolist(),
+        }
+        for end, vertices in bones_in_space(trial).items()
+    ]
 
 
 def _joint(trial: TrialView, half: float) -> dict[str, Any]:

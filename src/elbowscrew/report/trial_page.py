@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final
 
@@ -13,7 +14,8 @@ from elbowscrew.choices import JOINT_TYPE_WORDS
 from elbowscrew.geometry._blocks import evenly_thinned
 from elbowscrew.joints import Joint
 from elbowscrew.model.joint_summary_types import EstimateSummary, JointSummary
-from elbowscrew.report.bones_words import bones_sentences
+from elbowscrew.model.mesh import Mesh
+from elbowscrew.report.bones_words import bone_angles, bone_words, bones_sentences
 from elbowscrew.report.captions import caption_of
 from elbowscrew.report.checklist import MISSING, checklist_of
 from elbowscrew.report.joint_words import joint_sentences
@@ -30,6 +32,7 @@ from elbowscrew.report.trial_charts import (
     theta_chart,
 )
 from elbowscrew.results.joint_summary import preferred_fit
+from elbowscrew.results.meshes_file import MESHES, MESHES_MARK, meshes_file, placed_meshes
 from elbowscrew.results.proof import proof_of
 from elbowscrew.results.result_files import BATCH_MARK, SUMS
 from elbowscrew.results.staging import settle, write_files
@@ -59,6 +62,7 @@ _FILES: Final = (
     ("joint_angles.csv", "the joint's own angles, frame by frame"),
     ("axis_path.csv", "the joint's axis against its angle"),
     ("joint.json", "joint axis by all estimators"),
+    ("meshes.json", "bones that are drawn"),
     (METHODS, "methods paragraph, references and reporting checklist as text"),
 )
 
@@ -66,16 +70,21 @@ _FILES: Final = (
 PAGE: Final = "report.html"
 
 
-def write_trial_page(folder: Path) -> Path:
+def write_trial_page(folder: Path, meshes: Mapping[str, Mesh] | None = None) -> Path:
     """Write ``report.html`` into a result folder; see `elbowscrew.report.write_trial_page`."""
     settle(folder)
     proof = proof_of(folder)
     view = view_of_proved(proof)
+    files: dict[str, bytes] = {}
+    if meshes:
+        view = replace(view, meshes=placed_meshes(view, meshes))
+        files[MESHES] = meshes_file(view.meshes)
     try:
-        page = trial_page(view, folder).encode("utf-8", "replace")
+        files[PAGE] = trial_page(view, folder).encode("utf-8", "replace")
     except UNSHOWABLE as error:
         raise unshowable(folder, error) from error
-    write_files(folder, {PAGE: page, SUMS: proof.with_file(PAGE, page)}, replaceable=(MARK, f"  {SUMMARY}\n"))
+    contents = {**files, SUMS: proof.with_files(files)}
+    write_files(folder, contents, replaceable=(MARK, MESHES_MARK, f"  {SUMMARY}\n"))
     return folder / PAGE
 
 
@@ -125,6 +134,8 @@ def trial_page(trial: TrialView, folder: Path, *, place: Path | None = None) -> 
         "estimates": _estimates(joint),
         "joint_sentences": joint_sentences(trial),
         "joint_words": JOINT_TYPE_WORDS,
+        "bones": bone_words(trial),
+        "bone_angles": bone_angles(trial),
         "bones_sentences": bones_sentences(trial),
         "axis_rows": _axis_rows(trial),
         "repetitions": _repetition_rows(trial),
@@ -169,6 +180,10 @@ def _about_space(trial: TrialView) -> dict[str, Any]:
         "joint": trial.joint_summary,
         "proximal_word": words.proximal.name,
         "distal_word": words.distal.name,
+        "bones_drawn": [
+            {"word": words.proximal.name if end == "proximal" else words.distal.name, "mesh": mesh}
+            for end, mesh in trial.meshes.items()
+        ],
         "frame_name": _frame_names(words)[trial.settings.express_in],
         "widest_deg": float(np.degrees(WIDEST)),
     }

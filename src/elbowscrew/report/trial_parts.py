@@ -9,9 +9,8 @@ import numpy as np
 from elbowscrew import tables
 from elbowscrew.choices import AngleUnit, LengthUnit
 from elbowscrew.geometry.arrays import Float
-from elbowscrew.group.axes import in_humerus
+from elbowscrew.group.axes import in_bone
 from elbowscrew.group.curves import PERCENT, curve_of_cycles
-from elbowscrew.model.anatomy import Side
 from elbowscrew.model.joint_summary_types import EstimateSummary, JointSummary
 from elbowscrew.results.joint_summary import preferred_fit
 from elbowscrew.results.proof import Proof
@@ -29,7 +28,7 @@ class TrialAxis(NamedTuple):
     kind : str
         `JOINT_AXIS`, or `FIRST_AXIS` of a joint that has two: the two are not averaged.
     direction, point : ndarray, shape (3,)
-        From `elbowscrew.group.axes.in_humerus`; the point in meters.
+        From `elbowscrew.group.axes.in_bone`; the point in meters.
     """
 
     kind: str
@@ -38,7 +37,7 @@ class TrialAxis(NamedTuple):
 
 
 def axis_of(joint: JointSummary) -> TrialAxis | None:
-    """Give the axis that stands in the proximal body, in the humerus' frame; None without landmarks or an axis."""
+    """Give the axis that stands in the proximal body, in its bone's frame; None without landmarks or an axis."""
     anatomy, two = joint["anatomy"], joint["two_axes"]
     line: EstimateSummary | None
     if two is not None:
@@ -47,11 +46,11 @@ def axis_of(joint: JointSummary) -> TrialAxis | None:
         kind, line = JOINT_AXIS, joint["mean_axis"] or preferred_fit(joint)
     if anatomy is None or line is None:
         return None
-    side: Side = "left" if anatomy["side"] == "left" else "right"
     point_mm = line["point_in_proximal_mm"]
     point = np.full(3, np.nan) if point_mm is None else _M_PER_MM * np.array(point_mm)
     landmarks = {name: _M_PER_MM * np.array(place) for name, place in anatomy["landmarks_mm"].items()}
-    return TrialAxis(kind, *in_humerus(np.array(line["direction_in_proximal"]), point, landmarks, side))
+    axis = in_bone(np.array(line["direction_in_proximal"]), point, landmarks, anatomy["side"], anatomy["joint"])
+    return TrialAxis(kind, *axis)
 
 
 def curve_of_result(proof: Proof, angle_unit: AngleUnit, length_unit: LengthUnit) -> tuple[Float | None, int]:

@@ -15,11 +15,14 @@ def angles_of_bones(motion: AnatomicalMotion | None, measured: Bool) -> AnglesOf
     """Give the ranges of the bones' angles over the measured frames, (N,), and the axis against the bones."""
     if motion is None:
         return None
+    found = {name: _range(motion.angles[:, k], measured) for k, name in enumerate(motion.names)}
     return {
         **_axis_against_bones(motion),
-        "flexion": _range(motion.flexion, measured),
-        "carrying_angle": _range(motion.carrying_angle, measured),
-        "pronation": _range(motion.pronation, measured),
+        "flexion": found["flexion"],
+        "carrying_angle": found.get("carrying_angle"),
+        "pronation": found.get("pronation"),
+        "adduction": found.get("adduction"),
+        "internal_rotation": found.get("internal_rotation"),
     }
 
 
@@ -37,6 +40,7 @@ def anatomy_summary(motion: AnatomicalMotion | None) -> AnatomySummary | None:
 def _axis_against_bones(motion: AnatomicalMotion) -> AxisAgainstBones:
     angle, distance = motion.functional_axis_angle, motion.functional_axis_distance
     return {
+        "joint": motion.landmarks.joint,
         "side": motion.side,
         "axis": motion.functional_axis,
         "axis_angle_deg": known(np.degrees(angle.value)),

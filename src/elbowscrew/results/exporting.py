@@ -101,7 +101,7 @@ def _write_sto(folder: Path, analysis: Analysis, _summary: Summary) -> None:
     series = {"theta": screw.angle}
     if analysis.anatomy is not None:
         bones = analysis.anatomy
-        series |= {"flexion": bones.flexion, "carrying": bones.carrying_angle, "pronation": bones.pronation}
+        series |= {column.name: column.values(bones) for column in bones.table if column.attribute in bones.names}
     if analysis.joint_angles is not None:
         own = analysis.joint_angles
         series |= {column.name: column.values(own) for column in own.table if column.attribute == "angle"}

@@ -30,10 +30,11 @@ from elbowscrew.model.joint_summary_types import JointSummary
 from elbowscrew.model.joint_type import JointAngles
 from elbowscrew.model.summary_types import SelectionSummary, Summary
 from elbowscrew.model.table_record import TableRecord
+from elbowscrew.results.meshes_file import kept_meshes
 from elbowscrew.results.proof import proof_of
 from elbowscrew.results.summary_reading import read_joint_summary, read_summary, settings_in
 from elbowscrew.results.table_reading import Attributes, read_attributes
-from elbowscrew.results.trial_views import UNREADABLE, angle_table, view_of_tables
+from elbowscrew.results.trial_views import UNREADABLE, anatomy_table, angle_table, view_of_tables
 from elbowscrew.settings import Settings
 from elbowscrew.tables import Column
 from elbowscrew.view.trial_view import TrialView
@@ -103,7 +104,7 @@ def read_kept(folder: Path) -> KeptResult:
             for name, of in columns.items()
             if proof.has(f"{name}.csv")
         }
-        view = view_of_tables(summary, joint, settings, read)
+        view = replace(view_of_tables(summary, joint, settings, read), meshes=kept_meshes(proof))
         kept = {
             name: _RECORDS[name](**found) if name in _RECORDS else KeptTable(columns[name], found)
             for name, found in read.items()
@@ -128,7 +129,8 @@ def _columns(summary: Summary, joint: JointSummary) -> dict[str, tuple[Column, .
     if summary["interpolation"]["method"] == "joint":
         model += tables.KEYFRAME_JOINT_COLUMNS[joint["joint_type"]["type"]]
     own = {"joint_angles": angle_table(joint)} if joint["joint_type"]["type"] in JOINT_ANGLES else {}
-    return {name: of for name, of in tables.TABLES.items() if name != "joint_angles"} | {"keyframes": model} | own
+    own |= {"keyframes": model, "anatomy": anatomy_table(joint)}
+    return {name: of for name, of in tables.TABLES.items() if name != "joint_angles"} | own
 
 
 def _parts(summary: Summary, settings: Settings, view: TrialView, kept: Mapping[str, TableRecord]) -> dict[str, object]:

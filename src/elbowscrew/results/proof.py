@@ -116,9 +116,9 @@ class Proof:
         if changed:
             raise _edited(self.folder / changed[0], changed[1:])
 
-    def with_file(self, name: str, content: bytes) -> bytes:
-        """Give the digests as they are when a file has been made again."""
-        return _lines({**self.sums, name: hashlib.sha256(content).hexdigest()})
+    def with_files(self, contents: Mapping[str, bytes]) -> bytes:
+        """Give the digests as they are when files have been made again."""
+        return _lines({**self.sums, **{name: hashlib.sha256(one).hexdigest() for name, one in contents.items()}})
 
 
 def proof_of(folder: Path) -> Proof:

@@ -31,6 +31,7 @@ _TABLE_ENDINGS: Final = (".csv", *(export.file for export in EXPORTS.values() if
 RESULT_FILES: Final = (
     "summary.json",
     "joint.json",
+    "meshes.json",
     *(f"{name}{ending}" for name in TABLES for ending in _TABLE_ENDINGS),
     *(export.file for export in EXPORTS.values() if not export.file.startswith(".")),
     "report.html",

@@ -83,14 +83,10 @@ def landmarks_summary(landmarks: Landmarks | None) -> LandmarksSummary | None:
     """The landmarks as they were asked for: markers' names, or coordinates."""
     if landmarks is None:
         return None
-    return {
-        "side": landmarks.side,
-        "EL": _landmark(landmarks.EL),
-        "EM": _landmark(landmarks.EM),
-        "US": _landmark(landmarks.US),
-        "RS": _landmark(landmarks.RS),
-        "GH": _landmark(landmarks.GH),
-    }
+    found: LandmarksSummary = {"side": landmarks.side}
+    for name, asked in landmarks.by_name.items():
+        found[name] = _landmark(asked)  # type: ignore[literal-required]
+    return found
 
 
 def _landmark(asked: Landmark) -> LandmarkSummary:

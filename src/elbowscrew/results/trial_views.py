@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Collection, Mapping
-from dataclasses import fields
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
@@ -26,6 +26,7 @@ from elbowscrew.model.joint_summary_types import JointSummary, PoseSummary, Vect
 from elbowscrew.model.joint_type import JointAngles
 from elbowscrew.model.summary_types import ModelSummary, MovementSummary, Summary
 from elbowscrew.results.joint_summary import joint_summary, preferred_fit
+from elbowscrew.results.meshes_file import kept_meshes
 from elbowscrew.results.proof import Proof, proof_of
 from elbowscrew.results.summary import summary_from_analysis
 from elbowscrew.results.summary_reading import SUMMARY, read_joint_summary, read_summary, settings_in
@@ -43,7 +44,6 @@ _ANGLES: Final = tuple(field.name for field in fields(JointAngles))
 _PATH: Final = tuple(field.name for field in fields(AxisPath))
 _REPETITIONS: Final = tuple(field.name for field in fields(Repetitions))
 _EXTRA: Final[dict[str, tuple[str, tuple[tables.Column, ...], tuple[str, ...]]]] = {
-    "anatomy": ("anatomy", tables.ANATOMY_COLUMNS, ("flexion", "carrying_angle", "pronation")),
     "instantaneous": (
         "instantaneous",
         tables.INSTANTANEOUS_COLUMNS,
@@ -52,7 +52,7 @@ _EXTRA: Final[dict[str, tuple[str, tuple[tables.Column, ...], tuple[str, ...]]]]
     "cycles": ("cycles", tables.CYCLE_COLUMNS, ("cycle", "percent", "angle")),
     "losses": ("screw", tables.SCREW_COLUMNS, ("proximal_loss", "distal_loss")),
 }
-"""Table, columns and attributes of what only some figures show."""
+"""Table, columns and attributes of what only some figures show, but for the bones' angles."""
 UNREADABLE: Final = (KeyError, TypeError, ValueError, IndexError, AttributeError, ArithmeticError)
 """What a result that somebody edited raises where its numbers do not go together."""
 
@@ -126,11 +126,11 @@ def view_of_proved(proof: Proof, figures: Collection[str] = ()) -> TrialView:
             path=None if path is None else read_attributes(path, tables.AXIS_PATH_COLUMNS, _PATH, *units),
             extra={
                 name: read_attributes(proof.file(f"{table}.csv"), columns, names, *units)
-                for name, (table, columns, names) in _extra_of(figures).items()
+                for name, (table, columns, names) in _extra_of(figures, joint).items()
                 if proof.has(f"{table}.csv")
             },
         )
-        return _view(summary, joint, settings, read)
+        return replace(_view(summary, joint, settings, read), meshes=kept_meshes(proof))
     except UNREADABLE as error:
         msg = (
             f"{folder}: not a result of this version of the program: {type(error).__name__} {error}; "
@@ -155,7 +155,7 @@ def view_of_tables(
             curve=None if curve is None else {one.name: curve[one.attribute] for one in tables.CURVE_COLUMNS},
             angles=tables_of.get("joint_angles"),
             path=tables_of.get("axis_path"),
-            extra={name: tables_of[table] for name, (table, _, _) in _EXTRA.items() if table in tables_of},
+            extra={name: tables_of[table] for name, (table, _, _) in _extra(joint).items() if table in tables_of},
         ),
     )
 
@@ -165,9 +165,22 @@ def angle_table(joint: JointSummary) -> tuple[tables.Column, ...]:
     return tables.JOINT_ANGLE_COLUMNS[JOINT_ANGLES[joint["joint_type"]["type"]]]
 
 
-def _extra_of(figures: Collection[str]) -> dict[str, tuple[str, tuple[tables.Column, ...], tuple[str, ...]]]:
+def anatomy_table(joint: JointSummary) -> tuple[tables.Column, ...]:
+    """Columns of the bones' angles, by the joint that the landmarks are of; without any, an elbow's."""
+    found = joint["anatomy"]
+    return tables.ANATOMY_COLUMNS["elbow" if found is None else found["joint"]]
+
+
+def _extra_of(
+    figures: Collection[str], joint: JointSummary
+) -> dict[str, tuple[str, tuple[tables.Column, ...], tuple[str, ...]]]:
     wanted = {entry.table for name, entry in FIGURE_ENTRIES.items() if name in figures}
-    return {name: how for name, how in _EXTRA.items() if name in wanted}
+    return {name: how for name, how in _extra(joint).items() if name in wanted}
+
+
+def _extra(joint: JointSummary) -> dict[str, tuple[str, tuple[tables.Column, ...], tuple[str, ...]]]:
+    bones = anatomy_table(joint)
+    return {"anatomy": ("anatomy", bones, tuple(column.attribute for column in bones[2:5])), **_EXTRA}
 
 
 def view_of_analysis(
@@ -205,7 +218,7 @@ def view_of_analysis(
         path=None if path is None else as_read(path, _PATH, *units),
         extra={
             name: as_read(found, names, *units)
-            for name, (_, _, names) in _extra_of(figures).items()
+            for name, (_, _, names) in _extra_of(figures, joint).items()
             if (found := several[name]) is not None
         },
     )

@@ -11,7 +11,7 @@ from elbowscrew.geometry._blocks import evenly_thinned
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_quaternion import conjugate, multiply, pose_from_dual_quat, transform_points
 from elbowscrew.geometry.quaternion import rotate
-from elbowscrew.view.trial_view import TrialView
+from elbowscrew.view.trial_view import ENDS, End, TrialView
 
 _MOST_AXES: Final = 60
 _STEEPEST: Final = 1.4
@@ -129,6 +129,12 @@ def bodies_in_space(view: TrialView) -> Bodies:
         proximal_markers=markers[0],
         distal_markers=markers[1],
     )
+
+
+def bones_in_space(view: TrialView) -> dict[End, Float]:
+    """Place the vertices (V, 3) of the bones' meshes as they are at the reference, in that frame, meters."""
+    poses = dict(zip(ENDS, frames_in_space(view), strict=True))
+    return {end: transform_points(poses[end], mesh.vertices) for end, mesh in view.meshes.items()}
 
 
 def joint_bundle(view: TrialView) -> Bundle:

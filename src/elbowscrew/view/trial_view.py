@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Final, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,12 +16,16 @@ from elbowscrew.model.array_record import ArrayRecord
 from elbowscrew.model.joint_axis import AxisPath
 from elbowscrew.model.joint_summary_types import JointSummary
 from elbowscrew.model.joint_type import JointAngles
+from elbowscrew.model.mesh import Mesh
 from elbowscrew.model.modeled import Keyframes
 from elbowscrew.model.repetitions import MovementPhases, Repetitions
 from elbowscrew.model.summary_types import Summary
 
 if TYPE_CHECKING:
     from elbowscrew.settings import Settings
+
+End = Literal["proximal", "distal"]
+ENDS: Final[tuple[End, End]] = ("proximal", "distal")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -78,6 +82,8 @@ class TrialView(ArrayRecord):
     extra : mapping of str to mapping of str to ndarray
         Attributes of tables that only some figures show, by `elbowscrew.view.figure_names.FigureEntry.table`: those
         that were asked for.
+    meshes : mapping of {"proximal", "distal"} to Mesh
+        Bones, in the frames of their bodies.
     """
 
     summary: Summary
@@ -123,6 +129,7 @@ class TrialView(ArrayRecord):
     joint_angles: JointAngles | None
     axis_path: AxisPath | None
     extra: Mapping[str, Mapping[str, NDArray[Any]]]
+    meshes: Mapping[End, Mesh] = field(default_factory=dict)
 
     @property
     def axis_known(self) -> Bool:

@@ -22,14 +22,8 @@ from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import JointMotion, Marker, QualityWarning
 from elbowscrew.model.anatomy import AnatomicalMotion, Landmark, LandmarkFrame, Landmarks, Side
 from elbowscrew.model.recording import Source
-from elbowscrew.motion.anatomy.anatomy import (
-    anatomical_motion,
-    angle_to_epicondyles,
-    distal_frame,
-    distance_from_point,
-    elbow_angles,
-    humerus_frame,
-)
+from elbowscrew.motion.anatomy.anatomy import anatomical_motion, angle_to_epicondyles, distance_from_point
+from elbowscrew.motion.anatomy.bone_frames import bone_angles, forearm_frame, proximal_frame
 from elbowscrew.motion.screws.relative import joint_from_bodies
 
 SIDES: tuple[Side, ...] = ("right", "left")
@@ -147,8 +141,8 @@ def angles_of(landmarks: Landmarks, recording: Recording, reference: int = 0) ->
 def test_frames_are_orthonormal_and_right_handed(side: Side, a: Float, b: Float, c: Float) -> None:
     assume(min(np.linalg.norm(v) for v in (a - b, a - c, b - c, a - 0.5 * (b + c))) > 1e-6)
     for frame, proximal in (
-        (humerus_frame(a, b, c, side), a - 0.5 * (b + c)),
-        (distal_frame(a, b, c, c, side), c - a),
+        (proximal_frame(a, b, c, side), a - 0.5 * (b + c)),
+        (forearm_frame(a, b, c, c, side), c - a),
     ):
         if np.isnan(frame).any():
             continue
@@ -163,8 +157,8 @@ def test_frames_are_orthonormal_and_right_handed(side: Side, a: Float, b: Float,
 def test_frames_of_an_arm_that_hangs_down_are_the_anatomical_directions() -> None:
     for side in SIDES:
         at = STANDING if side == "right" else {name: MIRROR @ place for name, place in STANDING.items()}
-        humerus = humerus_frame(at["GH"], at["EL"], at["EM"], side)
-        distal = distal_frame(at["US"], at["RS"], at["EL"], at["EM"], side)
+        humerus = proximal_frame(at["GH"], at["EL"], at["EM"], side)
+        distal = forearm_frame(at["US"], at["RS"], at["EL"], at["EM"], side)
         for frame in (humerus, distal):
             assert dq.matrix_from_dual_quat(frame)[:3, :3] == pytest.approx(np.eye(3), abs=1e-12)
 
@@ -173,29 +167,29 @@ def test_frames_broadcast_and_are_nan_where_the_landmarks_lie_on_one_line() -> N
     GH, EL, EM = np.zeros((4, 3)), np.tile([0.0, -0.3, 0.03], (4, 1)), np.array([0.0, -0.3, -0.03])
     EL[1] = [0.0, -0.3, -0.03]
     EL[2] = 1.2 * EM + [0.0, 0.0, 5e-4]
-    frames = humerus_frame(GH, EL, EM, "right")
+    frames = proximal_frame(GH, EL, EM, "right")
     assert np.isnan(frames).any(axis=1).tolist() == [False, True, True, False]
-    assert humerus_frame(GH[None], EL[None], EM, "left").shape == (1, 4, 8)
-    assert np.isnan(distal_frame([0, 0, 0], [0, 1, 0], [0, 2, 0], [0, 2, 0], "left")).all()
+    assert proximal_frame(GH[None], EL[None], EM, "left").shape == (1, 4, 8)
+    assert np.isnan(forearm_frame([0, 0, 0], [0, 1, 0], [0, 2, 0], [0, 2, 0], "left")).all()
 
 
 def test_angles_agree_with_scipy() -> None:
     poses = random_poses((2000,), seed=5)
     expected = Rotation.from_quat(poses[:, [1, 2, 3, 0]]).as_euler("ZXY")
-    found = np.stack(elbow_angles(poses, "right"), axis=1)
+    found = np.stack(bone_angles(poses, "right", "elbow"), axis=1)
     locked = np.abs(np.degrees(expected[:, 1])) > 85.0
     assert 0 < locked.sum() < 100
     assert np.isnan(found[locked][:, [0, 2]]).all()
     assert found[:, 1] == pytest.approx(expected[:, 1], abs=1e-7)
     assert found[~locked] == pytest.approx(expected[~locked], abs=1e-10)
-    mirrored = np.stack(elbow_angles(poses, "left"), axis=1)
+    mirrored = np.stack(bone_angles(poses, "left", "elbow"), axis=1)
     assert mirrored[~locked] == pytest.approx(expected[~locked] * [1, -1, -1], abs=1e-10)
 
 
 @given(st.tuples(st.floats(-3.1, 3.1), st.floats(-1.4, 1.4), st.floats(-3.1, 3.1)), st.sampled_from([-1, 1]))
 def test_angles_are_those_the_pose_was_made_of(angles: tuple[float, float, float], sign: int) -> None:
     pose = dq.dual_quat_from_pose(qn.quat_from_euler_angles(angles, "ZXY"), [1.0, 2.0, 3.0])
-    assert np.stack(elbow_angles(sign * pose, "right")) == pytest.approx(angles, abs=1e-9)
+    assert np.stack(bone_angles(sign * pose, "right", "elbow")) == pytest.approx(angles, abs=1e-9)
 
 
 def test_flexion_about_the_epicondyles_is_flexion_alone() -> None:

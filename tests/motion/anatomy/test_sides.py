@@ -78,3 +78,7 @@ def test_landmarks_of_an_elbow_are_refused_with_a_knee() -> None:
     with pytest.raises(SettingError, match="landmarks are for the elbow, and the joint is the knee") as caught:
         analyze(recording("right", joint="knee"), landmarks=landmarks("right"))
     assert caught.value.exit_code == 4
+    assert "or give FLE, FME, HC, LC, MC, LM, MM" in str(caught.value)
+    knee = simulate_trial(joint="knee", frames=80, inversion=40).landmarks
+    with pytest.raises(SettingError, match="landmarks are for the knee, and the joint is the elbow"):
+        analyze(recording("right"), landmarks=knee)

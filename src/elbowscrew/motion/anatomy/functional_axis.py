@@ -1,4 +1,4 @@
-"""The axis that the elbow flexes about, and how far it is known against what rests in the arm."""
+"""The axis that a joint flexes about, and how far it is known against what rests in the proximal body."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from elbowscrew.motion.joint.joint_axis import EstimatedAxis
 
 
 class FunctionalAxis(NamedTuple):
-    """A line in the arm, with its errors there.
+    """A line in the proximal body, with its errors there.
 
     Attributes
     ----------
     name : {"joint_axis", "axis1"}
         The axis of the joint as a whole, its mean where it wanders, or the first of two axes.
     line : ndarray, shape (6,)
-        Plücker vector in the arm's frame.
+        Plücker vector in the proximal body's frame.
     errors : ProximalErrors or JointLine
         Of an axis among two the whole cone and radius, whichever way.
     """

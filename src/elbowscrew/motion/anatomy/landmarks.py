@@ -9,12 +9,12 @@ import numpy as np
 from elbowscrew.errors import SettingError, did_you_mean, told_names
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_quaternion import conjugate, multiply, transform_points
+from elbowscrew.joints import joints_of
 from elbowscrew.model import JointMotion, Marker, QualityWarning, Recording, RigidBody
 from elbowscrew.model.anatomy import LANDMARK_BODIES, Landmark, Landmarks
 from elbowscrew.motion.screws.relative import IDENTITY
 
 _LARGEST_RMS: Final = 0.020
-_SPOKEN: Final = {"proximal": "arm", "distal": "forearm"}
 
 
 def landmark_points(
@@ -32,6 +32,8 @@ def landmark_points(
         "distal": joint.reference,
         "lab": conjugate(joint.dual_quat_lab_proximal),
     }
+    words = joints_of(landmarks.joint)[0]
+    spoken = {"proximal": words.proximal.short, "distal": words.distal.short}
     points: dict[str, Float] = {}
     faults: list[str] = []
     warnings: list[QualityWarning] = []
@@ -42,7 +44,7 @@ def landmark_points(
             points[name] = transform_points(change, landmark.point)
             continue
         try:
-            points[name], moving = _point_of_markers(recording, landmark, bodies[role], name, role)
+            points[name], moving = _point_of_markers(recording, landmark, bodies[role], name, spoken[role])
             warnings += moving
         except SettingError as error:
             faults.append(f"{name}: {error}")
@@ -50,14 +52,14 @@ def landmark_points(
         msg = (
             f"{landmarks.source}: {'; '.join(faults)}; the recording's markers: "
             f"{told_names(_names(recording)) or 'none'}. Name others of them, or give coordinates, "
-            '{ body = "arm", mm = [x, y, z] }'
+            f'{{ body = "{spoken["proximal"]}", mm = [x, y, z] }}'
         )
         raise SettingError(msg)
     return points, tuple(warnings)
 
 
 def _point_of_markers(
-    recording: Recording, landmark: Landmark, body: RigidBody | None, name: str, role: str
+    recording: Recording, landmark: Landmark, body: RigidBody | None, name: str, spoken: str
 ) -> tuple[Float, list[QualityWarning]]:
     """Middle of the points, shape (3,), that markers have in their body in the median of the frames that see both."""
     points, warnings = [], []
@@ -70,14 +72,14 @@ def _point_of_markers(
             inside = transform_points(conjugate(body.dual_quat_lab_body), seen)[body.tracked]
         inside = inside[np.isfinite(inside).all(axis=1)]
         if not len(inside):
-            msg = f"marker {wanted!r} is never seen together with the {_SPOKEN[role]}"
+            msg = f"marker {wanted!r} is never seen together with the {spoken}"
             raise SettingError(msg)
         point = np.median(inside, axis=0)
         points.append(point)
         rms = float(np.sqrt(np.mean(np.sum((inside - point) ** 2, axis=1))))
         if rms > _LARGEST_RMS:
             message = (
-                f"the marker {wanted!r} of landmark {name} moves in the {_SPOKEN[role]} by {1000.0 * rms:.0f} mm RMS: "
+                f"the marker {wanted!r} of landmark {name} moves in the {spoken} by {1000.0 * rms:.0f} mm RMS: "
                 "it sits loosely or on another segment, or is mistaken for another; its median point is taken"
             )
             warnings.append(QualityWarning(code="landmark-moves", message=message))

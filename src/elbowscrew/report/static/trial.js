@@ -47,7 +47,13 @@
   const everything = [...path, ...scene.distal.markers, ...(scene.proximal ? [scene.proximal.origin, ...scene.proximal.markers] : [])]
     .filter(Boolean);
   everything.push(add(scene.center, times(scene.half, scene.direction)), less(scene.center, times(scene.half, scene.direction)));
-  const reach = Math.max(...everything.map((p) => Math.hypot(...less(p, scene.center))));
+  const far = (points) => points.reduce((most, p) => Math.max(most, Math.hypot(...less(p, scene.center))), 0);
+  const bones = scene.bones.map((bone) => ({
+    ...bone,
+    points: Array.from({ length: bone.vertices.length / 3 }, (_, k) => bone.vertices.slice(3 * k, 3 * k + 3)),
+  }));
+  // A bone is shown whole unless it goes twice as far as all else.
+  const reach = Math.max(far(everything), Math.min(2 * far(everything), ...(bones.length ? [far(bones.flatMap((bone) => bone.points))] : [0])));
 
   // Which way is up: toward the proximal body if it is known, else away from the middle of the distal one's path.
   const known = path.filter(Boolean);
@@ -76,7 +82,7 @@
     view.rows = rows;
   };
 
-  const shown = (name) => viewer.querySelector(`[data-show="${name}"]`).checked;
+  const shown = (name) => viewer.querySelector(`[data-show="${name}"]`)?.checked ?? false;
   const tellState = () => {
     viewer.dataset.view = view.rows.flat().map((x) => x.toFixed(4)).join(" ");
     viewer.dataset.zoom = view.zoom.toFixed(3);
@@ -172,6 +178,42 @@
     const led = (v) => less(moved(k, add(axis.center, v)), at);
     return [{ ...axis, look, center: at, direction: led(axis.direction), across: axis.across.map(led) }];
   });
+  // Bones: flat triangles from back to front, each as light as it faces the viewer; lines are drawn over them.
+  const channels = (name) => {
+    const text = color(name);
+    return [1, 3, 5].map((k) => parseInt(text.slice(k, k + 2), 16));
+  };
+  const drawBones = (k) => {
+    const faces = [];
+    const paper = channels("paper");
+    bones.forEach((bone) => {
+      const own = channels(bone.of);
+      const at = bone.points.map((p) => (bone.of === "distal" ? moved(k, p) : p)).map((p) => p && screen(p));
+      for (let j = 0; j < bone.faces.length; j += 3) {
+        const [a, b, c] = [at[bone.faces[j]], at[bone.faces[j + 1]], at[bone.faces[j + 2]]];
+        if (!a || !b || !c) return;
+        const [u, v] = [[b[0] - a[0], b[1] - a[1], scale * (b[2] - a[2])], [c[0] - a[0], c[1] - a[1], scale * (c[2] - a[2])]];
+        const across = cross(u, v);
+        const facing = Math.abs(across[2]) / (Math.hypot(...across) || 1);
+        faces.push({ a, b, c, depth: a[2] + b[2] + c[2], own, facing });
+      }
+    });
+    faces.sort((one, other) => one.depth - other.depth);
+    faces.forEach(({ a, b, c, own, facing }) => {
+      const share = page.isDark() ? 0.15 + 0.45 * facing : 0.65 - 0.45 * facing;
+      const look = `rgb(${own.map((x, n) => Math.round(paper[n] + share * (x - paper[n]))).join(" ")})`;
+      context.fillStyle = look;
+      context.strokeStyle = look;
+      context.lineWidth = 0.7;
+      context.beginPath();
+      context.moveTo(a[0], a[1]);
+      context.lineTo(b[0], b[1]);
+      context.lineTo(c[0], c[1]);
+      context.closePath();
+      context.fill();
+      context.stroke();
+    });
+  };
   const center = () => {
     if (!scene.joint.center) return;
     if (shown("cone") && scene.joint.semiAxes) {
@@ -257,8 +299,10 @@
     scale = (0.46 * Math.min(width, height) * view.zoom) / reach;
     const k = view.frame;
     const here = path[k];
-    if (scene.proximal) line([scene.proximal.origin, foot(scene.proximal.origin)], color("limb"), 9, 0.3);
-    if (here) line([here, foot(here)], color("limb"), 9, 0.3);
+    if (shown("bones")) drawBones(k);
+    const boneOf = (end) => shown("bones") && bones.some((bone) => bone.of === end);
+    if (scene.proximal && !boneOf("proximal")) line([scene.proximal.origin, foot(scene.proximal.origin)], color("limb"), 9, 0.3);
+    if (here && !boneOf("distal")) line([here, foot(here)], color("limb"), 9, 0.3);
     if (shown("cone")) surface(scene, scene.spread, color("region"), 0.1);
     if (shown("axes")) {
       scene.segments.forEach((s, j) => line([s.slice(0, 3), s.slice(3)], colorAt(scene.segmentTheta[j]), 1, 0.7));
