@@ -26,7 +26,7 @@ STANDING = {
 }
 ON_SHANK = ("LC", "MC", "LM", "MM")
 MIRROR = np.diag([1.0, 1.0, -1.0])
-N = 90
+N = 60
 T = np.linspace(0.0, 1.0, N)
 # Flexion, adduction, internal rotation of the tibia against where it stands, degrees.
 COURSE = np.stack(
@@ -93,8 +93,7 @@ class Leg:
         return Landmarks(side=side, **marks)
 
 
-@pytest.mark.parametrize("side", ["right", "left"])
-@pytest.mark.parametrize("seed", [0, 1])
+@pytest.mark.parametrize(("side", "seed"), [("right", 0), ("left", 1)])
 def test_the_angles_are_grood_and_suntays(side: Side, seed: int) -> None:
     leg = Leg(side, seed)
     analysis = analyze(leg.recording(), landmarks=leg.landmarks(side))
