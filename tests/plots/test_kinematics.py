@@ -126,10 +126,14 @@ def test_cycles_with_their_mean_and_deviation(trial: Analysis) -> None:
     drawn = [np.asarray(one.get_ydata()) for one in ax.get_lines()[: len(curves)]]
     assert np.array(drawn) == pytest.approx(curves, nan_ok=True)
     assert line(ax, "mean")[1] == pytest.approx(trial.repeatability.mean, nan_ok=True)
-    (band,) = (one for one in ax.collections if one.get_label() == "± standard deviation")
+    assert not ax.collections  # its deviation is too narrow to be seen
+    view = view_of(trial)
+    assert view.repetition_curve is not None
+    wide = replace(view, repetition_curve={**view.repetition_curve, "theta_sd": np.full(101, 0.2)})
+    (band,) = cycles.plot_cycles(Figure().add_subplot(), wide).collections
     vertices = np.asarray(band.get_paths()[0].vertices)
     middle = vertices[np.abs(vertices[:, 0] - 30.0) < 1e-9, 1]
-    assert np.ptp(middle) == pytest.approx(2.0 * trial.repeatability.sd[30])
+    assert np.ptp(middle) == pytest.approx(0.4)
 
 
 def test_anatomical_angles_over_time_and_against_flexion(trial: Analysis) -> None:

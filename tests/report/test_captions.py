@@ -45,6 +45,17 @@ def test_the_interval_is_told_and_the_band_where_there_is_one() -> None:
     assert "The uncertainty of θ is not known." in caption_of("theta", unknown)
 
 
+def test_the_deviation_of_cycles_is_drawn_where_it_can_be_seen_and_told_where_it_cannot() -> None:
+    view = drawn_trial("multi-cycle")
+    curve = view.repetition_curve
+    assert curve is not None
+    for sd, told in ((0.001, "standard deviation (0.057 deg at most, too narrow to be drawn)"), (0.1, "(grey band)")):
+        shown = replace(view, repetition_curve={**curve, "theta_sd": np.full(101, sd)})
+        assert told in caption_of("cycles", shown)
+        labels = [label for ax in FIGURES["cycles"](shown).axes for label in ax.get_legend_handles_labels()[1]]
+        assert ("± standard deviation" in labels) == (sd == 0.1)
+
+
 def test_captions_of_a_long_trial_count_what_its_stretch_has() -> None:
     view = drawn_trial("long")
     shown, stretch = shown_part(view)

@@ -13,6 +13,7 @@ from elbowscrew.report.names import WIDTHS_MM
 from elbowscrew.view.figure_names import ALL, FIGURE_CHOICES, FIGURE_ENTRIES, OVERLAY
 
 if TYPE_CHECKING:
+    from elbowscrew.errors import ElbowscrewError
     from elbowscrew.model.mesh import Mesh
 
 _PAGES, _FIGURES = "Pages", "Figures for publication"
@@ -124,8 +125,10 @@ def report(
         if idle or width != "double":
             msg = f"{', '.join(idle or ['--width'])}: belongs to --figures; name some of {', '.join(FIGURE_CHOICES)}"
             raise UsageError(msg)
+        written: tuple[Path, ...]
+        errors: tuple[ElbowscrewError, ...] = ()
         if clip is not None:
-            written, errors = (_clip(results, clip, bones, force=force),), ()
+            written = (_clip(results, clip, bones, force=force),)
         else:
             with shown_steps("Pages", quiet=quiet) as step:
                 written, errors = remake_pages(results, report=step, meshes=bones)

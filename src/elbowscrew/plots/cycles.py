@@ -13,6 +13,7 @@ from elbowscrew.plots import style
 from elbowscrew.plots.figures import NARROW_MM, WIDTH_MM
 from elbowscrew.quantities import angle_in
 from elbowscrew.results.trial_views import view_of
+from elbowscrew.view.bands import is_seen
 from elbowscrew.view.long_trials import MOST_CYCLES
 from elbowscrew.view.trial_view import TrialView
 
@@ -41,12 +42,14 @@ def plot_cycles(ax: Axes, analysis: Analysis | TrialView) -> Axes:
         low, high = np.fmin.reduce(curves), np.fmax.reduce(curves)
         ax.fill_between(percent[known], low[known], high[known], label=f"range of {name}", **_RANGE)
     else:
+        look = style.MEASURED if count == 1 else {"color": "#8C8C8C", "linewidth": 0.5, "zorder": 2}
         for k, curve in enumerate(curves):
-            ax.plot(percent, curve, color="#8C8C8C", linewidth=0.5, zorder=2, label=name if k == 0 else None)
+            ax.plot(percent, curve, label=name if k == 0 else None, **look)
     mean = view.repetition_curve
     if mean is not None:
         middle, sd = angle_in(mean["theta_mean"], unit), angle_in(mean["theta_sd"], unit)
-        ax.fill_between(percent, middle - sd, middle + sd, label="± standard deviation", **style.SPREAD)
+        if is_seen(middle, sd):
+            ax.fill_between(percent, middle - sd, middle + sd, label="± standard deviation", **style.SPREAD)
         ax.plot(percent, middle, label="mean", zorder=3, **{**style.MEASURED, "linewidth": 1.6})
     ax.set_xlim(0.0, 100.0)
     ax.set_xlabel("Time of the cycle (%)")

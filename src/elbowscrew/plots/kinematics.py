@@ -22,6 +22,7 @@ from elbowscrew.view.decimation import drawn_rows
 from elbowscrew.view.long_trials import shown_part, stretch_of
 from elbowscrew.view.trial_view import TrialView, fitted_pitch_mm
 
+_DOT_DASH: Final = (0, (6, 2, 1, 2))
 _BINS: Final = 60
 _LEAST_IN_BIN: Final = 10
 _STEPS_IN_BIN: Final = 2.0
@@ -64,8 +65,7 @@ def _with_slope(ax: Axes, view: TrialView) -> Axes:
             angle_in(ends, view.settings.angle_unit),
             along,
             label="slope of the screw-hinge",
-            linewidth=1.2,
-            **style.AXES[0],
+            **{**style.AXES[0], "linewidth": 1.2, "linestyle": _DOT_DASH},  # told from the curve in grey, too
         )
     ax.set_xlabel(f"Angle θ ({view.settings.angle_unit})")
     ax.set_ylabel(f"Slide along the axis ({view.settings.length_unit})")

@@ -10,6 +10,7 @@ import numpy as np
 from elbowscrew.choices import JOINT_TYPE_WORDS, AngleUnit
 from elbowscrew.geometry.sensitivity import NORMAL_95
 from elbowscrew.model import Comparison, TrialsComparison
+from elbowscrew.quantities import angle_in
 from elbowscrew.report.bones_words import bone_words
 from elbowscrew.report.caption_words import (
     KEYFRAMES,
@@ -25,6 +26,7 @@ from elbowscrew.report.caption_words import (
     shading,
     trial,
 )
+from elbowscrew.view.bands import is_seen
 from elbowscrew.view.comparisons import has_displacements
 from elbowscrew.view.joint_space import JointInBody, joint_in_body
 from elbowscrew.view.long_trials import MOST_CYCLES, shown_part, stretch_of
@@ -214,7 +216,12 @@ def _cycles(view: TrialView) -> Iterator[str]:
         yield "Angle θ of the one cycle over its time."
     else:
         yield f"Angle θ of {count} cycles, each from 0 to 100 % of its own time: {each}, mean (black)"
-        yield "and one standard deviation to either side (grey band)."
+        mean, unit = view.repetition_curve, view.settings.angle_unit
+        if mean is None or is_seen(mean["theta_mean"], mean["theta_sd"]):
+            yield "and one standard deviation to either side (grey band)."
+        else:
+            most = float(angle_in(np.nanmax(mean["theta_sd"]), unit))
+            yield f"and standard deviation ({most:.2g} {unit} at most, too narrow to be drawn)."
 
 
 def _quality(view: TrialView) -> Iterator[str]:
