@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from elbowscrew.errors import UsageError
-from elbowscrew.model.anatomy import LANDMARKS, Landmark
+from elbowscrew.model.anatomy import LANDMARKS, LANDMARKS_OF, Landmark
 from elbowscrew.reading.landmarks import read_landmarks
 
 GOOD = {
@@ -33,7 +33,7 @@ def test_names_and_coordinates(tmp_path: Path) -> None:
     found = read_landmarks(path)
     assert found.side == "right"
     assert found.source == str(path)
-    assert list(found.by_name) == list(LANDMARKS)
+    assert list(found.by_name) == list(LANDMARKS_OF["elbow"])
     assert found.by_name["EL"].markers == ("lateral_epicondyle",)
     assert found.by_name["US"].markers == ("wrist front", "Wrist:Marker 002")
     assert found.by_name["EL"].point is None
