@@ -15,7 +15,7 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 from elbowscrew.errors import OutputError, UsageError
-from elbowscrew.geometry.arrays import Float
+from elbowscrew.geometry.arrays import Bool, Float
 from elbowscrew.geometry.quaternion import quat_from_rotation_vector, rotate, rotation_matrix_from_quat
 from elbowscrew.model.mesh import Mesh
 from elbowscrew.report.scene import scene_of
@@ -279,7 +279,7 @@ class _Drawing:
 
     def line(self, points: Any, color: str, wide: float) -> None:
         places = self.at(points)
-        known = np.isfinite(places).all(axis=1)
+        known: Bool = np.logical_and.reduce(np.isfinite(places), axis=1)
         for piece in np.split(np.arange(len(places)), np.flatnonzero(~known)):
             inside = [tuple(place) for place in places[piece[known[piece]], :2].tolist()]
             if len(inside) > 1:
