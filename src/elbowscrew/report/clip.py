@@ -8,7 +8,7 @@ import subprocess
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Final, cast
+from typing import Any, Final
 
 import matplotlib as mpl
 import numpy as np
@@ -34,6 +34,7 @@ _SIZE: Final = (640, 520)
 _STILL: Final = 3
 _MOST_BYTES: Final = 6_000_000
 _SMOOTH: Final = 2
+_ALMOST_WHITE: Final = 248
 # The page's colors on paper: told apart by color-blind readers, too, and in grey by their lightness.
 _PAPER, _INK, _SOFT, _LIMB = "#ffffff", "#1b1f24", "#57606a", "#d7dbdf"
 _COLORS: Final = {"proximal": "#0072b2", "distal": "#d55e00"}
@@ -389,11 +390,10 @@ def _encoded(picture: Image.Image, kind: str, **options: Any) -> bytes:
 
 def _gif(pictures: Sequence[Image.Image], milliseconds: int) -> bytes:
     """Write pictures with one palette, that of the middle one: still parts then stay as they are."""
-    middle = pictures[len(pictures) // 2]
-    palette = middle.quantize(96)
-    colors, paper = palette.getpalette() or [], 3 * cast(int, palette.getpixel((0, 0)))
-    colors[paper : paper + 3] = [255, 255, 255]
-    palette.putpalette(colors)
+    palette = pictures[len(pictures) // 2].quantize(96)
+    colors = np.reshape(palette.getpalette() or [], (-1, 3))
+    paper = (colors > _ALMOST_WHITE).all(axis=1, keepdims=True)
+    palette.putpalette(np.where(paper, 255, colors).reshape(-1).tolist())
     drawn = [picture.quantize(palette=palette, dither=Image.Dither.NONE) for picture in pictures]
     stream = io.BytesIO()
     drawn[0].save(
