@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import json
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from oracles import known_trial
+from scipy.spatial.transform import Rotation
 
 from elbowscrew import Settings, analyze, read_recording
 from elbowscrew.cli import main
@@ -220,7 +222,84 @@ def metric(path: Path) -> list[str]:
     return [",".join(f"{x:.9f}" for x in row) for row in cells]
 
 
-def test_six_numbers_a_row_are_not_guessed(tmp_path: Path) -> None:
-    path = write(tmp_path / "t.tra", ["1.5,2,3,10,20,30"] * 5)
-    with pytest.raises(RecordingError, match=r"Autoscoper.*columns FILE"):
+def titled(name: str, *, suffix: str = "") -> str:
+    """Titles as XMALab writes them: the last coordinate is called TY, too."""
+    parts = [f"R{k}1 R{k}2 R{k}3 0{k}".split() for k in (1, 2, 3)]
+    return " , ".join(f"{name}_{part}{suffix}" for part in (*chain.from_iterable(parts), "TX", "TY", "TY", "1"))
+
+
+@pytest.mark.parametrize("suffix", ["", "_10Hz"])
+@pytest.mark.parametrize("numbered", [False, True])
+def test_the_header_of_xmalab(tmp_path: Path, numbered: bool, suffix: str) -> None:
+    rows = [" , ".join(pair).replace(",", " , ") for pair in zip(*both(by_columns=True), strict=True)]
+    rows[7] = " , ".join(["NaN"] * 32)
+    header = f"{titled('upper arm', suffix=suffix)} , {titled('Ulna_2', suffix=suffix)}"
+    if numbered:
+        rows = [f"{k + 1} , {row}" for k, row in enumerate(rows)]
+        header = f"Frame , {header}"
+    path = write(tmp_path / "trial.csv", [header, *rows])
+    with pytest.raises(SettingError, match="give units m, cm or mm, and rate_hz HZ"):
         read_recording(path)
+    recording = read_recording(path, **STATED)
+    assert [body.name for body in recording.bodies] == ["upper arm", "Ulna_2"]
+    assert [np.flatnonzero(~body.tracked).tolist() for body in recording.bodies] == [[7], [7]]
+    assert recording.frame[0] == numbered
+    found = analyze(recording, Settings(proximal="#1", distal="#2"))
+    assert np.delete(found.screw.angle, 7) == pytest.approx(np.delete(TRIAL.angle, 7), abs=1e-7)
+
+
+def test_titles_of_xmalab_that_are_not_whole(tmp_path: Path) -> None:
+    rows = [" , ".join(pair) for pair in zip(*both(by_columns=True), strict=True)]
+    for header in (
+        f"{titled('a')} , {titled('a')}",
+        f"{titled('a')} , {titled('b').replace('R12', 'R21')}",
+        titled("a"),
+    ):
+        with pytest.raises(
+            RecordingError, match=r"t\.csv:1: .*sixteen for each body|t\.csv:2: expected 16 cells, found 32"
+        ):
+            read_recording(write(tmp_path / "t.csv", [header, *rows]), **STATED)
+    with pytest.raises(RecordingError, match="no frame follows"):
+        read_recording(write(tmp_path / "t.csv", [titled("a")]), **STATED)
+
+
+def angles_of(R: Any, p: Any) -> list[str]:
+    """x, y, z, yaw, pitch, roll by SciPy: about the body's own z, y and x."""
+    turns = Rotation.from_matrix(R).as_euler("ZYX", degrees=True)
+    return [" ".join(f"{x:.16f}" for x in row) for row in np.hstack([1000.0 * np.asarray(p), turns])]
+
+
+def test_six_numbers_of_autoscoper(tmp_path: Path) -> None:
+    arm, forearm = angles_of(TRIAL.proximal_R, TRIAL.proximal_p), angles_of(TRIAL.distal_R, TRIAL.distal_p)
+    arm[3] = " ".join(["NaN"] * 6)
+    first, second = write(tmp_path / "humerus.tra", arm), write(tmp_path / "ulna.tra", forearm)
+    recording = read_recording(first, distal_path=second, **STATED)
+    assert [body.name for body in recording.bodies] == ["humerus", "ulna"]
+    assert {warning.code for warning in recording.warnings} == {"autoscoper-angles"}
+    found = analyze(recording)
+    assert np.delete(found.screw.angle, 3) == pytest.approx(np.delete(TRIAL.angle, 3), abs=1e-9)
+    as_matrices = [write(tmp_path / name, rows) for name, rows in zip(("a.tra", "b.tra"), both(), strict=True)]
+    other = read_recording(as_matrices[0], distal_path=as_matrices[1], **STATED)
+    pose = recording.bodies[1].dual_quat_lab_body
+    assert np.abs(pose - other.bodies[1].dual_quat_lab_body).max() < 1e-8
+    both_in_one = [f"{a} {b}" for a, b in zip(arm, forearm, strict=True)]
+    together = read_recording(write(tmp_path / "all.tra", both_in_one), **STATED)
+    assert np.array_equal(together.bodies[1].dual_quat_lab_body, pose)
+    with pytest.raises(SettingError, match="give units m, cm or mm, and rate_hz HZ"):
+        read_recording(first)
+
+
+def test_angles_that_may_be_radians_are_not_guessed(tmp_path: Path) -> None:
+    turns = Rotation.from_matrix(TRIAL.distal_R).as_euler("ZYX")
+    rows = [",".join(f"{x:.9f}" for x in row) for row in np.hstack([1000.0 * np.asarray(TRIAL.distal_p), turns])]
+    with pytest.raises(RecordingError, match=r"within 2 pi.*columns FILE"):
+        read_recording(write(tmp_path / "ulna.tra", rows), **STATED)
+    with pytest.raises(RecordingError, match=r"angles of 400 are none.*columns FILE"):
+        read_recording(write(tmp_path / "ulna.tra", [*rows, "1,2,3,400,0,0"]), **STATED)
+
+
+@pytest.mark.parametrize("count", [6, 12])
+def test_six_numbers_a_row_are_not_guessed(tmp_path: Path, count: int) -> None:
+    path = write(tmp_path / "t.csv", [",".join(["1.5,2,3,10,20,30"] * (count // 6))] * 5)
+    with pytest.raises(RecordingError, match=r"Autoscoper.*end in \.tra.*columns FILE"):
+        read_recording(path, **STATED)

@@ -1,35 +1,55 @@
-"""Tables of 4 x 4 matrices without a header, as biplane X-ray gives them: a row a frame, 16 numbers a body.
+"""Tables of 4 x 4 matrices, as biplane X-ray gives them: a row a frame, 16 numbers a body.
 
 Each matrix is body to laboratory, row by row (the last four numbers are 0, 0, 0, 1) or column by column (every fourth
 is). There is no unit, and no clock but for a first column of frame numbers, if there is one. Blanks, "nan" and zeros
-are lost frames.
+are lost frames. There is no header, or that of XMALab: ``<body>_R11 , <body>_R12``, and so on, behind ``Frame``.
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
-from elbowscrew.errors import Missing, MissingStatementError, RecordingError
+from elbowscrew.errors import RecordingError
 from elbowscrew.geometry.arrays import Bool, Float
-from elbowscrew.model import QualityWarning, Recording, Source
+from elbowscrew.model import Recording, Source
 from elbowscrew.quantities import METERS
 from elbowscrew.reading.builders import ArrayBuilder, BodyBuilder
 from elbowscrew.reading.cells import parse_number, read_blocks
 from elbowscrew.reading.clock import check_frames, counted_rate, cut_warnings, frames_and_times
-from elbowscrew.reading.options import ASK_FOR_UNITS, ReadOptions
+from elbowscrew.reading.headerless import body_names, first_row, one_body_warnings, unit_and_rate
+from elbowscrew.reading.options import ReadOptions
 from elbowscrew.reading.source import TextSource
 
 _CELLS: Final = 16
 # The last row of a matrix, as it may be printed.
 _BOTTOM: Final = np.array([0.0, 0.0, 0.0, 1.0])
 _EXACT: Final = 1e-6
+# XMALab's titles of a body's cells; it calls the last coordinate TY, too. Filtered ones have a frequency behind them.
+_PARTS: Final = ("r11", "r12", "r13", "01", "r21", "r22", "r23", "02", "r31", "r32", "r33", "03", "tx", "ty", "ty", "1")
+_TITLE: Final = re.compile(r"(?P<name>.+)_(?P<part>r[123]{2}|0[123]|t[xyz]|1)(?:_[\d.]+hz)?", re.ASCII | re.IGNORECASE)
+
+
+class _Table(NamedTuple):
+    """Lines above the numbers, cells of a row, and the bodies' names."""
+
+    lines_above: int
+    width: int
+    names: list[str]
+
+    @property
+    def numbered(self) -> bool:
+        """Whether frame numbers stand before the matrices."""
+        return self.width % _CELLS == 1
 
 
 def recognizes(cells: list[str]) -> bool:
-    """Tell by 16 numbers a body that end, or of which every fourth ends, as a pose's matrix does, or are blank."""
+    """Tell by XMALab's titles, or by 16 numbers a body, of which the last or every fourth end a pose, or blanks."""
+    if _has_titles(cells):
+        return True
     while cells and not cells[-1]:
         cells = cells[:-1]
     try:
@@ -44,72 +64,86 @@ def recognizes(cells: list[str]) -> bool:
 
 def read(source: TextSource, options: ReadOptions) -> Recording:
     """Read a table of 4 x 4 matrices; see `elbowscrew.reading.registry.read_recording`."""
-    scale, rate = _stated(source, options)
-    width = _width(source)
-    by_columns = _by_columns(source, width)
-    bodies = width // _CELLS
-    builders = [BodyBuilder(name) for name in _names(source, bodies)]
+    cells = first_row(source)
+    if _has_titles([cell.casefold() for cell in cells]):
+        table = _titled(source, cells)
+    else:
+        table = _Table(0, len(cells), body_names(source, len(cells) // _CELLS))
+    unit, rate = unit_and_rate(source, options)
+    by_columns = _by_columns(source, table)
+    builders = [BodyBuilder(name) for name in table.names]
     frames, rows = ArrayBuilder(dtype=np.int64), 0
-    for frame, block in _blocks(source, width):
+    for frame, block in _blocks(source, table):
         ticks = frames_and_times(frame, None, range(rows, rows + len(block)), rate)
-        check_frames(source, rows, ticks)
+        line = table.lines_above + rows
+        check_frames(source, line, ticks)
         frames.append(ticks[:, 0].astype(np.int64))
         matrices = _matrices(block)
         if by_columns:
             matrices = _turned(matrices)
-        _check(source, rows, matrices, by_columns=by_columns)
+        _check(source, line, matrices, by_columns=by_columns)
         for k, builder in enumerate(builders):
-            builder.append_matrices(matrices[:, k, :3, :3], scale * matrices[:, k, :3, 3])
+            builder.append_matrices(matrices[:, k, :3, :3], METERS[unit] * matrices[:, k, :3, 3])
         rows += len(block)
+    if not rows:
+        msg = f"{source.path}:{table.lines_above + 1}: no frame follows the header; export the take again"
+        raise RecordingError(msg)
     numbers = frames.finish()
     return Recording(
         bodies=tuple(builder.finish() for builder in builders),
         frame=numbers,
         time_s=numbers / rate,
-        rate_hz=rate if width % _CELLS == 0 else counted_rate(source.path, numbers, numbers / rate),
+        rate_hz=counted_rate(source.path, numbers, numbers / rate) if table.numbered else rate,
         source=Source(
             path=str(source.path),
             sha256=source.sha256,
             layout="4 x 4 matrices",
-            length_unit=str(options.units),
+            length_unit=unit,
             rotation_type="matrix",
         ),
         warnings=(
             *cut_warnings(source, "", rows),
             *(warning for builder in builders for warning in builder.warnings()),
-            *(_one_body(source) if bodies == 1 and options.alone else ()),
+            *one_body_warnings(source, len(builders), options),
         ),
     )
 
 
-def _stated(source: TextSource, options: ReadOptions) -> tuple[float, float]:
-    """Give the unit in meters and the frames a second, which the file has not; ask for both at once."""
-    if options.units is None or options.rate_hz is None:
-        asked = [
-            Missing("units", "states no unit of length", ASK_FOR_UNITS),
-            Missing("rate_hz", "has no times", "--rate HZ"),
-        ]
-        raise MissingStatementError.of(source.path, *(one for one in asked if getattr(options, one.setting) is None))
-    return METERS[options.units], options.rate_hz
+def _has_titles(cells: list[str]) -> bool:
+    title = cells[1] if len(cells) > 1 and cells[0] == "frame" else cells[0]
+    return _part(title) == _PARTS[0]
 
 
-def _width(source: TextSource) -> int:
-    cells = source.cells(next(line for line in source.lines() if line.strip(", ;\t")))
-    while not cells[-1]:
-        cells.pop()
-    return len(cells)
+def _part(title: str) -> str:
+    found = _TITLE.fullmatch(title)
+    return found["part"].casefold() if found else ""
 
 
-def _blocks(source: TextSource, width: int) -> Iterator[tuple[Float | None, Float]]:
+def _titled(source: TextSource, titles: list[str]) -> _Table:
+    """Take the names of bodies from their titles; each must have its sixteen."""
+    line = 1 + next(k for k, text in enumerate(source.lines()) if text.strip(", ;\t"))
+    own = titles[len(titles) % _CELLS :]
+    found = [(_TITLE.fullmatch(title) or {"name": "", "part": ""}) for title in own]
+    names = [str(one["name"]) for one in found[::_CELLS]]
+    whole = len(titles) % _CELLS <= 1 and len(set(names)) == len(names)
+    for k, one in enumerate(found):
+        part = one["part"].casefold().replace("tz", "ty")
+        whole &= (one["name"], part) == (names[k // _CELLS], _PARTS[k % _CELLS])
+    if not whole:
+        msg = (
+            f"{source.path}:{line}: expected XMALab's titles, _R11 to _1, sixteen for each body and each body once, "
+            f"found {len(own)}, of {', '.join(dict.fromkeys(names))[:60]}; export the transformations again"
+        )
+        raise RecordingError(msg)
+    return _Table(line, len(titles), names)
+
+
+def _blocks(source: TextSource, table: _Table) -> Iterator[tuple[Float | None, Float]]:
     """Yield the frame numbers of many rows, None where rows are the clock, and their matrices' cells."""
-    numbered = width % _CELLS == 1
-    for block in read_blocks(source, 0, range(width), width, nan_word=True, blank_rows=not numbered):
+    columns, numbered, above = range(table.width), table.numbered, table.lines_above
+    blocks = read_blocks(source, above, columns, table.width, exact=above > 0, nan_word=True, blank_rows=not numbered)
+    for block in blocks:
         yield (block[:, 0], block[:, 1:]) if numbered else (None, block)
-
-
-def _names(source: TextSource, bodies: int) -> list[str]:
-    """Name one body as its file, as nothing else names it, and several by their places."""
-    return [source.path.stem] if bodies == 1 else [f"body {k}" for k in range(1, bodies + 1)]
 
 
 def _matrices(block: Float) -> Float:
@@ -132,7 +166,7 @@ def _ends_so(matrices: Float) -> Bool:
     return so
 
 
-def _by_columns(source: TextSource, width: int) -> bool:
+def _by_columns(source: TextSource, table: _Table) -> bool:
     """Whether the matrices stand column by column, by the first that can be so in one way only.
 
     Raises
@@ -141,7 +175,7 @@ def _by_columns(source: TextSource, width: int) -> bool:
         If all can be either, which are different rotations: no position is other than 0.
     """
     differs = False
-    for _, block in _blocks(source, width):
+    for _, block in _blocks(source, table):
         matrices = _matrices(block)
         known = ~_lost(matrices)
         rows, columns = _ends_so(matrices), _ends_so(_turned(matrices))
@@ -159,23 +193,14 @@ def _by_columns(source: TextSource, width: int) -> bool:
     return False
 
 
-def _check(source: TextSource, rows: int, matrices: Float, *, by_columns: bool) -> None:
+def _check(source: TextSource, line: int, matrices: Float, *, by_columns: bool) -> None:
     bad = ~(_lost(matrices) | _ends_so(matrices))
     if bad.any():
         row, body = (int(k[0]) for k in np.nonzero(bad))
         place = "every fourth cell" if by_columns else "the last four cells"
         found = ", ".join(f"{x:g}" for x in matrices[row, body, 3])
         msg = (
-            f"{source.path}:{rows + row + 1}: expected 0, 0, 0, 1 in {place} of matrix {body + 1}, as in the rows "
+            f"{source.path}:{line + row + 1}: expected 0, 0, 0, 1 in {place} of matrix {body + 1}, as in the rows "
             f"before, found {found}; export the take again"
         )
         raise RecordingError(msg)
-
-
-def _one_body(source: TextSource) -> tuple[QualityWarning]:
-    name = source.path.name
-    message = (
-        f"the file has the matrices of one body only: its motion in the laboratory is told, not that of a joint; for a "
-        f"joint give both files, the proximal body's first, as in 'analyze PROXIMAL.tra {name}'"
-    )
-    return (QualityWarning(code="one-body", message=message),)

@@ -14,6 +14,7 @@ from elbowscrew.errors import RecordingError, SettingError, UsageError
 from elbowscrew.model import Recording
 from elbowscrew.quantities import METERS
 from elbowscrew.reading import (
+    autoscoper,
     c3d,
     matrices,
     motive_columns,
@@ -33,7 +34,6 @@ from elbowscrew.reading.scale import with_scale_checked
 from elbowscrew.reading.source import TextSource, first_bytes, open_source
 
 _HEAD_BYTES: Final = 16
-_POSE_NUMBERS: Final = 6
 _UNITS: Final = frozenset({"units"})
 _MARKERS: Final = frozenset({"markers"})
 _RATE: Final = frozenset({"rate_hz"})
@@ -58,6 +58,8 @@ class Format(Generic[Head, Opened]):
     read : callable
     accepts : frozenset of str
         The fields of `ReadOptions` that mean something for it.
+    only_ending : str
+        If not empty, of files whose names end otherwise none is of this format: their cells might be anything.
     """
 
     name: str
@@ -65,6 +67,7 @@ class Format(Generic[Head, Opened]):
     recognizes: Callable[[Head], bool]
     read: Callable[[Opened, ReadOptions], Recording]
     accepts: frozenset[str]
+    only_ending: str = ""
 
 
 FORMATS: Final[tuple[Format[list[str], TextSource], ...]] = (
@@ -90,6 +93,10 @@ FORMATS: Final[tuple[Format[list[str], TextSource], ...]] = (
         read=qualisys.read,
         accepts=frozenset(),
     ),
+    # Before row tags, of which 'frame' is one. No endings: in a folder, two of its files may be one trial.
+    Format(
+        name="4 x 4 matrices", endings=(), recognizes=matrices.recognizes, read=matrices.read, accepts=_UNITS | _RATE
+    ),
     Format(
         name="row-tagged",
         endings=(".csv",),
@@ -104,9 +111,13 @@ FORMATS: Final[tuple[Format[list[str], TextSource], ...]] = (
         read=storage.read,
         accepts=frozenset(),
     ),
-    # No endings: in a folder, two of its files may be one trial.
     Format(
-        name="4 x 4 matrices", endings=(), recognizes=matrices.recognizes, read=matrices.read, accepts=_UNITS | _RATE
+        name="Autoscoper poses",
+        endings=(),
+        recognizes=autoscoper.recognizes,
+        read=autoscoper.read,
+        accepts=_UNITS | _RATE,
+        only_ending=".tra",
     ),
 )
 """A new text format is one module with `recognizes` and `read` and one entry here; the first that fits reads it."""
@@ -140,8 +151,8 @@ def read_recording(
     ----------
     path : path-like
         An OptiTrack export (Motive's column layout 1.1 to 1.25, the row-tagged layout 1.0 and 1.1), a plain table, a
-        TRC file, a 6D export of Qualisys, orientations in OpenSim's storage, a table of 4 x 4 matrices, or a C3D file
-        (with the extra ``[c3d]``).
+        TRC file, a 6D export of Qualisys, orientations in OpenSim's storage, a table of 4 x 4 matrices, poses of
+        Autoscoper, or a C3D file (with the extra ``[c3d]``).
     distal_path : path-like, optional
         The file of the distal body, where each body has a file of its own: `path` is that of the proximal one.
     units : {"m", "cm", "mm"}, optional
@@ -236,7 +247,7 @@ def _read(file: Path, options: ReadOptions) -> Recording:
     first_line = next((line for line in islice(source.lines(), 20) if line.strip(", ;\t")), "")
     cells = [cell.strip().strip('"').strip().casefold() for cell in first_line.split(source.delimiter)]
     for entry in FORMATS:
-        if entry.recognizes(cells):
+        if entry.recognizes(cells) and file.suffix.casefold().endswith(entry.only_ending):
             _check_options(file, entry.name, options, entry.accepts)
             return entry.read(source, options)
     found = _read_by_plug_in(file, options)
@@ -273,7 +284,11 @@ def _refusal(source: TextSource, cells: list[str]) -> str:
             f"'frame,time_s' in the first cells, found {cells[0][:40]!r}; any table is read once --columns FILE.toml "
             "says what its columns are (docs/reference/plain-table.md)"
         )
-    angles = " (x, y, z, yaw, pitch, roll of Autoscoper?)" if len(numbers) == _POSE_NUMBERS else ""
+    angles = (
+        " (if they are Autoscoper's x, y, z, yaw, pitch, roll, let the file's name end in .tra)"
+        if autoscoper.recognizes(cells)
+        else ""
+    )
     return (
         f"{source.path}:1: the header is missing (the file begins with a number), so nothing says what the "
         f"{len(numbers)} columns are{angles}; export the take again with the header on, or say what they are by "
