@@ -1,149 +1,84 @@
 """Feed mutated files of every format to readers and analysis: run ``python benchmarks/fuzz_readers.py COUNT``.
 
-Coverage-guided by atheris (``pip install atheris``). The only error a file may cause is ElbowscrewError, every file
-must be done with in a minute, and what comes back must be whole: finite poses of unit length where a frame counts as
-tracked, NaN where not, numbers in the analysis where it says so. A seed may be a file of ``--columns`` and its table
-below it.
+Coverage-guided by atheris (``pip install atheris``). The only error that a file may cause is ElbowscrewError, every
+file must be done with in a second of the processor's time, and what comes back must be whole: finite poses of unit
+length where a frame counts as tracked, NaN where not, numbers in the analysis where it says so.
+
+No number may be wrong in silence either. Whatever is read is changed once more in one place that is known: a cell among
+the numbers may change one row of one body or marker at the most, a row that is taken out takes only itself, cells that
+are shifted shift no others, and what a changed header moves or scales must be told.
+
+COUNT is of files in all. ``--seed`` makes other ones, ``--new`` leaves Motive's own formats out, and ``--finds FOLDER``
+is where each find is kept, with the file that it came from. The counts are printed as JSON, by format.
 """
 
 from __future__ import annotations
 
+import argparse
+import json
 import os
 import random
+import resource
 import signal
 import subprocess
 import sys
 import tempfile
+import time
+import traceback
 import warnings
 import zlib
+from collections import Counter, defaultdict
 from pathlib import Path
 from typing import Any
 
 import atheris
 import numpy as np
+from fuzz_seeds import OLD, POSES, TABLE, seeds
 
 with atheris.instrument_imports(include=["elbowscrew"]):
     from elbowscrew import analyze, read_recording
     from elbowscrew.errors import ElbowscrewError, MissingStatementError, NoBodiesError
+    from elbowscrew.model import Recording
     from elbowscrew.reading import c3d, c3d_worker
-    from elbowscrew.saving import save_simulation
+    from elbowscrew.reading.c3d_mending import mended
+    from elbowscrew.reading.c3d_parameters import check_sizes, read_statements
     from elbowscrew.settings import Settings
-    from elbowscrew.simulate import simulate_trial
 
-FRAMES = 12
 SCRATCH = Path(tempfile.mkdtemp(prefix="elbowscrew-fuzz-"))
 TARGET = SCRATCH / "mutant.csv"
+POSES_TARGET = SCRATCH / "mutant.tra"
 COLUMNS = SCRATCH / "columns.toml"
-TABLE = b"# the table\n"
-# An analysis takes as long as hundreds of readings; the choice by the file itself can be repeated.
-ANALYZED_OF = 20
+LONGEST_S = 1.0
+# An analysis takes as long as hundreds of readings, a library in a process of its own as long as ten; the choice by the
+# file itself can be repeated.
+ANALYZED_OF = 500
+OPENED_OF = 4
+CHANGED_AGAIN = 2
 # What a file may lack.
 STATED = {"units": "mm", "rotation": "YXZ", "rate_hz": 100.0}
-outcomes: dict[str, int] = {}
+KINDS = {
+    b"pathfiletype": "TRC", b"no_of": "Qualisys", b"frame": "plain table", b"time": "plain table",
+    b"data": "storage", b"version": "storage", b"format": "Motive columns", b"comment": "row-tagged",
+}  # fmt: skip
+ARM, FOREARM = ("a*",), ("f*",)
+outcomes: defaultdict[str, Counter[str]] = defaultdict(Counter)
+slowest: dict[str, float] = {}
+seen: set[str] = set()
+finds = SCRATCH / "finds"
+wanted_count = 0
 
 
-def seeds(folder: Path) -> None:
-    """Small good files of every text format."""
-    trial = simulate_trial(frames=FRAMES, inversion=6, top_deg=40, gaps=1, gap_frames=1)
-    save_simulation(trial, folder / "motive.csv", length_unit="mm")
-    save_simulation(trial, folder / "tagged.csv", layout="row-tagged")
-    motive = (folder / "motive.csv").read_text()
-    (folder / "v11.csv").write_text(motive.replace("Format Version,1.23", "Format Version,1.1"))
-    (folder / "semicolon.csv").write_text(motive.replace(",", ";").replace(".", ","))
-    (folder / "v125.csv").write_text(motive.replace("Format Version,1.23", "Format Version,1.25"))
-    (folder / "euler.csv").write_text(
-        motive.replace("Quaternion", "XYZ").replace(
-            "Rotation,Rotation,Rotation,Rotation", "Rotation,Rotation,Rotation,"
-        )
-    )
-    names = [f"{name}_e{k}" for name in ("arm", "forearm") for k in range(4)]
-    names += [f"{name}_{axis}_m" for name in ("arm", "forearm") for axis in "xyz"]
-    rows = [",".join(["frame,time_s", *names])]
-    for k in range(FRAMES):
-        half = 0.03 * k
-        rows.append(
-            f"{k},{k / 100},1,0,0,0,{np.cos(half)},{np.sin(half)},0,0,0.1,0.2,{0.3 + k * 1e-4},0.4,{k * 1e-3},0.6"
-        )
-    (folder / "table.csv").write_text("\n".join(rows) + "\n")
-    trc = [
-        "PathFileType\t4\t(X/Y/Z)\tt.trc",
-        "DataRate\tUnits",
-        "100\tmm",
-        "Frame#\tTime\ta1\t\t\ta2\t\t\ta3\t\t\tf1\t\t\tf2\t\t\tf3\t\t",
-        "\t\t" + "\t".join(f"{axis}{k}" for k in range(1, 7) for axis in "XYZ"),
-    ]
-    trc += [
-        f"{k + 1}\t{k / 100}\t0\t0\t1\t90\t0\t0\t0\t60\t0\t"  # a marker at 0, 0, 0 was not seen
-        f"0\t0\t{300 + k}\t{100 * np.cos(0.05 * k)}\t0\t{300 + k + 100 * np.sin(0.05 * k)}\t0\t80\t{300 + k}"
-        for k in range(FRAMES)
-    ]
-    (folder / "markers.trc").write_text("\n".join(trc) + "\n")
-    (folder / "commas.trc").write_text("\n".join(trc).replace("\t", ",") + "\n")
-    (folder / "names.trc").write_text("\n".join([*trc[:3], trc[3] + "\tV\t\t\ta1", *trc[4:]]) + "\n")
-    (folder / "times.csv").write_text("\n".join(row.partition(",")[2] for row in rows) + "\n")
-    qualisys = ["NO_OF_FRAMES\t12", "FREQUENCY\t100", "BODY_NAMES\tarm\tforearm"]
-    cells = ["Y", "Z", "Roll", "Pitch", "Yaw", "Residual", *(f"Rot[{k}]" for k in range(9))]
-    qualisys.append("\t".join(["Frame", "Time", "arm X", *cells, "forearm X", *cells]))
-    for k in range(FRAMES):
-        c, s = np.cos(0.05 * k), np.sin(0.05 * k)
-        qualisys.append(
-            f"{k + 1}\t{k / 100}\t1\t2\t3\t0\t0\t0\t0.4\t1\t0\t0\t0\t1\t0\t0\t0\t1\t"
-            f"4\t{k}\t6\t0\t0\t0\t0.4\t{c}\t{s}\t0\t{-s}\t{c}\t0\t0\t0\t1"
-        )
-    (folder / "qualisys.tsv").write_text("\n".join(qualisys) + "\n")
-    still, turning = "1 0 0 1 0 1 0 0 0 0 1 0 0 0 0 1", []
-    for k in range(FRAMES):
-        c, s = np.cos(0.05 * k), np.sin(0.05 * k)
-        turning.append(f"{c} {-s} 0 {k} {s} {c} 0 2 0 0 1 3 0 0 0 1")
-    (folder / "bodies.tra").write_text("\n".join(f"{still} {one}" for one in turning) + "\n")
-    storage = ["DataRate=100", "DataType=Quaternion", "version=3", "endheader", "time\tarm\tforearm"]
-    storage += [f"{k / 100}\t1,0,0,0\t{np.cos(0.03 * k)},{np.sin(0.03 * k)},0,0" for k in range(FRAMES)]
-    (folder / "sensors.sto").write_text("\n".join(storage) + "\n")
-    matrix = [f"m{k}" for k in range(16)]
-    said = [
-        '[clock]\ntime = "t"\nunit = "ms"\n[table]\nfirst_row = 3',
-        '[bodies.arm]\neuler = ["a", "b", "c"]\nsequence = "zyx"\ndegrees = true',
-        'position = ["#5", "#6", "#7"]\nunit = "mm"',
-        f'[bodies.forearm]\nmatrix = {matrix}\nunit = "cm"\n',
-    ]
-    rows = [";".join(["t", "a", "b", "c", "x", "y", "z", *matrix]), "ms;deg"]
-    rows += [f"{10 * k};1;2;3;4;5;6;{one.replace(' ', ';')}" for k, one in enumerate(turning)]
-    (folder / "columns.txt").write_text("\n".join(said) + TABLE.decode() + "\n".join(rows) + "\n")
-    markers = [one.split("\t") for one in trc[5:]]
-    said = [
-        f"[markers.{name}]\nposition = ['#{k}', '#{k + 1}', '#{k + 2}']\n"
-        for name, k in zip(("a1", "a2", "a3", "f1", "f2", "f3"), range(3, 21, 3), strict=True)
-    ]
-    table = "\n".join(",".join(one) for one in markers)
-    (folder / "markers.txt").write_text(f"[clock]\nframe = '#1'\n{''.join(said)}{TABLE.decode()}{table}\n")
-    positions = np.array(markers, dtype=np.float64)[:, 2:]
-    for name, rotations in (("points.c3d", False), ("rotations.c3d", True)):
-        c3d_seed(folder / name, positions, rotations=rotations)
-    for path in folder.glob("*.truth.json"):
-        path.unlink()
-
-
-def c3d_seed(path: Path, positions: Any, *, rotations: bool) -> None:
-    """Write markers (N, 18) as a C3D file, with poses beside them or not."""
-    import ezc3d
-
-    content = ezc3d.c3d()
-    content["parameters"]["POINT"]["RATE"]["value"] = [100.0]
-    content["parameters"]["POINT"]["UNITS"]["value"] = ["mm"]
-    content["parameters"]["POINT"]["LABELS"]["value"] = ("a1", "a2", "a3", "f1", "f2", "f3")
-    points = np.ones((4, 6, FRAMES))
-    points[:3] = positions.reshape(FRAMES, 6, 3).transpose(2, 1, 0)
-    content["data"]["points"] = points
-    if rotations:
-        matrices = np.tile(np.eye(4)[:, :, None, None], (1, 1, 2, FRAMES))
-        angle = 0.05 * np.arange(FRAMES)
-        matrices[0, 0, 1], matrices[1, 1, 1] = np.cos(angle), np.cos(angle)
-        matrices[:3, 3, 0] = 1.0  # no rotation at the very origin is no pose
-        matrices[1, 0, 1], matrices[0, 1, 1] = np.sin(angle), -np.sin(angle)
-        content["data"]["rotations"] = matrices
-        content.add_parameter("ROTATION", "RATE", [100.0])
-        content.add_parameter("ROTATION", "LABELS", ("arm", "forearm"))
-    content.write(str(path))
+def kind_of(data: bytes) -> str:
+    """The format that a file is, or once was."""
+    if data[1:2] == b"P" and data[:1] < b" ":
+        return "C3D"
+    if TABLE in data:
+        return "named columns"
+    if data.startswith(POSES):
+        return "six numbers"
+    begin = data.lstrip(b"\xef\xbb\xbf \r\n\t")[:12].lower()
+    found = next((kind for word, kind in KINDS.items() if begin.startswith(word)), None)
+    return found or ("matrices" if begin[:1].isdigit() or begin[:1] in b"-.n" else "other")
 
 
 def opened_in_a_fork(file: Path) -> bytes:
@@ -170,63 +105,204 @@ def opened_in_a_fork(file: Path) -> bytes:
     return output
 
 
-def stated_reading(**options: Any) -> Any:
-    """Read the target, with what it lacks."""
+def stated_reading(path: Path, **options: Any) -> Recording:
+    """Read a file, with what it lacks."""
     for _ in STATED:
         try:
-            return read_recording(TARGET, **options)
+            return read_recording(path, **options)
         except MissingStatementError as error:
-            check_message(str(error))
             options |= {one.setting: STATED[one.setting] for one in error.missing}
-    return read_recording(TARGET, **options)
+    return read_recording(path, **options)
 
 
-ARM, FOREARM = ("a*",), ("f*",)
+def read(data: bytes) -> Recording | None:
+    """Read one file and check what comes back; None if it is refused."""
+    kind = kind_of(data)
+    columns, named, table = data.partition(TABLE)
+    COLUMNS.write_bytes(columns)
+    path = POSES_TARGET if kind == "six numbers" else TARGET
+    path.write_bytes(table if named else data.removeprefix(POSES))
+    options: dict[str, Any] = {"columns": COLUMNS} if named else {}
+    begin = spent()
+    outcomes[kind]["files"] += 1
+    try:
+        if kind == "C3D" and zlib.crc32(data) % OPENED_OF:
+            stated = read_statements(TARGET)
+            if stated is not None:
+                check_sizes(TARGET, stated)
+                mended(TARGET, stated)
+            outcomes[kind]["looked at"] += 1
+            return None
+        try:
+            recording = stated_reading(path, **options)
+        except NoBodiesError:
+            recording = stated_reading(path, markers=(*ARM, *FOREARM), **options)
+    except ElbowscrewError as error:
+        outcomes[kind][type(error).__name__] += 1
+        if "\n" in str(error):
+            keep("message of several lines", data, str(error))
+        return None
+    finally:
+        took = spent() - begin
+        slowest[kind] = max(took, slowest.get(kind, 0.0))
+        if took > LONGEST_S:
+            keep("slow", data, f"{took:.2f} s")
+    for body in recording.bodies:
+        size = np.linalg.norm(body.dual_quat_lab_body[:, :4], axis=1)
+        if not np.allclose(size[body.tracked], 1.0) or not np.isnan(body.dual_quat_lab_body[~body.tracked]).all():
+            keep("no pose", data, body.name)
+    outcomes[kind]["read"] += 1
+    return recording
+
+
+def spent() -> float:
+    """Seconds of the processor, those of forks included."""
+    children = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return time.process_time() + children.ru_utime + children.ru_stime
 
 
 def one(data: bytes) -> None:
-    """Read one file, and analyze some."""
-    total = sum(outcomes.values())
-    if total and total % 1000 == 0:
-        print(total, outcomes, flush=True)  # libFuzzer ends the process itself: there is no later moment
-    columns, named, table = data.partition(TABLE)
-    COLUMNS.write_bytes(columns)
-    TARGET.write_bytes(table if named else data)
-    options: dict[str, Any] = {"columns": COLUMNS} if named else {}
+    """Read one file, change it again in some places, and analyze some."""
     with warnings.catch_warnings():
         warnings.simplefilter("error")  # a warning of NumPy is a number that nobody looked at
         try:
-            try:
-                recording = stated_reading(**options)
-            except NoBodiesError:
-                recording = stated_reading(markers=(*ARM, *FOREARM), **options)
-        except ElbowscrewError as error:
-            outcomes[type(error).__name__] = outcomes.get(type(error).__name__, 0) + 1
-            check_message(str(error))
-            return
-        for body in recording.bodies:
-            size = np.linalg.norm(body.dual_quat_lab_body[:, :4], axis=1)
-            assert np.allclose(size[body.tracked], 1.0)
-            assert np.isnan(body.dual_quat_lab_body[~body.tracked]).all()
-        if zlib.crc32(data) % ANALYZED_OF:
-            outcomes["read"] = outcomes.get("read", 0) + 1
-            return
-        try:
-            chosen: dict[str, Any] = {} if recording.bodies else {"arm_markers": ARM, "forearm_markers": FOREARM}
-            if len(recording.bodies) > 1 and not recording.bodies[0].name.startswith("arm"):
-                chosen = {"proximal": "#1", "distal": "#2"}
-            analysis = analyze(recording, Settings(min_tracked_percent=0, min_angle_deg=0.1, **chosen))
-        except ElbowscrewError as error:
-            kind = f"analysis: {type(error).__name__}"
-            outcomes[kind] = outcomes.get(kind, 0) + 1
-            return
-        assert np.isfinite(analysis.screw.angle[analysis.screw.valid]).all()
-        outcomes["analyzed"] = outcomes.get("analyzed", 0) + 1
+            recording = read(data)
+            if recording is not None:
+                rng = random.Random(zlib.crc32(data))  # noqa: S311 - no secret
+                for _ in range(CHANGED_AGAIN):
+                    change_once(data, recording, rng)
+                if zlib.crc32(data) % ANALYZED_OF == 0:
+                    analyzed(kind_of(data), recording)
+        except Exception:  # any other one is a find
+            lines = traceback.format_exc().splitlines()
+            where = [line.strip() for line in lines if "elbowscrew" in line]
+            keep(f"{lines[-1][:80]} {where[-1] if where else ''}", data, "\n".join(lines))
+    total = sum(count["files"] for count in outcomes.values())
+    if total >= wanted_count:
+        finish()
 
 
-def check_message(message: str) -> None:
-    """An error is one line, but for what the file's own name has."""
-    assert "\n" not in message
+def analyzed(kind: str, recording: Recording) -> None:
+    """Analyze what was read."""
+    chosen: dict[str, Any] = {} if recording.bodies else {"arm_markers": ARM, "forearm_markers": FOREARM}
+    if len(recording.bodies) > 1 and not recording.bodies[0].name.startswith("arm"):
+        chosen = {"proximal": "#1", "distal": "#2"}
+    try:
+        analysis = analyze(recording, Settings(min_tracked_percent=0, min_angle_deg=0.1, **chosen))
+    except ElbowscrewError:
+        outcomes[kind]["analysis refused"] += 1
+        return
+    assert np.isfinite(analysis.screw.angle[analysis.screw.valid]).all()
+    outcomes[kind]["analyzed"] += 1
+
+
+def change_once(data: bytes, before: Recording, rng: random.Random) -> None:
+    """Change a file in one place, read it again, and hold it against the file before."""
+    kind = kind_of(data)
+    changed, what = (change_bytes if kind == "C3D" else change_text)(data, rng)
+    after = read(changed)
+    if after is None:
+        return
+    moved = differences(before, after)
+    told = {one.code for one in after.warnings} - {one.code for one in before.warnings}
+    if what == "header":  # what moves in one place alone was a number
+        silent = len(moved) > 1 and not told and not stated_otherwise(before, after)
+    elif what == "row":
+        silent = bool(moved) or not is_without_a_row(before, after)
+    else:
+        silent = len(moved) > 1 or before.frame.size != after.frame.size
+    outcomes[kind][f"held against: {what}"] += 1
+    if silent:
+        keep(f"silent {kind} {what}", changed, f"{sorted(moved)[:9]} {before.source} {after.source}", data)
+
+
+def entities(recording: Recording) -> dict[str, Any]:
+    """Poses of bodies and positions of markers, by name."""
+    found: dict[str, Any] = {f"marker {one.name}": one.position for one in recording.markers}
+    for body in recording.bodies:
+        pose = body.dual_quat_lab_body
+        first = np.take_along_axis(pose[:, :4], np.abs(np.nan_to_num(pose[:, :4])).argmax(axis=1)[:, None], axis=1)
+        found[f"body {body.name}"] = pose * np.where(first < 0.0, -1.0, 1.0)
+    return found
+
+
+def differences(before: Recording, after: Recording) -> set[tuple[str, int]]:
+    """What of the same name is not the same, row by row."""
+    old, new = entities(before), entities(after)
+    return {
+        (name, int(row))
+        for name in old.keys() & new.keys()
+        if old[name].shape == new[name].shape
+        for row in np.flatnonzero(~((old[name] == new[name]) | (np.isnan(old[name]) & np.isnan(new[name]))).all(axis=1))
+    }
+
+
+def stated_otherwise(before: Recording, after: Recording) -> bool:
+    """Whether the file states another unit or another order of angles, which may have done it."""
+    one, other = ((it.source.length_unit, it.source.rotation_type) for it in (before, after))
+    return one != other
+
+
+def is_without_a_row(before: Recording, after: Recording) -> bool:
+    """Whether all is as it was but for a row that is no more; or all, where the line was none."""
+    old, new = entities(before), entities(after)
+    if before.frame.size == after.frame.size:
+        return True
+    if old.keys() != new.keys() or before.frame.size != after.frame.size + 1:
+        return False
+    return any(
+        all(np.array_equal(np.delete(old[name], row, axis=0), new[name], equal_nan=True) for name in old)
+        for row in range(before.frame.size)
+    )
+
+
+def change_bytes(data: bytes, rng: random.Random) -> tuple[bytes, str]:
+    """Change a byte of the last third of a C3D file, which is coordinates, or one before them."""
+    changed = bytearray(data)
+    for _ in range(64):  # until it is one that the library is asked about
+        changed = bytearray(data)
+        number = rng.random() < 0.5
+        at = rng.randrange(len(data) * 2 // 3, len(data)) if number else rng.randrange(2, 1536)
+        changed[at % len(data)] = rng.choice((0, 1, 2, 127, 128, 255, rng.randrange(256)))
+        if zlib.crc32(changed) % OPENED_OF == 0:
+            break
+    return bytes(changed), "cell" if number else "header"
+
+
+def change_text(data: bytes, rng: random.Random) -> tuple[bytes, str]:
+    """Change one cell among the numbers, take a row out, shift the cells of one, or change the header."""
+    lines = data.split(b"\n")
+    what = rng.choice(("cell", "cell", "row", "shift", "header"))
+    row = rng.randrange(len(lines) * 2 // 3, len(lines))
+    if what == "header":
+        row = rng.randrange(max(1, len(lines) // 3))
+    if what == "row":
+        return b"\n".join(lines[:row] + lines[row + 1 :]), what
+    delimiter = max(b",;\t ", key=lines[row].count).to_bytes()
+    cells = lines[row].split(delimiter)
+    column = rng.randrange(len(cells))
+    if what == "cell" or (what == "header" and rng.random() < 0.5):
+        cells[column] = rng.choice((*NUMBERS, *TOKENS) if what == "header" else NUMBERS)
+    elif rng.random() < 0.5:
+        del cells[column]
+    else:
+        cells.insert(column, rng.choice(NUMBERS))
+    lines[row] = delimiter.join(cells)
+    return b"\n".join(lines), what
+
+
+def keep(what: str, data: bytes, told: str, before: bytes = b"") -> None:
+    """Keep a find, and count others of its kind."""
+    outcomes[kind_of(data)][f"FIND: {what}"] += 1
+    name = f"{zlib.crc32(what.encode()):08x}"
+    if sum(one.startswith(name) for one in seen) >= 12:
+        return
+    name += f"-{zlib.crc32(data):08x}"
+    seen.add(name)
+    (finds / f"{name}.txt").write_text(f"{what}\n{told}\n", encoding="utf-8", errors="replace")
+    (finds / f"{name}.mutant").write_bytes(data)
+    if before:
+        (finds / f"{name}.before").write_bytes(before)
 
 
 TOKENS = tuple(
@@ -270,23 +346,43 @@ def mutate(data: bytes, max_size: int, seed: int) -> bytes:
     return b"\n".join(lines)[:max_size]
 
 
+def finish() -> None:
+    """Print the counts and end; libFuzzer would end the process itself, without a word of ours."""
+    slow = {kind: round(took, 3) for kind, took in slowest.items()}
+    print(json.dumps({"counts": outcomes, "slowest_s": slow, "finds": str(finds)}, indent=1), flush=True)
+    os._exit(any("FIND" in what for count in outcomes.values() for what in count))
+
+
 def main() -> None:
     """Run atheris from the seeds."""
-    count = sys.argv[1] if len(sys.argv) > 1 else "10000"
+    global wanted_count, finds
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("count", nargs="?", type=int, default=10_000)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--new", action="store_true")
+    parser.add_argument("--finds", type=Path, default=finds)
+    given = parser.parse_args()
+    wanted_count, finds = given.count, given.finds
+    finds.mkdir(parents=True, exist_ok=True)
     corpus = SCRATCH / "corpus"
     corpus.mkdir()
     seeds(corpus)
+    for name in OLD if given.new else ():
+        (corpus / f"{name}.csv").unlink()
     c3d._worker_output = opened_in_a_fork
-    arguments = [
-        sys.argv[0],
-        f"-runs={count}",
-        "-max_len=65536",
-        "-timeout=60",
-        "-mutate_depth=2",
-        "-print_final_stats=1",
-        str(corpus),
-    ]
-    atheris.Setup([*arguments, *sys.argv[2:]], one, custom_mutator=mutate)
+    atheris.Setup(
+        [
+            sys.argv[0],
+            f"-seed={given.seed}",
+            "-max_len=16384",
+            "-timeout=60",
+            "-mutate_depth=2",
+            "-verbosity=0",
+            str(corpus),
+        ],
+        one,
+        custom_mutator=mutate,
+    )
     atheris.Fuzz()
 
 

@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from elbowscrew import read_recording
 from elbowscrew.errors import RecordingError
 from elbowscrew.reading.cells import read_blocks
 from elbowscrew.reading.source import TextSource
@@ -54,3 +55,46 @@ def test_lines_of_several_lengths_keep_their_columns(tmp_path: Path) -> None:
     lines = ["1,2,3", "4,5,6,7,8", "9,10,11"]
     assert read(tmp_path / "a.csv", lines, [0, 2], width=3, group=2).tolist() == [[1, 3], [4, 6], [9, 11]]
     assert read(tmp_path / "b.csv", lines, [0, 1], width=3, group=2).tolist() == [[1, 2], [4, 5], [9, 10]]
+
+
+def table_of(tmp_path: Path, *rows: str) -> Path:
+    """A plain table of one body and a marker, whose last cells are not seen in the second frame."""
+    names = [*(f"a_e{k}" for k in range(4)), *(f"{name}_{axis}_m" for name in ("a", "b") for axis in "xyz")]
+    path = tmp_path / "t.csv"
+    whole = ["0,0.00,1,0,0,0,1,2,3,7,8,9", "1,0.01,1,0,0,0,1,2,3,,,", "2,0.02,1,0,0,0,1,2,3,7,8,9"]
+    path.write_text("\n".join([",".join(["frame,time_s", *names]), *(rows or whole)]) + "\n")
+    return path
+
+
+def test_a_cell_too_many_before_blank_ones_shifts_nothing_in_silence(tmp_path: Path) -> None:
+    read = read_recording(table_of(tmp_path), markers="b")
+    assert np.isnan(read.markers[0].position[1]).all()
+    for shifted in ("1,0.01,1,0,0,0,1,5,2,3,,,", "1,0.01,1,0,0,0,1,2,3,,,,"):  # as a decimal comma, 1,5, does
+        with pytest.raises(RecordingError, match=r"t\.csv:3: expected 12 cells, found 13"):
+            read_recording(table_of(tmp_path, "0,0.00,1,0,0,0,1,2,3,7,8,9", shifted), markers="b")
+
+
+TRC = """PathFileType\t4\t(X/Y/Z)\tt.trc
+DataRate\tUnits
+100\tmm
+Frame#\tTime\tA\t\t\tB\t\t
+\t\tX1\tY1\tZ1\tX2\tY2\tZ2
+"""
+
+
+@pytest.mark.parametrize("end", ["", "\t", "\t\t\t", "\t\t\t\t"])
+def test_tabs_at_the_end_of_lines_are_as_many_or_shift_nothing(tmp_path: Path, end: str) -> None:
+    path = tmp_path / "t.trc"
+    whole = ["1\t0\t10\t20\t30\t40\t50\t60", "2\t.01\t10\t20\t30\t\t\t", "3\t.02\t10\t20\t30\t41\t51\t61"]
+    path.write_text(TRC + "\n".join(row + end for row in whole))
+    (b,) = read_recording(path, markers="B").markers
+    assert b.position[[0, 2]] == pytest.approx(np.array([[0.04, 0.05, 0.06], [0.041, 0.051, 0.061]]))
+    assert np.isnan(b.position[1]).all()
+    path.write_text(
+        TRC + "\n".join([whole[0] + end, whole[1], whole[2] + "\t"])
+    )  # not as many: nothing else can be meant
+    assert np.array_equal(read_recording(path, markers="B").markers[0].position, b.position, equal_nan=True)
+    for shifted in (whole[1].replace("\t10", "\t1\t10"), whole[1].replace("\t10", "")):
+        path.write_text(TRC + "\n".join([whole[0] + end, shifted + end, whole[2] + end]))
+        with pytest.raises(RecordingError, match=r"t\.trc:7: expected \d+ cells, found \d+"):
+            read_recording(path, markers="B")

@@ -18,6 +18,8 @@ from elbowscrew.reading.source import TextSource
 
 # What JSON allows in a list beside numbers: blanks, words, text, and more lists.
 _NO_JSON_NUMBER: Final = (*" \t\r\n", *"tfn", '"', "[", "{")
+# Cells that somebody may have put into a line, or taken out of it.
+_MOST_SHIFTED: Final = 2
 _NUMBER: Final = re.compile(r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
 
 
@@ -49,12 +51,37 @@ class _Shape:
     group: int
     nan_word: bool
     blank_rows: bool
+    spare: int | None = None
 
     def allows(self, count: int) -> bool:
         """Whether a line may have so many cells."""
         if self.group:
             return count >= self.width and (count - self.width) % self.group == 0
         return count == self.width or (count > self.width and not self.exact)
+
+    def trimmed(self, cells: list[str]) -> tuple[_Shape, list[str]]:
+        """Leave out the blank cells behind a whole line, as delimiters at its end make them.
+
+        A line that has a cell too many and ends with blank ones looks the same, and all its cells are shifted. So lines
+        must agree in how many blank cells there are, but for more than anybody shifts by; or, in groups, each group
+        must be whole or blank.
+        """
+        more = len(cells) - self.width
+        spare = more % self.group if self.group else more
+        if more < 0 or not (self.exact or self.group):
+            return self, cells
+        habit = spare if self.spare is None else self.spare
+        if spare != habit:
+            if self.group:
+                parts = range(self.width % self.group, self.width, self.group)
+                agrees = all(len({not cell.strip() for cell in cells[k : k + self.group]}) == 1 for k in parts)
+            else:
+                agrees = 0 in (spare, habit) and spare + habit > _MOST_SHIFTED
+            if not agrees:
+                return self, []
+        while len(cells) > self.width and not cells[-1].strip():
+            cells = cells[:-1]
+        return replace(self, spare=habit), cells
 
 
 def read_blocks(
@@ -134,7 +161,7 @@ def _parse_block(
                 values = np.loadtxt(plain, delimiter=delimiter, usecols=columns, comments=None, ndmin=2)
         if values is not None and values.shape[0] == len(block) and np.isfinite(values).all():
             found = shape if shape.group else replace(shape, width=counts.pop(), exact=True)
-            return found, np.asarray(values, dtype=np.float64)
+            return replace(found, spare=0), np.asarray(values, dtype=np.float64)
     rows = []
     marks: set[str] = set()
     for offset, line in enumerate(block):
@@ -148,16 +175,17 @@ def _parse_block(
             if shape.blank_rows:
                 rows.append([float("nan")] * len(columns))
             continue
-        while len(cells) > shape.width and (shape.exact or shape.group) and not cells[-1].strip():
-            cells.pop()
+        count = len(cells)
+        shape, cells = shape.trimmed(cells)
         if not shape.allows(len(cells)):
+            expected = shape.width + (shape.spare or 0)
             msg = (
-                f"{location}: expected {shape.width} cells, found {len(cells)}: the line is cut or its cells are "
-                "shifted; export the take again, or delete the line"
+                f"{location}: expected {expected} cells, found {count}: the line is cut or its cells are shifted; "
+                "export the take again, or delete the line"
             )
             raise RecordingError(msg)
         if not shape.group:
-            shape = replace(shape, width=len(cells), exact=True)
+            shape = replace(shape, width=len(cells), exact=True, spare=shape.spare or 0)
         rows.append(_numbers(source, cells, columns, location, nan_word=shape.nan_word))
         if source.decimal_comma:
             marks |= {mark for column in columns for mark in ",." if mark in cells[column]}
