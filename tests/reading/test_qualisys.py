@@ -58,19 +58,55 @@ def test_blank_and_zero_poses_are_lost_and_others_that_are_none_are_told(tmp_pat
     assert [warning.code for warning in found.warnings] == ["invalid-pose"]
 
 
+def test_what_may_be_left_out_on_export(tmp_path: Path) -> None:
+    whole = read_recording(write(tmp_path / "t.tsv", lines()))
+    rows = lines()
+    titles = next(k for k, row in enumerate(rows) if row.startswith("Frame"))
+    lost = rows[titles + 5].split("\t")
+    rows[titles + 5] = "\t".join([*lost[:2], *([""] * (len(lost) - 2))])
+    without_clock = [row.split("\t", 2)[2] for row in rows[titles:]]
+    events = [f"EVENT\tE{k}\t{k}\t{k / 100}" for k in range(60)]
+    newer = ["FILE_VERSION\t2.0.0", *rows[:titles], *events]
+    for case in ([*newer, *rows[titles:]], rows[titles:], [*newer, *without_clock]):
+        found = read_recording(write(tmp_path / "u.tsv", case))
+        assert [body.name for body in found.bodies] == ["Upper Arm", "Forearm"]
+        assert found.rate_hz == pytest.approx(100.0)
+        assert (found.frame - found.frame[0]).tolist() == list(range(60))
+        assert (found.time_s - found.time_s[0]) == pytest.approx(np.arange(60) / 100.0)
+        for one, other in zip(found.bodies, whole.bodies, strict=True):
+            assert np.flatnonzero(~one.tracked).tolist() == [4]
+            assert np.array_equal(one.dual_quat_lab_body[5:], other.dual_quat_lab_body[5:])
+    with pytest.raises(RecordingError, match="no times and no FREQUENCY"):
+        read_recording(write(tmp_path / "u.tsv", without_clock))
+
+
+def test_decimal_commas(tmp_path: Path) -> None:
+    whole = read_recording(write(tmp_path / "t.tsv", lines()))
+    german = [row if k < 7 else row.replace(".", ",") for k, row in enumerate(lines())]
+    found = read_recording(write(tmp_path / "u.tsv", german))
+    assert np.array_equal(found.bodies[1].dual_quat_lab_body, whole.bodies[1].dual_quat_lab_body)
+    assert found.warnings == ()
+
+
 @pytest.mark.parametrize(
     ("old", "new", "says"),
     [
         ("Rot[4]", "Rot[5]", "has not X, Y, Z and Rot"),
         ("Forearm X", "Hand X", "body 'Forearm' has not X"),
         ("BODY_NAMES\tUpper Arm\tForearm", "BODY_NAMES\tUpper Arm", "1 bodies are named, and 2"),
-        ("BODY_NAMES\tUpper Arm\tForearm", "MARKER_NAMES\ta\tb", "no line BODY_NAMES"),
-        ("Frame\tTime", "Time\tFrame", "nothing says which column"),
+        ("Frame\tTime", "Time\tFrame", "the first body's X is not column 1"),
+        ("Rot[", "R[", "nothing says which column"),
     ],
 )
 def test_what_does_not_fit_is_refused(tmp_path: Path, old: str, new: str, says: str) -> None:
     with pytest.raises(RecordingError, match=says):
         read_recording(write(tmp_path / "t.tsv", [row.replace(old, new) for row in lines()]))
+
+
+def test_an_export_of_markers_says_what_to_export(tmp_path: Path) -> None:
+    rows = ["NO_OF_FRAMES\t1", "FREQUENCY\t100", "MARKER_NAMES\ta", "Frame\tTime\ta X\ta Y\ta Z", "1\t0\t1\t2\t3"]
+    with pytest.raises(RecordingError, match=r"no line BODY_NAMES.*export 6D data, or the markers as C3D"):
+        read_recording(write(tmp_path / "t.tsv", rows))
 
 
 def test_lines_that_are_cut_and_options_that_mean_nothing_are_refused(tmp_path: Path) -> None:

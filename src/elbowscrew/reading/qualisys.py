@@ -1,7 +1,10 @@
 """Rigid bodies in Qualisys's 6D export (tab-separated): keys and values, a line of columns, then a line a frame.
 
-For each body ``<name> X``, ``Y``, ``Z`` in millimeters, three angles, ``Residual``, and ``Rot[0]`` to ``Rot[8]``: the
-matrix from body to laboratory, column by column. The angles are not read: users choose their names and order.
+The keys may be left out on export, and so may frame numbers and times: then rows are frames, at the frequency.
+
+For each body there are ``<name> X``, ``Y``, ``Z`` in millimeters, three angles, ``Residual``, and ``Rot[0]`` to
+``Rot[8]``: the matrix from body to laboratory, column by column. The angles are not read: users choose their names and
+order.
 """
 
 from __future__ import annotations
@@ -18,35 +21,42 @@ from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import Recording, Source
 from elbowscrew.quantities import METERS
 from elbowscrew.reading.builders import ArrayBuilder, BodyBuilder
-from elbowscrew.reading.cells import read_blocks
-from elbowscrew.reading.clock import check_frames, cut_warnings, frame_rate
+from elbowscrew.reading.cells import parse_number, read_blocks
+from elbowscrew.reading.clock import check_frames, cut_warnings, frame_rate, frames_and_times, is_rate
 from elbowscrew.reading.options import ReadOptions
 from elbowscrew.reading.source import TextSource
 
-_HEADER_LINES: Final = 32
+# Each event of the take has a line of its own.
+_HEADER_LINES: Final = 1024
+_FIRST_KEYS: Final = ("no_of_frames", "file_version")
+_X: Final = re.compile(r"(?:^| )x$")
 _UNIT: Final = "mm"
 _ROTATION: Final = tuple(f"rot[{k}]" for k in range(9))
 
 
 def recognizes(cells: list[str]) -> bool:
-    """Tell by the first cell, which all of Qualisys's exports have, of markers, too."""
-    return cells[0] == "no_of_frames"
+    """Tell by the first cell, which all of Qualisys's exports have, of markers, too; or by the titles of matrices."""
+    return cells[0] in _FIRST_KEYS or _are_titles(cells)
 
 
 def read(source: TextSource, _options: ReadOptions) -> Recording:
     """Read a 6D export; see `elbowscrew.reading.registry.read_recording`."""
     stated, names, titles, line = _header(source)
-    bodies = _body_columns(source, names, titles, line)
-    columns = [0, 1, *(k for wanted in bodies.values() for k in wanted)]
+    clock = 2 if titles[0].casefold() == "frame" else 0
+    rate_hz = None if clock else _frequency(source, stated)
+    bodies = _body_columns(source, names, titles, line, clock)
+    columns = [*range(clock), *(k for wanted in bodies.values() for k in wanted)]
     frames, times = ArrayBuilder(dtype=np.int64), ArrayBuilder()
     builders = [BodyBuilder(name) for name in bodies]
     number = line
-    for block in read_blocks(source, line, columns, len(titles), nan_word=True):
-        check_frames(source, number, block)
-        frames.append(block[:, 0].astype(np.int64))
-        times.append(block[:, 1])
+    for block in read_blocks(source, line, columns, len(titles), nan_word=True, blank_rows=not clock):
+        rows = range(number - line + 1, number - line + 1 + len(block))
+        ticks = block[:, :2] if clock else frames_and_times(None, None, rows, rate_hz)
+        check_frames(source, number, ticks)
+        frames.append(ticks[:, 0].astype(np.int64))
+        times.append(ticks[:, 1])
         for k, builder in enumerate(builders):
-            cells = block[:, 2 + 12 * k : 14 + 12 * k]
+            cells = block[:, clock + 12 * k : clock + 12 * (k + 1)]
             builder.append_matrices(_matrices(cells[:, 3:]), METERS[_UNIT] * cells[:, :3])
         number += len(block)
     frame, time_s = frames.finish(), times.finish()
@@ -75,6 +85,22 @@ def read(source: TextSource, _options: ReadOptions) -> Recording:
     )
 
 
+def _are_titles(cells: list[str]) -> bool:
+    return "rot[0]" in cells
+
+
+def _frequency(source: TextSource, stated: dict[str, str]) -> float:
+    """Frames a second, which must be stated where there are no times."""
+    try:
+        rate = parse_number(stated.get("frequency", "").replace(",", "."))
+    except ValueError:
+        rate = float("nan")
+    if not is_rate(rate):
+        msg = f"{source.path}: no times and no FREQUENCY; export the take again with the time of every frame"
+        raise RecordingError(msg)
+    return rate
+
+
 def _matrices(cells: Float) -> Float:
     """Rotation matrices (n, 3, 3) of nine cells that go down the columns."""
     return np.swapaxes(cells.reshape(-1, 3, 3), 1, 2)
@@ -95,9 +121,9 @@ def _header(source: TextSource) -> tuple[dict[str, str], list[str], list[str], i
         key = cells[0].casefold() if cells else ""
         if key == "body_names":
             names = cells[1:]
-        elif key == "frame" and names:
-            return stated, names, cells, number
-        elif key:
+        elif _are_titles([cell.casefold() for cell in cells]):
+            return stated, names or [cell[:-2] for cell in cells if _X.search(cell.casefold())], cells, number
+        elif key and key not in stated:
             stated[key] = " ".join(cells[1:])
     if "marker_names" in stated or not names:
         msg = (
@@ -106,18 +132,22 @@ def _header(source: TextSource) -> tuple[dict[str, str], list[str], list[str], i
         )
         raise RecordingError(msg)
     msg = (
-        f"{source.path}: nothing says which column is what: no line begins with 'Frame' and 'Time'; export the take "
-        "again with its column header"
+        f"{source.path}: nothing says which column is what: no line has the titles X, Y, Z and Rot[0] to Rot[8]; "
+        "export the take again with its column header"
     )
     raise RecordingError(msg)
 
 
-def _body_columns(source: TextSource, names: list[str], titles: list[str], line: int) -> dict[str, list[int]]:
+def _body_columns(
+    source: TextSource, names: list[str], titles: list[str], line: int, clock: int
+) -> dict[str, list[int]]:
     """Columns of X, Y, Z and of the nine cells of the matrix, of every body; all faults at once."""
-    faults = [] if titles[1:2] and titles[1].casefold() == "time" else ["the second column is not 'Time'"]
+    faults = ["the second column is not 'Time'"] if clock and titles[1].casefold() != "time" else []
     if len(set(names)) != len(names):
         faults.append("a body's name stands twice")
-    starts = [k for k, title in enumerate(titles) if re.search(r"(?:^| )x$", title.casefold())]
+    starts = [k for k, title in enumerate(titles) if _X.search(title.casefold())]
+    if starts[:1] != [clock]:
+        faults.append(f"the first body's X is not column {clock + 1}")
     if len(starts) != len(names):
         faults.append(f"{len(names)} bodies are named, and {len(starts)} columns are an X")
     found = {}
