@@ -244,15 +244,18 @@ def stated_otherwise(before: Recording, after: Recording) -> bool:
 
 
 def is_without_a_row(before: Recording, after: Recording) -> bool:
-    """Whether all is as it was but for a row that is no more; or all, where the line was none."""
+    """Whether all is as it was but for a row that is no more, and blank ones that end the file without it."""
     old, new = entities(before), entities(after)
-    if before.frame.size == after.frame.size:
+    rows, count = before.frame.size, after.frame.size
+    if rows == count:  # the line was none
         return True
-    if old.keys() != new.keys() or before.frame.size != after.frame.size + 1:
+    if old.keys() != new.keys() or count > rows:
+        return False
+    if count < rows - 1 and not all(np.isnan(one[count : rows - 1]).all() for one in old.values()):
         return False
     return any(
-        all(np.array_equal(np.delete(old[name], row, axis=0), new[name], equal_nan=True) for name in old)
-        for row in range(before.frame.size)
+        all(np.array_equal(np.delete(old[name], row, axis=0)[:count], new[name], equal_nan=True) for name in old)
+        for row in range(rows)
     )
 
 

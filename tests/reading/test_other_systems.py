@@ -378,3 +378,26 @@ def test_times_too_close_for_any_rate_give_none() -> None:
     assert np.isnan(rate_of(frame, np.array([0.0, 1e-320])))
     assert np.isnan(rate_of(frame, np.array([1.0, 0.0])))
     assert rate_of(frame, np.array([0.0, 0.09])) == pytest.approx(100.0)
+
+
+def test_text_of_windows_is_read_and_told(tmp_path: Path) -> None:
+    """A path with an umlaut in the first line, as an exporting program writes it, is no wall."""
+    text = (
+        "PathFileType\t4\t(X/Y/Z)\tC:\\Users\\J\u00f6rg\\t.trc\nDataRate\tUnits\n100\tmm\n"
+        "Frame#\tTime\tArm l\u00e4ngs\t\t\n\t\tX1\tY1\tZ1\n\n1\t0\t1\t2\t3\n2\t0.01\t1\t2\t4\n"
+    )
+    paths = [tmp_path / "windows.trc", tmp_path / "utf8.trc"]
+    for path, encoding in zip(paths, ("cp1252", "utf-8"), strict=True):
+        path.write_bytes(text.encode(encoding))
+    one, other = (read_recording(path, markers="Arm*") for path in paths)
+    assert one.markers[0].name == other.markers[0].name == "Arm l\u00e4ngs"
+    assert np.array_equal(one.markers[0].position, other.markers[0].position)
+    assert [(warning.code, warning.severity) for warning in one.warnings] == [("not-utf-8", "note")]
+    assert other.warnings == ()
+
+
+def test_a_table_that_begins_with_frame_is_sent_to_columns(tmp_path: Path) -> None:
+    path = tmp_path / "suit.csv"
+    path.write_text("Frame,Right Upper Arm q0,Right Upper Arm q1\n0,1,0\n")
+    with pytest.raises(RecordingError, match=r"once columns FILE\.toml says"):
+        read_recording(path)

@@ -105,7 +105,9 @@ def test_what_does_not_fit_is_refused(tmp_path: Path, old: str, new: str, says: 
 
 def test_an_export_of_markers_says_what_to_export(tmp_path: Path) -> None:
     rows = ["NO_OF_FRAMES\t1", "FREQUENCY\t100", "MARKER_NAMES\ta", "Frame\tTime\ta X\ta Y\ta Z", "1\t0\t1\t2\t3"]
-    with pytest.raises(RecordingError, match=r"no line BODY_NAMES.*export 6D data, or the markers as C3D"):
+    with pytest.raises(
+        RecordingError, match=r"no line BODY_NAMES.*export 6D data, or the markers as C3D, or say .* columns FILE"
+    ):
         read_recording(write(tmp_path / "t.tsv", rows))
 
 

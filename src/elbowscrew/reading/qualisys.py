@@ -127,8 +127,8 @@ def _header(source: TextSource) -> tuple[dict[str, str], list[str], list[str], i
             stated[key] = " ".join(cells[1:])
     if "marker_names" in stated or not names:
         msg = (
-            f"{source.path}: no 6D export of Qualisys: no line BODY_NAMES with names (positions of markers are read "
-            "from TRC and C3D); export 6D data, or the markers as C3D"
+            f"{source.path}: no 6D export of Qualisys: no line BODY_NAMES with names; export 6D data, or the markers "
+            "as C3D, or say what the columns are by --columns FILE.toml (docs/reference/plain-table.md)"
         )
         raise RecordingError(msg)
     msg = (

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import chain, islice
 from pathlib import Path
 from typing import Final, Generic, TypeVar
 
 from elbowscrew.column_file import ColumnFile, read_column_file
 from elbowscrew.errors import RecordingError, SettingError, UsageError
-from elbowscrew.model import Recording
+from elbowscrew.model import QualityWarning, Recording
 from elbowscrew.quantities import METERS
 from elbowscrew.reading import (
     autoscoper,
@@ -231,7 +231,8 @@ def _column_file(given: str | os.PathLike[str] | ColumnFile | None) -> ColumnFil
 def _read(file: Path, options: ReadOptions) -> Recording:
     if options.columns is not None:
         _check_options(file, "named columns", options, _UNITS | _MARKERS | _RATE)
-        return named_columns.read(open_source(file), options, options.columns)
+        source = open_source(file)
+        return _told(source, named_columns.read(source, options, options.columns))
     head = first_bytes(file, _HEAD_BYTES)
     for binary in BINARY_FORMATS:
         if binary.recognizes(head):
@@ -249,11 +250,20 @@ def _read(file: Path, options: ReadOptions) -> Recording:
     for entry in FORMATS:
         if entry.recognizes(cells) and file.suffix.casefold().endswith(entry.only_ending):
             _check_options(file, entry.name, options, entry.accepts)
-            return entry.read(source, options)
+            return _told(source, entry.read(source, options))
     found = _read_by_plug_in(file, options)
     if found is None:
         raise RecordingError(_refusal(source, cells))
     return found
+
+
+def _told(source: TextSource, recording: Recording) -> Recording:
+    """Add a note where the text is not UTF-8."""
+    if source.is_utf_8:
+        return recording
+    message = f"the text of {source.path.name} is not UTF-8: names were read as Windows-1252"
+    note = QualityWarning(code="not-utf-8", message=message, severity="note")
+    return replace(recording, warnings=(*recording.warnings, note))
 
 
 def _read_by_plug_in(file: Path, options: ReadOptions) -> Recording | None:

@@ -67,8 +67,8 @@ class _Parsed:
 
 
 def recognizes(cells: list[str]) -> bool:
-    """Tell by the tag in the first cell."""
-    return cells[0] in TAGS
+    """Tell by the tag in the first cell; where another title follows 'frame', it is one itself."""
+    return cells[0] in TAGS and not (cells[0] == "frame" and cells[1:2] and cells[1][:1].isalpha())
 
 
 def read(source: TextSource, options: ReadOptions) -> Recording:

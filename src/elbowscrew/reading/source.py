@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import codecs
 import csv
 import re
 import threading
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final, TextIO
@@ -20,6 +21,9 @@ _BLOCK_CHARACTERS: Final = 3 << 17
 _LIMIT_LOCK: Final = threading.RLock()
 # Only a line of numbers may have its cells separated by blanks.
 _NUMBERS: Final = re.compile(rb"(?:[-+.\deE]+|nan)(?: (?:[-+.\deE]+|nan))+", re.IGNORECASE)
+
+_UTF_8: Final = "utf-8-sig"
+_WINDOWS: Final = "cp1252"
 
 END_OF_STORAGE_HEADER: Final = "endheader"
 """The line behind which OpenSim's storages have their table."""
@@ -46,12 +50,20 @@ class TextSource:
         False hints that the file may have been cut.
     delimiter : str
         Comma, semicolon or tab; a blank between numbers.
+    encoding : str
+        UTF-8, or Windows-1252 where the first text is none, as older programs write names and paths.
     """
 
     path: Path
     sha256: str
     ends_with_newline: bool
     delimiter: str
+    encoding: str = _UTF_8
+
+    @property
+    def is_utf_8(self) -> bool:
+        """Whether the text is what it should be."""
+        return self.encoding == _UTF_8
 
     @property
     def decimal_comma(self) -> bool:
@@ -94,7 +106,7 @@ class TextSource:
         except UnicodeDecodeError as error:
             msg = (
                 f"{self.path}: not UTF-8 text (byte 0x{error.object[error.start]:02x} after line {number}); "
-                "save it as CSV in UTF-8"
+                "save it in UTF-8"
             )
             raise RecordingError(msg) from error
         except OSError as error:
@@ -129,7 +141,7 @@ class TextSource:
         raise RecordingError(msg)
 
     def _open(self) -> TextIO:
-        return open_text(self.path, encoding="utf-8-sig")
+        return open_text(self.path, encoding=self.encoding)
 
 
 @contextmanager
@@ -189,7 +201,23 @@ def open_source(path: Path) -> TextSource:
     if b"\0" in head:
         msg = f"{path}: a binary file, not text; export the take as CSV"
         raise RecordingError(msg)
-    return TextSource(path=path, sha256=digest, ends_with_newline=last in (b"\n", b"\r"), delimiter=_delimiter_of(head))
+    return TextSource(
+        path=path,
+        sha256=digest,
+        ends_with_newline=last in (b"\n", b"\r"),
+        delimiter=_delimiter_of(head),
+        encoding=_encoding_of(head),
+    )
+
+
+def _encoding_of(head: bytes) -> str:
+    with suppress(UnicodeDecodeError):
+        codecs.getincrementaldecoder(_UTF_8)().decode(head, final=len(head) < _HEAD_BYTES)
+        return _UTF_8
+    with suppress(UnicodeDecodeError):
+        head.decode(_WINDOWS)
+        return _WINDOWS
+    return _UTF_8
 
 
 def _delimiter_of(head: bytes) -> str:
