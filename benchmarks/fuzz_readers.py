@@ -239,8 +239,10 @@ def differences(before: Recording, after: Recording) -> set[tuple[str, int]]:
 
 def stated_otherwise(before: Recording, after: Recording) -> bool:
     """Whether the file states another unit or another order of angles, which may have done it."""
-    one, other = ((it.source.length_unit, it.source.rotation_type) for it in (before, after))
-    return one != other
+    assert before.source is not None
+    assert after.source is not None
+    said, says = before.source, after.source
+    return (said.length_unit, said.rotation_type) != (says.length_unit, says.rotation_type)
 
 
 def is_without_a_row(before: Recording, after: Recording) -> bool:

@@ -98,3 +98,14 @@ def test_tabs_at_the_end_of_lines_are_as_many_or_shift_nothing(tmp_path: Path, e
         path.write_text(TRC + "\n".join([whole[0] + end, shifted + end, whole[2] + end]))
         with pytest.raises(RecordingError, match=r"t\.trc:7: expected \d+ cells, found \d+"):
             read_recording(path, markers="B")
+
+
+def test_cells_without_a_title_are_no_numbers_of_another(tmp_path: Path) -> None:
+    """As tables with row names and no title above these, in which all titles stand one cell too early."""
+    path = table_of(tmp_path, "9,0,0.00,1,0,0,0,1,2,3,7,8,9", "9,1,0.01,1,0,0,0,1,2,3,7,8,9")
+    with pytest.raises(RecordingError, match=r"t\.csv:2: expected 12 cells, found 13"):
+        read_recording(path, markers="b")
+    path = table_of(
+        tmp_path, "0,0.00,1,0,0,0,1,2,3,7,8,9,,", "1,0.01,1,0,0,0,1,2,3,,,,,", "2,0.02,1,0,0,0,1,2,3,7,8,9,,"
+    )
+    assert np.isnan(read_recording(path, markers="b").markers[0].position[:, 0]).tolist() == [False, True, False]

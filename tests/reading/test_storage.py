@@ -57,6 +57,12 @@ def test_blank_cells_and_zeros_are_lost(tmp_path: Path) -> None:
     assert found.bodies[1].loss_counts() == {"blank": 2, "zero": 1, "invalid": 1}
 
 
+def test_a_segment_without_a_title_is_not_taken_for_another(tmp_path: Path) -> None:
+    rows = [line.replace("\thumerus_r_imu", "") for line in lines()]
+    with pytest.raises(RecordingError, match=r"t\.sto:7: expected 5 cells, found 9"):
+        read(tmp_path / "t.sto", rows)
+
+
 def test_a_rate_that_the_times_contradict_is_told(tmp_path: Path) -> None:
     found = read(tmp_path / "t.sto", lines(("DataRate=60", *HEADER[1:])))
     assert found.rate_hz == pytest.approx(100.0)

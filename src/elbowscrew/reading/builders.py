@@ -138,9 +138,11 @@ class BodyBuilder:
 
 def _right_handed(R: Float) -> Bool:
     """Whether the columns of matrices (n, 3, 3) are: in a fifth of the time of their determinants."""
-    x, y, z = (R[:, k] for k in range(3))
-    volume: Float = sum(
-        x[:, i] * (y[:, j] * z[:, k] - y[:, k] * z[:, j]) for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1))
+    x, y, z = R[:, 0], R[:, 1], R[:, 2]
+    volume = (
+        x[:, 0] * (y[:, 1] * z[:, 2] - y[:, 2] * z[:, 1])
+        + x[:, 1] * (y[:, 2] * z[:, 0] - y[:, 0] * z[:, 2])
+        + x[:, 2] * (y[:, 0] * z[:, 1] - y[:, 1] * z[:, 0])
     )
     positive: Bool = volume > 0.0
     return positive

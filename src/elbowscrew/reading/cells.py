@@ -81,7 +81,7 @@ class _Shape:
                 return self, []
         while len(cells) > self.width and not cells[-1].strip():
             cells = cells[:-1]
-        return replace(self, spare=habit), cells
+        return (replace(self, spare=habit) if self.allows(len(cells)) else self), cells
 
 
 def read_blocks(
@@ -152,7 +152,9 @@ def _parse_block(
     quoted, commas = '"' in text, source.decimal_comma and "," in text
     counts = {line.count(delimiter) + 1 for line in block}
     mixed = commas and "." in text
-    if not quoted and not mixed and (len(counts) == 1 or shape.group) and all(map(shape.allows, counts)):
+    spare = _spare_in_all(block, delimiter, counts, shape)
+    whole = (len(counts) == 1 or shape.group) and all(map(shape.allows, counts))
+    if not quoted and not mixed and (whole or spare):
         plain = text.replace(",", ".").split("\n") if commas else block
         values = _json_numbers(plain, delimiter, counts, columns)
         if values is None:
@@ -160,8 +162,8 @@ def _parse_block(
             with suppress(ValueError):
                 values = np.loadtxt(plain, delimiter=delimiter, usecols=columns, comments=None, ndmin=2)
         if values is not None and values.shape[0] == len(block) and np.isfinite(values).all():
-            found = shape if shape.group else replace(shape, width=counts.pop(), exact=True)
-            return replace(found, spare=0), np.asarray(values, dtype=np.float64)
+            found = shape if shape.group or spare else replace(shape, width=counts.pop(), exact=True)
+            return replace(found, spare=spare), np.asarray(values, dtype=np.float64)
     rows = []
     marks: set[str] = set()
     for offset, line in enumerate(block):
@@ -180,8 +182,8 @@ def _parse_block(
         if not shape.allows(len(cells)):
             expected = shape.width + (shape.spare or 0)
             msg = (
-                f"{location}: expected {expected} cells, found {count}: the line is cut or its cells are shifted; "
-                "export the take again, or delete the line"
+                f"{location}: expected {expected} cells, found {count}: the line is cut or its cells are shifted, or "
+                "titles are missing above them; export the take again, or delete the line"
             )
             raise RecordingError(msg)
         if not shape.group:
@@ -193,6 +195,13 @@ def _parse_block(
                 msg = f"{location}: numbers have both commas and points: the decimal mark is ambiguous; save again"
                 raise RecordingError(msg)
     return shape, np.array(rows, dtype=np.float64).reshape(len(rows), len(columns))
+
+
+def _spare_in_all(block: list[str], delimiter: str, counts: set[int], shape: _Shape) -> int:
+    """Blank cells behind all of the lines, where these have as many; 0 where that is not so."""
+    spare = min(counts, default=0) - shape.width
+    same = len(counts) == 1 and shape.exact and spare > 0 and shape.spare in (None, spare)
+    return spare if same and all(line.endswith(delimiter * spare) for line in block) else 0
 
 
 def _json_numbers(

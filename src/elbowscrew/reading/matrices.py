@@ -141,7 +141,7 @@ def _titled(source: TextSource, titles: list[str]) -> _Table:
 def _blocks(source: TextSource, table: _Table) -> Iterator[tuple[Float | None, Float]]:
     """Yield the frame numbers of many rows, None where rows are the clock, and their matrices' cells."""
     columns, numbered, above = range(table.width), table.numbered, table.lines_above
-    blocks = read_blocks(source, above, columns, table.width, exact=above > 0, nan_word=True, blank_rows=not numbered)
+    blocks = read_blocks(source, above, columns, table.width, exact=True, nan_word=True, blank_rows=not numbered)
     for block in blocks:
         yield (block[:, 0], block[:, 1:]) if numbered else (None, block)
 

@@ -49,7 +49,7 @@ def read(source: TextSource, _options: ReadOptions) -> Recording:
     frames, times = ArrayBuilder(dtype=np.int64), ArrayBuilder()
     builders = [BodyBuilder(name) for name in bodies]
     number = line
-    for block in read_blocks(source, line, columns, len(titles), nan_word=True, blank_rows=not clock):
+    for block in read_blocks(source, line, columns, len(titles), exact=True, nan_word=True, blank_rows=not clock):
         rows = range(number - line + 1, number - line + 1 + len(block))
         ticks = block[:, :2] if clock else frames_and_times(None, None, rows, rate_hz)
         check_frames(source, number, ticks)

@@ -40,7 +40,8 @@ def read(source: TextSource, _options: ReadOptions) -> Recording:
     flat = _Flattened(**{field.name: getattr(source, field.name) for field in fields(source)})
     times, builders = ArrayBuilder(), [BodyBuilder(name, located=False) for name in names]
     rows = 0
-    for block in read_blocks(flat, line, range(1 + _NUMBERS * len(names)), 1 + _NUMBERS * len(names), nan_word=True):
+    width = 1 + _NUMBERS * len(names)
+    for block in read_blocks(flat, line, range(width), width, exact=True, nan_word=True):
         check_frames(source, line + rows, np.insert(block[:, :1], 0, np.arange(rows, rows + len(block)), axis=1))
         times.append(block[:, 0])
         for k, builder in enumerate(builders):

@@ -128,7 +128,9 @@ def read_table(source: TextSource, table: TableCells, *warnings: QualityWarning)
     bodies = [BodyBuilder(one.name, located=bool(one.position)) for one in table.bodies]
     markers = [MarkerBuilder(one.name) for one in table.markers]
     rows = 0
-    blocks = read_blocks(source, table.lines_above, wanted, table.width, nan_word=table.nan_word, blank_rows=not clock)
+    blocks = read_blocks(
+        source, table.lines_above, wanted, table.width, exact=True, nan_word=table.nan_word, blank_rows=not clock
+    )
     for block in blocks:
         line = table.lines_above + rows
         frame = None if table.frame is None else block[:, place[table.frame]]
