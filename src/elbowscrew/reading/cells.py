@@ -224,7 +224,11 @@ def _json_numbers(
     if not lines:
         return None
     if min(counts) > needed:
-        lines = [line[: -1 - len(line.split(delimiter, needed)[needed])] for line in lines]
+        behind = min(counts) - needed
+        if len(counts) == 1 and behind < needed:
+            lines = [line.rsplit(delimiter, behind)[0] for line in lines]
+        else:
+            lines = [line[: -1 - len(line.split(delimiter, needed)[needed])] for line in lines]
     elif len(counts) > 1:
         return None
     text = delimiter.join(lines)
