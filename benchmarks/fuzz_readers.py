@@ -8,7 +8,8 @@ No number may be wrong in silence either. Whatever is read is changed once more 
 the numbers may change one row of one body or marker at the most, a row that is taken out takes only itself, cells that
 are shifted shift no others, and what a changed header moves or scales must be told.
 
-COUNT is of files in all. ``--seed`` makes other ones, ``--new`` leaves Motive's own formats out, and ``--finds FOLDER``
+COUNT is of files in all. ``--seed`` makes other ones, ``--new`` leaves Motive's own formats out, ``--only PATTERN``
+takes the seeds with such names alone (`fuzz_seeds.py`), so that each format has its share, and ``--finds FOLDER``
 is where each find is kept, with the file that it came from. The counts are printed as JSON, by format.
 """
 
@@ -54,6 +55,7 @@ LONGEST_S = 1.0
 ANALYZED_OF = 500
 OPENED_OF = 4
 CHANGED_AGAIN = 2
+FROM_A_SEED = 0.5
 # What a file may lack.
 STATED = {"units": "mm", "rotation": "YXZ", "rate_hz": 100.0}
 KINDS = {
@@ -66,6 +68,7 @@ slowest: dict[str, float] = {}
 seen: set[str] = set()
 finds = SCRATCH / "finds"
 wanted_count = 0
+good: list[bytes] = []
 
 
 def kind_of(data: bytes) -> str:
@@ -320,6 +323,8 @@ NUMBERS = b"|0|1|-1|0.5|-0.5|7|-7|1e-9|1e308|1e150|-1e5|3e4|0.0|-0|1e-320|180|-1
 def mutate(data: bytes, max_size: int, seed: int) -> bytes:
     """Mostly change whole cells and lines, so that many mutants get past the header; else let atheris."""
     rng = random.Random(seed)  # noqa: S311 - no secret
+    if rng.random() < FROM_A_SEED:  # else files of the format with the most branches would be most of all
+        data = rng.choice(good)
     if rng.random() < 0.1:
         return bytes(atheris.Mutate(data, max_size))
     if data[1:2] == b"P":  # C3D: bytes, those of header and parameters above all
@@ -365,6 +370,7 @@ def main() -> None:
     parser.add_argument("count", nargs="?", type=int, default=10_000)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--new", action="store_true")
+    parser.add_argument("--only", default="*")
     parser.add_argument("--finds", type=Path, default=finds)
     given = parser.parse_args()
     wanted_count, finds = given.count, given.finds
@@ -372,8 +378,11 @@ def main() -> None:
     corpus = SCRATCH / "corpus"
     corpus.mkdir()
     seeds(corpus)
-    for name in OLD if given.new else ():
-        (corpus / f"{name}.csv").unlink()
+    for path in sorted(corpus.iterdir()):
+        if not path.match(given.only) or (given.new and path.stem in OLD):
+            path.unlink()
+        else:
+            good.append(path.read_bytes())
     c3d._worker_output = opened_in_a_fork
     atheris.Setup(
         [
