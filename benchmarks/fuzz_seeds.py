@@ -68,6 +68,11 @@ def seeds(folder: Path) -> None:
             f"4\t{k}\t6\t0\t0\t0\t0.4\t{c}\t{s}\t0\t{-s}\t{c}\t0\t0\t0\t1"
         )
     (folder / "qualisys.tsv").write_text("\n".join(qualisys) + "\n")
+    three = ["NO_OF_FRAMES\t12", "FREQUENCY\t100", "MARKER_NAMES\ta1\ta2\ta3\tf1\tf2\tf3"]
+    three += ["Frame\tTime\t" + "\t".join(f"{name} {axis}" for name in three[2].split("\t")[1:] for axis in "XYZ")]
+    (folder / "qualisys3d.tsv").write_text("\n".join([*three, *trc[5:]]) + "\n")
+    without = [row.split("\t", 2)[2] for row in trc[5:]]
+    (folder / "qualisysrows.tsv").write_text("\n".join([*three[:3], *without]) + "\n")
     still, turning = "1 0 0 1 0 1 0 0 0 0 1 0 0 0 0 1", []
     for k in range(FRAMES):
         c, s = np.cos(0.05 * k), np.sin(0.05 * k)

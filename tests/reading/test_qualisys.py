@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from oracles import known_trial
 
-from elbowscrew import analyze, read_recording
-from elbowscrew.errors import RecordingError, SettingError
+from elbowscrew import Settings, analyze, read_recording
+from elbowscrew.errors import NoBodiesError, RecordingError, SettingError
 
 TRIAL = known_trial(110.0, frames=60, inversion=30, seed=9)
 
@@ -103,12 +103,56 @@ def test_what_does_not_fit_is_refused(tmp_path: Path, old: str, new: str, says: 
         read_recording(write(tmp_path / "t.tsv", [row.replace(old, new) for row in lines()]))
 
 
-def test_an_export_of_markers_says_what_to_export(tmp_path: Path) -> None:
-    rows = ["NO_OF_FRAMES\t1", "FREQUENCY\t100", "MARKER_NAMES\ta", "Frame\tTime\ta X\ta Y\ta Z", "1\t0\t1\t2\t3"]
-    with pytest.raises(
-        RecordingError, match=r"no line BODY_NAMES.*export 6D data, or the markers as C3D, or say .* columns FILE"
-    ):
-        read_recording(write(tmp_path / "t.tsv", rows))
+def marker_lines() -> list[str]:
+    """An export of six markers, three of which turn; the second is not seen in frame 3, the last in frame 4."""
+    at = np.array([[90.0, 0, 0], [0, 60, 0], [0, 0, 70]])
+    rows = [("NO_OF_FRAMES", "60"), ("NO_OF_MARKERS", "6"), ("FREQUENCY", "100"), ("DATA_INCLUDED", "3D")]
+    lines = ["\t".join(row) for row in rows]
+    lines.append("MARKER_NAMES\tA1\tA2\tA3\tF1\tF2\tF3")
+    lines.append(
+        "\t".join(["Frame", "Time", *(f"{name} {axis}" for name in "A1 A2 A3 F1 F2 F3".split() for axis in "XYZ")])
+    )
+    for k in range(60):
+        cells = [str(k + 1), f"{k / 100:.5f}"]
+        for R, p in ((TRIAL.proximal_R, TRIAL.proximal_p), (TRIAL.distal_R, TRIAL.distal_p)):
+            cells += [f"{x:.6f}" for point in at for x in (np.asarray(R[k]) @ point + 1000.0 * np.asarray(p[k]))]
+        if k == 2:
+            cells[5:8] = ["0.000"] * 3
+        lines.append("\t".join(cells if k != 3 else [*cells[:17], "", "", ""]))
+    return lines
+
+
+def test_an_export_of_markers(tmp_path: Path) -> None:
+    rows = marker_lines()
+    path = write(tmp_path / "t.tsv", rows)
+    found = read_recording(path, markers=("A*", "F*"))
+    assert [marker.name for marker in found.markers] == ["A1", "A2", "A3", "F1", "F2", "F3"]
+    assert np.flatnonzero(np.isnan(found.markers[1].position[:, 0])).tolist() == [2]
+    assert np.flatnonzero(np.isnan(found.markers[5].position[:, 0])).tolist() == [3]
+    assert found.warnings == ()
+    analysis = analyze(found, Settings(proximal_markers=("A*",), distal_markers=("F*",)))
+    seen = np.delete(np.arange(60), [2, 3])
+    assert analysis.screw.angle[seen] == pytest.approx(TRIAL.angle[seen], abs=1e-5)
+    without_titles = [*rows[:5], *rows[6:]]
+    without_clock = [*rows[:5], *(row.split("\t", 2)[2] for row in rows[6:])]
+    trailing = [*rows[:6], *(row + "\t" for row in rows[6:])]
+    for case in (without_titles, without_clock, trailing, ["FILE_VERSION\t2.0.0", *rows]):
+        other = read_recording(write(tmp_path / "u.tsv", case), markers=("A*", "F*"))
+        for one, same in zip(found.markers, other.markers, strict=True):
+            assert np.array_equal(one.position, same.position, equal_nan=True)
+        assert other.rate_hz == pytest.approx(100.0)
+        assert other.time_s - other.time_s[0] == pytest.approx(found.time_s)
+    begins_lost = ["\t\t\t" + row.split("\t", 3)[3] for row in without_clock[5:7]]
+    other = read_recording(
+        write(tmp_path / "u.tsv", [*without_clock[:5], *begins_lost, *without_clock[7:]]), markers="A?"
+    )
+    assert np.flatnonzero(np.isnan(other.markers[0].position[:, 0])).tolist() == [0, 1]
+    with pytest.raises(NoBodiesError, match="A1, A2"):
+        read_recording(path)
+    with pytest.raises(RecordingError, match=r"X, Y, Z of 5 markers of different names.*found 20 cells a row"):
+        read_recording(write(tmp_path / "u.tsv", [row.replace("\tF3", "") for row in rows]), markers="*")
+    with pytest.raises(RecordingError, match="F2 twice"):
+        read_recording(write(tmp_path / "u.tsv", [row.replace("\tF3", "\tF2") for row in rows]), markers="*")
 
 
 def test_lines_that_are_cut_and_options_that_mean_nothing_are_refused(tmp_path: Path) -> None:
@@ -116,7 +160,9 @@ def test_lines_that_are_cut_and_options_that_mean_nothing_are_refused(tmp_path: 
     cut = write(tmp_path / "t.tsv", [*rows[:20], rows[20].rpartition("\t")[0].rpartition("\t")[0], *rows[21:]])
     with pytest.raises(RecordingError, match=r"t\.tsv:21: expected 35 cells, found 33"):
         read_recording(cut)
-    with pytest.raises(SettingError, match="Qualisys 6D"):
+    with pytest.raises(SettingError, match=r"bodies .6D. have none"):
+        read_recording(write(tmp_path / "u.tsv", rows), markers="A*")
+    with pytest.raises(SettingError, match="Qualisys"):
         read_recording(write(tmp_path / "u.tsv", rows), units="mm")
 
 

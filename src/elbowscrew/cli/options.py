@@ -39,7 +39,7 @@ TrialFile = Annotated[
     Path,
     typer.Argument(
         metavar="TRIAL",
-        help="A recording: Motive, plain table, TRC, C3D, Qualisys 6D or 4 x 4.",
+        help="A recording: Motive, plain table, TRC, C3D, Qualisys or 4 x 4.",
         show_default=False,
     ),
 ]

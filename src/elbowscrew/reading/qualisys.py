@@ -16,18 +16,17 @@ from typing import Final
 
 import numpy as np
 
-from elbowscrew.errors import RecordingError
+from elbowscrew.errors import RecordingError, SettingError
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import Recording, Source
 from elbowscrew.quantities import METERS
 from elbowscrew.reading.builders import ArrayBuilder, BodyBuilder
-from elbowscrew.reading.cells import parse_number, read_blocks
-from elbowscrew.reading.clock import check_frames, cut_warnings, frame_rate, frames_and_times, is_rate
+from elbowscrew.reading.cells import read_blocks
+from elbowscrew.reading.clock import check_frames, cut_warnings, frame_rate, frames_and_times
 from elbowscrew.reading.options import ReadOptions
+from elbowscrew.reading.qualisys_markers import HEADER_LINES, marker_header, read_markers, stated_frequency
 from elbowscrew.reading.source import TextSource
 
-# Each event of the take has a line of its own.
-_HEADER_LINES: Final = 1024
 _FIRST_KEYS: Final = ("no_of_frames", "file_version")
 _X: Final = re.compile(r"(?:^| )x$")
 _UNIT: Final = "mm"
@@ -39,11 +38,17 @@ def recognizes(cells: list[str]) -> bool:
     return cells[0] in _FIRST_KEYS or _are_titles(cells)
 
 
-def read(source: TextSource, _options: ReadOptions) -> Recording:
-    """Read a 6D export; see `elbowscrew.reading.registry.read_recording`."""
+def read(source: TextSource, options: ReadOptions) -> Recording:
+    """Read an export of bodies or of markers; see `elbowscrew.reading.registry.read_recording`."""
+    markers = marker_header(source)
+    if markers is not None:
+        return read_markers(source, markers, options)
+    if options.markers:
+        msg = f"{source.path}: markers: bodies (6D) have none; leave it out, and give landmarks as coordinates"
+        raise SettingError(msg)
     stated, names, titles, line = _header(source)
     clock = 2 if titles[0].casefold() == "frame" else 0
-    rate_hz = None if clock else _frequency(source, stated)
+    rate_hz = None if clock else stated_frequency(source, stated.get("frequency", ""))
     bodies = _body_columns(source, names, titles, line, clock)
     columns = [*range(clock), *(k for wanted in bodies.values() for k in wanted)]
     frames, times = ArrayBuilder(dtype=np.int64), ArrayBuilder()
@@ -89,18 +94,6 @@ def _are_titles(cells: list[str]) -> bool:
     return "rot[0]" in cells
 
 
-def _frequency(source: TextSource, stated: dict[str, str]) -> float:
-    """Frames a second, which must be stated where there are no times."""
-    try:
-        rate = parse_number(stated.get("frequency", "").replace(",", "."))
-    except ValueError:
-        rate = float("nan")
-    if not is_rate(rate):
-        msg = f"{source.path}: no times and no FREQUENCY; export the take again with the time of every frame"
-        raise RecordingError(msg)
-    return rate
-
-
 def _matrices(cells: Float) -> Float:
     """Rotation matrices (n, 3, 3) of nine cells that go down the columns."""
     return np.swapaxes(cells.reshape(-1, 3, 3), 1, 2)
@@ -110,7 +103,7 @@ def _header(source: TextSource) -> tuple[dict[str, str], list[str], list[str], i
     """Give what the file states, the bodies' names, the titles of the columns, and how many lines that is."""
     stated: dict[str, str] = {}
     names: list[str] = []
-    for number, text in enumerate(islice(source.lines(), _HEADER_LINES), start=1):
+    for number, text in enumerate(islice(source.lines(), HEADER_LINES), start=1):
         try:
             cells = source.cells(text)
         except csv.Error as error:
@@ -125,10 +118,10 @@ def _header(source: TextSource) -> tuple[dict[str, str], list[str], list[str], i
             return stated, names or [cell[:-2] for cell in cells if _X.search(cell.casefold())], cells, number
         elif key and key not in stated:
             stated[key] = " ".join(cells[1:])
-    if "marker_names" in stated or not names:
+    if not names:
         msg = (
-            f"{source.path}: no 6D export of Qualisys: no line BODY_NAMES with names; export 6D data, or the markers "
-            "as C3D, or say what the columns are by --columns FILE.toml (docs/reference/plain-table.md)"
+            f"{source.path}: no export of Qualisys that is read: no line BODY_NAMES (6D) or MARKER_NAMES (3D) with "
+            "names; export 6D or 3D data with the header"
         )
         raise RecordingError(msg)
     msg = (

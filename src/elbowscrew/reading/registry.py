@@ -87,11 +87,11 @@ FORMATS: Final[tuple[Format[list[str], TextSource], ...]] = (
     ),
     Format(name="TRC", endings=(".trc",), recognizes=trc.recognizes, read=trc.read, accepts=_UNITS | _MARKERS),
     Format(
-        name="Qualisys 6D",
+        name="Qualisys",
         endings=(".tsv",),
         recognizes=qualisys.recognizes,
         read=qualisys.read,
-        accepts=frozenset(),
+        accepts=_MARKERS,
     ),
     # Before row tags, of which 'frame' is one. No endings: in a folder, two of its files may be one trial.
     Format(
@@ -151,7 +151,7 @@ def read_recording(
     ----------
     path : path-like
         An OptiTrack export (Motive's column layout 1.1 to 1.25, the row-tagged layout 1.0 and 1.1), a plain table, a
-        TRC file, a 6D export of Qualisys, orientations in OpenSim's storage, a table of 4 x 4 matrices, poses of
+        TRC file, an export of Qualisys, orientations in OpenSim's storage, a table of 4 x 4 matrices, poses of
         Autoscoper, or a C3D file (with the extra ``[c3d]``).
     distal_path : path-like, optional
         The file of the distal body, where each body has a file of its own: `path` is that of the proximal one.
