@@ -8,9 +8,10 @@ No number may be wrong in silence either. Whatever is read is changed once more 
 the numbers may change one row of one body or marker at the most, a row that is taken out takes only itself, cells that
 are shifted shift no others, and what a changed header moves or scales must be told.
 
-COUNT is of files in all. ``--seed`` makes other ones, ``--new`` leaves Motive's own formats out, ``--only PATTERN``
-takes the seeds with such names alone (`fuzz_seeds.py`), so that each format has its share, and ``--finds FOLDER``
-is where each find is kept, with the file that it came from. The counts are printed as JSON, by format.
+COUNT is of files in all, ``--seconds`` is the longest time. ``--seed`` makes other ones, ``--new`` leaves Motive's own
+formats out, ``--only PATTERN`` takes the seeds with such names alone (`fuzz_seeds.py`), so that each format has its
+share, and ``--finds FOLDER`` is where each find is kept, with the file that it came from. The counts are printed as
+JSON, by format.
 """
 
 from __future__ import annotations
@@ -68,6 +69,7 @@ slowest: dict[str, float] = {}
 seen: set[str] = set()
 finds = SCRATCH / "finds"
 wanted_count = 0
+last_moment = 0.0
 good: list[bytes] = []
 
 
@@ -181,7 +183,7 @@ def one(data: bytes) -> None:
             where = [line.strip() for line in lines if "elbowscrew" in line]
             keep(f"{lines[-1][:80]} {where[-1] if where else ''}", data, "\n".join(lines))
     total = sum(count["files"] for count in outcomes.values())
-    if total >= wanted_count:
+    if total >= wanted_count or time.monotonic() > last_moment:
         finish()
 
 
@@ -365,15 +367,16 @@ def finish() -> None:
 
 def main() -> None:
     """Run atheris from the seeds."""
-    global wanted_count, finds
+    global wanted_count, last_moment, finds
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("count", nargs="?", type=int, default=10_000)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--new", action="store_true")
+    parser.add_argument("--seconds", type=float, default=float("inf"))
     parser.add_argument("--only", default="*")
     parser.add_argument("--finds", type=Path, default=finds)
     given = parser.parse_args()
-    wanted_count, finds = given.count, given.finds
+    wanted_count, finds, last_moment = given.count, given.finds, time.monotonic() + given.seconds
     finds.mkdir(parents=True, exist_ok=True)
     corpus = SCRATCH / "corpus"
     corpus.mkdir()
