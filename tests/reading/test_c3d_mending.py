@@ -14,6 +14,7 @@ import pytest
 from elbowscrew import read_recording
 from elbowscrew.errors import RecordingError
 from elbowscrew.geometry.arrays import Float
+from elbowscrew.reading.c3d_parameters import Statements, check_sizes
 
 PLACES: Float = np.random.default_rng(5).uniform(-900.0, 900.0, (3, 4, 30)).astype(np.float32).astype(np.float64)
 FRAMES_AT, ANALOG_AT, DATA_AT = 8, 4, 16
@@ -117,3 +118,11 @@ def test_cases(real_data: Path) -> None:
     for name in ("theia_rot", "theia_rot_pts"):
         bodies = read_recording(real_data / "cases" / f"{name}.c3d").bodies
         assert [body.name for body in bodies] == ["r_uarm_4X4", "r_larm_4X4"]
+
+
+def test_a_parameter_whose_name_has_control_characters_is_told_in_one_line() -> None:
+    entry = bytes([3, 1]) + b"A\nB" + bytes([0, 0, 4, 2, 255, 255])
+    blocks = (bytes([1, 0x50, 1, 84]) + entry).ljust(512, b"\0")
+    with pytest.raises(RecordingError, match=r"up to 'A\\nB' state 65025 values") as found:
+        check_sizes(Path("t.c3d"), Statements(bytes(512), 512, blocks, 4096))
+    assert "\n" not in str(found.value)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final, Literal
 
-from elbowscrew.errors import RecordingError
+from elbowscrew.errors import RecordingError, shown
 from elbowscrew.opening import open_bytes
 
 BLOCK: Final = 512
@@ -165,8 +165,8 @@ def check_sizes(path: Path, stated: Statements) -> None:
         values += 0 if one is None else one.count
         if one is not None and values > stated.size:
             msg = (
-                f"{path}: not a C3D file that can be read: its parameters up to {one.name} state {values} values, "
-                f"where the whole file has {stated.size} bytes; export the take again"
+                f"{path}: not a C3D file that can be read: its parameters up to {shown(one.name)} state "
+                f"{values} values, where the whole file has {stated.size} bytes; export the take again"
             )
             raise RecordingError(msg)
     _check_frame_size(path, stated)
