@@ -103,6 +103,16 @@ def test_a_first_frame_that_is_lost(tmp_path: Path) -> None:
     assert np.flatnonzero(~body.tracked).tolist() == [0]
 
 
+@pytest.mark.parametrize("end", ["", ","])
+@pytest.mark.parametrize("numbered", [False, True])
+def test_a_body_that_is_blank_in_the_first_row_is_not_left_out(tmp_path: Path, numbered: bool, end: str) -> None:
+    rows = [",".join(pair) for pair in zip(*both(), strict=True)]
+    rows[0] = both()[0][0] + "," * 16
+    rows = [(f"{k}," if numbered else "") + row + end for k, row in enumerate(rows)]
+    recording = read_recording(write(tmp_path / "t.tra", rows), **STATED)
+    assert [np.flatnonzero(~body.tracked).tolist() for body in recording.bodies] == [[], [0]]
+
+
 def test_one_body_alone_is_told(tmp_path: Path) -> None:
     path = write(tmp_path / "ulna.tra", both()[1])
     assert [warning.code for warning in read_recording(path, **STATED).warnings] == ["one-body"]

@@ -38,7 +38,7 @@ def recognizes(cells: list[str]) -> bool:
 def read(source: TextSource, options: ReadOptions) -> Recording:
     """Read a table of poses; see `elbowscrew.reading.registry.read_recording`."""
     unit, rate = unit_and_rate(source, options)
-    width = len(first_row(source))
+    width = len(first_row(source, _CELLS))
     _check_degrees(source, width)
     names = body_names(source, width // _CELLS)
     bodies = tuple(

@@ -25,12 +25,16 @@ def unit_and_rate(source: TextSource, options: ReadOptions) -> tuple[str, float]
     return options.units, options.rate_hz
 
 
-def first_row(source: TextSource) -> list[str]:
-    """Cells of the first line with any content, without blank ones at its end."""
+def first_row(source: TextSource, group: int) -> list[str]:
+    """Cells of the first line with any content, in groups of so many, beside which there may be one at the beginning.
+
+    Blank groups at its end are bodies that are lost in this row, other blank cells there are none.
+    """
     cells = source.cells(next(line for line in source.lines() if line.strip(", ;\t")))
-    while not cells[-1]:
-        cells.pop()
-    return cells
+    count = len(cells)
+    while not cells[count - 1]:
+        count -= 1
+    return cells[: len(cells) - (len(cells) - count) % group]
 
 
 def body_names(source: TextSource, count: int) -> list[str]:

@@ -64,7 +64,7 @@ def recognizes(cells: list[str]) -> bool:
 
 def read(source: TextSource, options: ReadOptions) -> Recording:
     """Read a table of 4 x 4 matrices; see `elbowscrew.reading.registry.read_recording`."""
-    cells = first_row(source)
+    cells = first_row(source, _CELLS)
     if _has_titles([cell.casefold() for cell in cells]):
         table = _titled(source, cells)
     else:

@@ -127,7 +127,7 @@ def _lines(source: TextSource, named: ColumnFile) -> _Lines:
     names = {column: key for key, column in named.columns() if not _PLACE.fullmatch(column)}
     if not names and named.table.header is None:
         above = (first or 1) - 1
-        return _Lines([], 0, above, len(_cells(source, above + 1)))
+        return _Lines([], 0, above, len(_cells(source, above + 1, whole=True)))
     if named.table.header is not None:
         header, number = _cells(source, named.table.header), named.table.header
     else:
@@ -153,10 +153,11 @@ def _best_line(source: TextSource, names: set[str]) -> tuple[list[str], int]:
     return best
 
 
-def _cells(source: TextSource, number: int) -> list[str]:
+def _cells(source: TextSource, number: int, *, whole: bool = False) -> list[str]:
+    """Cells of a line, without blank ones at its end if not whole."""
     line = next(islice(source.lines(), number - 1, None), "")
     try:
-        return _without_end(source.cells(line))
+        return source.cells(line) if whole else _without_end(source.cells(line))
     except csv.Error as error:
         msg = f"{source.path}:{number}: not a line of a CSV file: {error}"
         raise RecordingError(msg) from error
