@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import tempfile
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -27,7 +26,7 @@ from elbowscrew.results.staging import result_folder, write_files
 from elbowscrew.results.summary import summary_from_analysis
 from elbowscrew.results.summary_reading import JOINT, SUMMARY
 from elbowscrew.results.trial_views import view_of_analysis
-from elbowscrew.results.writing import write_table, write_tables
+from elbowscrew.results.writing import table_bytes, write_table, write_tables
 from elbowscrew.settings import Settings
 from elbowscrew.view.figure_names import caption_file, chosen_figures
 from elbowscrew.view.trial_view import TrialView
@@ -315,10 +314,7 @@ def save_motion(motion: RebuiltMotion, path: str | os.PathLike[str], *, overwrit
     'motion.csv'
     """
     target = Path(path)
-    with tempfile.TemporaryDirectory() as folder:
-        staged = Path(folder) / "motion.csv"
-        write_table(staged, motion, "deg", "mm")
-        content = staged.read_bytes()
+    content = table_bytes(motion, "deg", "mm")
     write_files(
         target.parent, {target.name: content}, replaceable=("frame,time_s,phase,t,theta",) if overwrite else None
     )

@@ -276,14 +276,16 @@ def test_the_installed_command_speaks_of_itself_as_elbowscrew() -> None:
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full")
-def test_an_output_that_takes_nothing_is_exit_6(take: Path) -> None:
+@pytest.mark.parametrize("arguments", [["info", "take.csv"], ["--version"], ["info", "--help"], ["--help"]])
+@pytest.mark.parametrize("unbuffered", ["", "1"])
+def test_an_output_that_takes_nothing_is_named_and_exit_6(take: Path, arguments: list[str], unbuffered: str) -> None:
     with Path("/dev/full").open("w") as full:
         result = subprocess.run(
-            [sys.executable, "-m", "elbowscrew", "info", str(take)],
-            stdout=full, stderr=subprocess.PIPE, text=True, check=False,
+            [sys.executable, "-m", "elbowscrew", *arguments], env={**os.environ, "PYTHONUNBUFFERED": unbuffered},
+            cwd=take.parent, stdout=full, stderr=subprocess.PIPE, text=True, check=False,
         )  # fmt: skip
     assert result.returncode == 6
-    assert_one_line(result.stderr)
+    assert result.stderr == "elbowscrew: error: standard output cannot be written: No space left on device\n"
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")

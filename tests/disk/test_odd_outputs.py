@@ -120,6 +120,21 @@ def test_a_run_killed_while_it_fills_a_folder_leaves_one_state_and_the_next_run_
     )
 
 
+def test_a_small_disk_that_is_mounted_there_says_that_it_is_full(tmp_path: Path) -> None:
+    target = tmp_path / "out"
+    target.mkdir()
+    tried = ["mount", "-t", "tmpfs", "-o", "size=16k", "none", str(target)]
+    if not sys.platform.startswith("linux") or subprocess.run(tried, check=False, capture_output=True).returncode:
+        pytest.skip("nothing can be mounted here")
+    try:
+        with pytest.raises(OutputError, match=r"out: cannot be written: No space left on device; nothing was left"):
+            write_result(target, OLD + " " * 50_000, "theta.png")
+        assert list(target.iterdir()) == []
+        assert list(tmp_path.iterdir()) == [target]
+    finally:
+        subprocess.run(["umount", str(target)], check=True)
+
+
 def test_what_somebody_adds_to_a_folder_that_is_filled_stays(fixed: Path) -> None:
     write_result(fixed, OLD, "theta.png")
     before = tree(fixed)

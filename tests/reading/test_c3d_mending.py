@@ -126,3 +126,23 @@ def test_a_parameter_whose_name_has_control_characters_is_told_in_one_line() -> 
     with pytest.raises(RecordingError, match=r"up to 'A\\nB' state 65025 values") as found:
         check_sizes(Path("t.c3d"), Statements(bytes(512), 512, blocks, 4096))
     assert "\n" not in str(found.value)
+
+
+def test_a_temporary_folder_that_takes_nothing_is_no_fault_of_the_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "t.c3d"
+    path.write_bytes(c3d_files.of_processor(sound(path), "SGI"))
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "missing"))
+    with pytest.raises(RecordingError, match=r"t\.c3d: a copy to open it by cannot be written: .*; make room"):
+        read_recording(path, markers="*")
+
+
+def test_a_process_that_cannot_be_started_is_no_fault_of_the_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "t.c3d"
+    sound(path)
+    monkeypatch.setattr("sys.executable", str(tmp_path / "missing"))
+    with pytest.raises(RecordingError, match=r"t\.c3d: the process that opens it cannot be started: No such file"):
+        read_recording(path, markers="*")

@@ -11,8 +11,18 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from elbowscrew import ComparisonPlan, analyze, compare_trials, save_comparison, save_simulation, simulate_trial
-from elbowscrew.results.writing import write_csv, write_tables
+from elbowscrew import (
+    ComparisonPlan,
+    analyze,
+    compare_trials,
+    interpolate,
+    keyframes_of,
+    save_comparison,
+    save_motion,
+    save_simulation,
+    simulate_trial,
+)
+from elbowscrew.results.writing import write_csv, write_table, write_tables
 
 SCREW_NAMES = (
     "frame time_s valid theta_deg slide_mm axis_x axis_y axis_z point_x_mm point_y_mm point_z_mm "
@@ -111,3 +121,11 @@ def test_what_is_not_known_of_compared_models_is_empty(tmp_path: Path) -> None:
         (row,) = csv.DictReader(stream)
     assert float(row["rms_displacement_mean_mm"]) > 0.0
     assert row["rms_displacement_sd_mm"] == row["ns_per_frame_sd"] == ""  # a single trial has no deviation
+
+
+def test_a_motion_is_written_without_a_temporary_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    keyframes = keyframes_of(analyze(simulate_trial(frames=60, inversion=30).recording))
+    motion = interpolate(keyframes, 20)
+    write_table(tmp_path / "table.csv", motion, "deg", "mm")
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "missing"))
+    assert save_motion(motion, tmp_path / "motion.csv").read_bytes() == (tmp_path / "table.csv").read_bytes()

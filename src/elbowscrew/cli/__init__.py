@@ -55,9 +55,10 @@ def _fill_closed_streams() -> None:
 
 def _version_told() -> bool:
     """Tell the version before anything else is loaded; if there is nowhere to tell it, `main` knows what to say."""
+    import os
+
     try:
-        sys.stdout.write(f"elbowscrew {__version__}\n")
-        sys.stdout.flush()
+        os.write(sys.stdout.fileno(), f"elbowscrew {__version__}\n".encode())  # past a buffer that would keep it
     except (AttributeError, OSError):
         return False
     return True

@@ -7,7 +7,7 @@ import re
 import sys
 from types import FrameType
 
-from elbowscrew.cli.text import emit, one_line, tell
+from elbowscrew.cli.text import emit, guarded_streams, one_line, tell
 from elbowscrew.errors import ElbowscrewError, OutputError, UsageError, asked_back
 
 INTERRUPTED = 130
@@ -24,6 +24,11 @@ class Terminated(BaseException):
 def run_program(given: list[str]) -> int:
     """Run the command line and return the exit code; a defect of the program raises."""
     _mend_streams()
+    with guarded_streams():
+        return _ended(given)
+
+
+def _ended(given: list[str]) -> int:
     try:
         code = _run(given)
         emit("")

@@ -4,44 +4,76 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Iterable
-from contextlib import suppress
-from typing import TextIO
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager, redirect_stderr, redirect_stdout, suppress
+from functools import partial
+from typing import Any, TextIO
 
 from elbowscrew.errors import OutputError, shortened
 
 
-def tell(text: str) -> None:
-    """Write a line to standard error; that nobody takes it stops no work, and changes no exit code."""
-    try:
-        sys.stderr.write(f"{text}\n")
-        sys.stderr.flush()
-    except (OSError, ValueError):
-        _forget(sys.stderr)
+class _Guarded:
+    """A standard stream, be it a library that writes to it; once it takes nothing, all goes nowhere."""
+
+    def __init__(self, stream: TextIO, broken: Callable[[OSError], None]) -> None:
+        self._stream = stream
+        self._broken = broken
+        self._error: OSError | None = None
+
+    def write(self, text: str) -> int:
+        if text != "":  # libraries find out in this way what a stream takes; a full disk may refuse even that
+            self._try(partial(self._stream.write, text))
+        return len(text)
+
+    def writelines(self, lines: Iterable[str]) -> None:
+        self.write("".join(lines))
+
+    def flush(self) -> None:
+        self._try(self._stream.flush)
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._stream, name)
+
+    def _try(self, write: Callable[[], object]) -> None:
+        if self._error is None:
+            try:
+                write()
+            except OSError as error:
+                self._error = error
+                _forget(self._stream)
+        if self._error is not None:
+            self._broken(self._error)
 
 
-def emit(text: str) -> None:
-    """Write to standard output; a reader that has read enough is no error, and nothing more is written for him.
+@contextmanager
+def guarded_streams() -> Iterator[None]:
+    """Let errors of standard output be told as such, and those of standard error stop no work, as long as it lasts.
 
-    Raises
-    ------
-    OutputError
-        If standard output cannot be written.
+    A reader that has read enough is no error, and nothing more is written for him; what cannot be written to standard
+    output raises `OutputError` where it is written.
     """
-    try:
-        sys.stdout.write(text)
-        sys.stdout.flush()
-    except BrokenPipeError:
-        forget_output()
-    except OSError as error:
-        forget_output()
+    out: Any = _Guarded(sys.stdout, _output_broken)
+    error: Any = _Guarded(sys.stderr, lambda _error: None)
+    with redirect_stdout(out), redirect_stderr(error):
+        yield
+
+
+def _output_broken(error: OSError) -> None:
+    if not isinstance(error, BrokenPipeError):
         msg = f"standard output cannot be written: {error.strerror or error}"
         raise OutputError(msg) from error
 
 
-def forget_output() -> None:
-    """Let what is still written to standard output go nowhere."""
-    _forget(sys.stdout)
+def tell(text: str) -> None:
+    """Write a line to standard error."""
+    sys.stderr.write(f"{text}\n")
+    sys.stderr.flush()
+
+
+def emit(text: str) -> None:
+    """Write to standard output."""
+    sys.stdout.write(text)
+    sys.stdout.flush()
 
 
 def _forget(stream: TextIO) -> None:

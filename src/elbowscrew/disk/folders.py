@@ -25,6 +25,7 @@ from elbowscrew.disk.temporary import (
     remove,
     replaced_of,
 )
+from elbowscrew.opening import create, open_bytes
 
 _REFUSED: Final = (errno.EACCES, errno.EPERM, errno.EROFS)
 _STAYS: Final = (errno.EBUSY, errno.EXDEV)
@@ -67,7 +68,7 @@ def new_folder(destination: Path, check: Callable[[Path], None], finish: Callabl
                 if error.errno not in _STAYS:
                     raise
                 with held_folder(destination, destination.name) as inner:
-                    shutil.copytree(staged, new_in(inner), dirs_exist_ok=True)
+                    _copy(staged, new_in(inner))
                     _fill(destination, inner, check)
         made = []
     finally:
@@ -85,6 +86,18 @@ def _room_for(destination: Path) -> Iterator[tuple[Path, bool]]:
                 raise
             staged, inside = new_in(held.enter_context(held_folder(destination, destination.name))), True
         yield staged, inside
+
+
+def _copy(folder: Path, other: Path) -> None:
+    """Copy what is in a folder into one that is empty."""
+    for path in folder.iterdir():
+        target = other / path.name
+        if path.is_dir():
+            target.mkdir()
+            _copy(path, target)
+        else:
+            with open_bytes(path) as source, create(target) as stream:
+                shutil.copyfileobj(source, stream)
 
 
 def _fill(destination: Path, staged: Path, check: Callable[[Path], None]) -> None:

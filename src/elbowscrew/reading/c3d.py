@@ -8,7 +8,7 @@ import signal
 import subprocess
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from importlib.util import find_spec
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -109,7 +109,7 @@ def _open(path: Path) -> _Content:
         raise RecordingError(msg)
     reason = "the file is damaged"
     try:
-        with _as_the_library_takes_it(path) as file, np.load(io.BytesIO(_worker_output(file))) as arrays:
+        with _as_the_library_takes_it(path) as file, np.load(io.BytesIO(_worker_output(path, file))) as arrays:
             statement = json.loads(str(arrays["statement"]))
             points, residuals, rotations = (
                 np.asarray(arrays[name], dtype=np.float64) for name in ("points", "residuals", "rotations")
@@ -141,19 +141,27 @@ def _as_the_library_takes_it(path: Path) -> Iterator[Path]:
         check_sizes(path, stated)
         data = mended(path, stated)
         if data is not None:
-            with TemporaryDirectory(prefix="elbowscrew-") as folder:
-                file = Path(folder) / "mended.c3d"
-                file.write_bytes(data)
+            with ExitStack() as held:
+                try:
+                    file = Path(held.enter_context(TemporaryDirectory(prefix="elbowscrew-"))) / "mended.c3d"
+                    file.write_bytes(data)
+                except OSError as error:
+                    msg = f"{path}: a copy to open it by cannot be written: {error}; make room, or set TMPDIR"
+                    raise RecordingError(msg) from error
                 yield file
             return
     yield path
 
 
-def _worker_output(file: Path) -> bytes:
+def _worker_output(path: Path, file: Path) -> bytes:
     command = [sys.executable, "-P", c3d_worker.__file__, str(file)]
-    done = subprocess.run(  # noqa: S603
-        command, capture_output=True, check=True, timeout=_LONGEST_OPENING_S, env=guarded_environment()
-    )
+    try:
+        done = subprocess.run(  # noqa: S603
+            command, capture_output=True, check=True, timeout=_LONGEST_OPENING_S, env=guarded_environment()
+        )
+    except OSError as error:
+        msg = f"{path}: the process that opens it cannot be started: {error.strerror or error}"
+        raise RecordingError(msg) from error
     return done.stdout
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any, Final
 
@@ -49,8 +49,19 @@ def write_tables(folder: Path, analysis: Analysis) -> None:
 
 def write_table(path: Path, result: TableRecord, angle_unit: AngleUnit, length_unit: LengthUnit) -> None:
     """Write a result as CSV; it is converted block by block, as it may be long."""
+    write_csv(path, _columns_of(result, angle_unit, length_unit))
+
+
+def table_bytes(result: TableRecord, angle_unit: AngleUnit, length_unit: LengthUnit) -> bytes:
+    """Give what `write_table` writes."""
+    return b"".join(_csv(_columns_of(result, angle_unit, length_unit)))
+
+
+def _columns_of(
+    result: TableRecord, angle_unit: AngleUnit, length_unit: LengthUnit
+) -> Iterator[Mapping[str, NDArray[Any]]]:
     rows = len(result.table[0].values(result))
-    write_csv(path, (result.columns(angle_unit, length_unit, block) for block in _blocks(rows)))
+    return (result.columns(angle_unit, length_unit, block) for block in _blocks(rows))
 
 
 def _blocks(rows: int) -> list[slice]:
@@ -61,15 +72,20 @@ def _blocks(rows: int) -> list[slice]:
 def write_csv(path: Path, blocks: Iterable[Mapping[str, NDArray[Any]]]) -> None:
     """Write columns of equal length, block by block; NaN and masked values become empty cells."""
     with create(path) as stream:
-        for k, block in enumerate(blocks):
-            if k == 0:
-                stream.write((",".join(map(quoted, block)) + "\n").encode())
-            columns = [_cells(values) for values in block.values()]
-            words = [
-                cells for values, cells in zip(block.values(), columns, strict=True) if values.dtype.kind not in "fiub"
-            ]
-            if columns and columns[0]:
-                stream.write(_lines(columns) if all(map(_is_plain, words)) else _quoted_lines(columns))
+        for part in _csv(blocks):
+            stream.write(part)
+
+
+def _csv(blocks: Iterable[Mapping[str, NDArray[Any]]]) -> Iterator[bytes]:
+    for k, block in enumerate(blocks):
+        if k == 0:
+            yield (",".join(map(quoted, block)) + "\n").encode()
+        columns = [_cells(values) for values in block.values()]
+        words = [
+            cells for values, cells in zip(block.values(), columns, strict=True) if values.dtype.kind not in "fiub"
+        ]
+        if columns and columns[0]:
+            yield _lines(columns) if all(map(_is_plain, words)) else _quoted_lines(columns)
 
 
 def _lines(columns: list[list[Any]]) -> bytes:
