@@ -310,6 +310,43 @@ def test_an_interrupted_run_leaves_nothing(tmp_path: Path, sent: signal.Signals,
     assert sorted(path.name for path in tmp_path.iterdir()) == ["long.csv", "long.truth.json"]
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")
+@pytest.mark.parametrize(("sent", "code"), [("SIGINT", 130), ("SIGTERM", 143), ("SIGHUP", 129)])
+def test_signals_that_come_again_do_not_cut_the_cleaning_up(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], sent: str, code: int
+) -> None:
+    before, cleaned = signal.getsignal(signal.Signals[sent]), []
+
+    def work(_given: list[str]) -> int:
+        try:
+            signal.raise_signal(signal.Signals[sent])
+        finally:
+            for _ in range(3):
+                signal.raise_signal(signal.Signals[sent])
+                cleaned.append(sent)
+        return 0
+
+    monkeypatch.setattr("elbowscrew.cli.program._run", work)
+    assert main([]) == code
+    assert len(cleaned) == 3
+    assert_one_line(capsys.readouterr().err)
+    assert signal.getsignal(signal.Signals[sent]) == before
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")
+def test_a_closed_terminal_does_not_end_what_was_started_by_nohup(monkeypatch: pytest.MonkeyPatch) -> None:
+    def work(_given: list[str]) -> int:
+        signal.raise_signal(signal.SIGHUP)
+        return 0
+
+    monkeypatch.setattr("elbowscrew.cli.program._run", work)
+    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    try:
+        assert main([]) == 0
+    finally:
+        signal.signal(signal.SIGHUP, before)
+
+
 def test_landmarks_add_anatomical_angles(take: Path, capsys: pytest.CaptureFixture[str]) -> None:
     toml = take.with_name("arm.toml")
     toml.write_text(LANDMARKS)

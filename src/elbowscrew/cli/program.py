@@ -5,7 +5,10 @@ from __future__ import annotations
 import os
 import re
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from types import FrameType
+from typing import Any
 
 from elbowscrew.cli.text import emit, guarded_streams, one_line, tell
 from elbowscrew.errors import ElbowscrewError, OutputError, UsageError, asked_back
@@ -24,7 +27,7 @@ class Terminated(BaseException):
 def run_program(given: list[str]) -> int:
     """Run the command line and return the exit code; a defect of the program raises."""
     _mend_streams()
-    with guarded_streams():
+    with guarded_streams(), _ended_by_signals():
         return _ended(given)
 
 
@@ -51,7 +54,6 @@ def _run(given: list[str]) -> int:
 
     from elbowscrew.cli.app import run
 
-    _end_cleanly_when_terminated()
     try:
         code = run(given or ["--help"])
     except TyperException as error:
@@ -99,15 +101,28 @@ def _mend_streams() -> None:
             stream.reconfigure(errors="replace")
 
 
-def _end_cleanly_when_terminated() -> None:
-    """Let signals that end the program unwind the stack, so that temporary files go."""
+@contextmanager
+def _ended_by_signals() -> Iterator[None]:
+    """Let the first signal that ends the program unwind the stack, so that temporary files go, and others not cut that.
+
+    Signals that are ignored stay so: a closed terminal does not end what was started by ``nohup``.
+    """
     import signal
 
-    def stop(number: int, _frame: FrameType | None) -> None:
-        raise Terminated(number)
+    before: dict[int, Any] = {}
 
-    for name in ("SIGTERM", "SIGHUP"):
-        try:
-            signal.signal(getattr(signal, name), stop)
-        except (AttributeError, ValueError):  # not on this system, or not in the main thread
-            continue
+    def stop(number: int, _frame: FrameType | None) -> None:
+        for one in before:
+            signal.signal(one, signal.SIG_IGN)
+        raise KeyboardInterrupt if number == signal.SIGINT else Terminated(number)
+
+    for name in ("SIGINT", "SIGTERM", "SIGHUP"):
+        number = getattr(signal, name, None)  # not all systems have all
+        if number is not None and signal.getsignal(number) not in (None, signal.SIG_IGN):
+            with suppress(ValueError):  # only the main thread hears them
+                before[number] = signal.signal(number, stop)
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)

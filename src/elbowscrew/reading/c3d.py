@@ -109,7 +109,7 @@ def _open(path: Path) -> _Content:
         raise RecordingError(msg)
     reason = "the file is damaged"
     try:
-        with _as_the_library_takes_it(path) as file, np.load(io.BytesIO(_worker_output(path, file))) as arrays:
+        with _as_the_library_takes_it(path) as file, np.load(io.BytesIO(_worker_output(file))) as arrays:
             statement = json.loads(str(arrays["statement"]))
             points, residuals, rotations = (
                 np.asarray(arrays[name], dtype=np.float64) for name in ("points", "residuals", "rotations")
@@ -127,6 +127,9 @@ def _open(path: Path) -> _Content:
             reason = told[-1]
     except subprocess.TimeoutExpired:
         reason = f"it is not open after {_LONGEST_OPENING_S} s"
+    except ChildProcessError as error:
+        msg = f"{path}: {error}"
+        raise RecordingError(msg) from error
     except (OSError, ValueError, KeyError, TypeError) as error:
         reason = str(error)
     msg = f"{path}: not a C3D file that can be read: {reason}; export the take again"
@@ -153,15 +156,15 @@ def _as_the_library_takes_it(path: Path) -> Iterator[Path]:
     yield path
 
 
-def _worker_output(path: Path, file: Path) -> bytes:
+def _worker_output(file: Path) -> bytes:
     command = [sys.executable, "-P", c3d_worker.__file__, str(file)]
     try:
         done = subprocess.run(  # noqa: S603
             command, capture_output=True, check=True, timeout=_LONGEST_OPENING_S, env=guarded_environment()
         )
     except OSError as error:
-        msg = f"{path}: the process that opens it cannot be started: {error.strerror or error}"
-        raise RecordingError(msg) from error
+        msg = f"the process that opens it cannot be started: {error.strerror or error}"
+        raise ChildProcessError(msg) from error
     return done.stdout
 
 
