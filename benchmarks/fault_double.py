@@ -12,7 +12,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-FAIL, KILL = 1, 2
+FAIL, KILL, KILL_ON = 1, 2, 3
 
 
 class Double:
@@ -24,9 +24,9 @@ class Double:
         self._write, self._link = os.write, os.readlink
         self._put_in()
 
-    def fault_arm(self, folder: bytes, call: int, action: int, number: int, no_exchange: int, log: int) -> None:
+    def fault_arm(self, folder: bytes, call: int, action: int, number: int, cannot: int, log: int) -> None:
         self.root, self.at, self.action, self.number = os.fsdecode(folder), call, action, number
-        self.without_exchange, self.journal, self.count, self.full = bool(no_exchange), log, 0, False
+        self.without_exchange, self.journal, self.count, self.full = bool(cannot & 1), log, 0, False
 
     def fault_count(self) -> int:
         return self.count
@@ -46,9 +46,9 @@ class Double:
         self.count += 1
         if self.full and takes_room:
             raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-        if self.count != self.at:
+        if self.count != self.at and not (self.action == KILL_ON and self.count > self.at > 0):
             return
-        if self.action == KILL:
+        if self.action in (KILL, KILL_ON):
             os.kill(os.getpid(), self.number)
         elif self.action == FAIL:
             self.full = self.number == errno.ENOSPC

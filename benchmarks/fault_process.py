@@ -26,7 +26,11 @@ HERE = Path(__file__).parent
 LIBRARY = "ELBOWSCREW_FAULT_SHIM"
 DOUBLE = "python"
 """In the place of the library: where there is no compiler, Python's own functions are disturbed."""
-FAIL, KILL = 1, 2
+FAIL, KILL, KILL_ON = 1, 2, 3
+"""A call fails, the process gets a signal at it, or at it and at every call thereafter."""
+NO_EXCHANGE, CLOSED_ABOVE, MOUNTED = 1, 2, 4
+"""Of a disk: two things cannot change places in one step, nothing can be made in the folder where the command runs, or
+what is in it cannot be moved."""
 
 
 @dataclass(frozen=True)
@@ -65,9 +69,9 @@ def restart_with_shim(compiler: str | None) -> int:
 
 def run_forked(
     arguments: tuple[str, ...], folder: Path, fault: Fault | None = None, call: int = -1, *,
-    exchange: bool = True, journal: Path | None = None, longest_s: float = 60.0,
+    cannot: int = 0, journal: Path | None = None, longest_s: float = 60.0,
 ) -> Ended:  # fmt: skip
-    """Run a command of the program in a folder."""
+    """Run a command of the program in a folder, on a disk that cannot do some things (`NO_EXCHANGE` and so on)."""
     from elbowscrew.cli import main
 
     shim = _shim()
@@ -80,7 +84,7 @@ def run_forked(
                 os.dup2(told.fileno(), 2)
                 log = -1 if journal is None else os.open(journal, os.O_WRONLY | os.O_CREAT | os.O_APPEND)
                 action, number = (0, 0) if fault is None else (fault.action, fault.number)
-                shim.fault_arm(os.fsencode(folder), call, action, number, 0 if exchange else 1, log)
+                shim.fault_arm(os.fsencode(folder), call, action, number, cannot, log)
                 try:
                     code = main(list(arguments))
                     sys.stdout.flush()
@@ -153,7 +157,10 @@ def compute_once() -> None:
     """Let results be computed once in this process, and be at hand in all its forks."""
     import typer.main
 
+    import elbowscrew.cli.app as app
+    import elbowscrew.comparing as comparing
     import elbowscrew.motion.interpolation.comparison as comparison
+    import elbowscrew.paper as paper
     import elbowscrew.report.figure_files as figure_files
     import elbowscrew.report.publication as publication
     import elbowscrew.saving as saving
@@ -163,9 +170,12 @@ def compute_once() -> None:
 
     known: dict[str, Any] = {}
 
-    def once(function: Callable[..., Any], key_of: Callable[..., str]) -> Callable[..., Any]:
+    def once(function: Callable[..., Any], key_of: Callable[..., str | None]) -> Callable[..., Any]:
         def call(*args: Any, **kwargs: Any) -> Any:
-            key = f"{function.__name__} {key_of(*args, **kwargs)}"
+            told = key_of(*args, **kwargs)
+            if told is None:
+                return function(*args, **kwargs)
+            key = f"{function.__name__} {told}"
             if key not in known:
                 known[key] = function(*args, **kwargs)
             return known[key]
@@ -179,9 +189,14 @@ def compute_once() -> None:
         told = getattr(trial, "summary", None)
         return f"{hashlib.sha256(repr((told or trial.settings, args)).encode()).hexdigest()}"
 
+    def of_comparison(drawings: dict[str, Any], *others: Any) -> str | None:
+        told = [cell.cell_contents for cell in getattr(drawings.get("compare"), "__closure__", None) or ()]
+        return f"{[id(one) for one in told]} {others!r}" if told else None
+
     patched: Any
     for patched, name, key in (
         (saving, "analyze_file", of_file),
+        (saving, "analyze", lambda recording, settings=None, **more: f"{recording.source!r} {settings!r} {more!r}"),
         (simulate, "simulate_trial", lambda simulation=None, **more: f"{simulation!r} {more!r}"),
         (
             comparison,
@@ -189,13 +204,28 @@ def compute_once() -> None:
             lambda recording, settings=None, plan=None, **_: f"{recording.source!r} {settings!r} {plan!r}",
         ),
         (figure_files, "figure_files", of_figures),
+        (figure_files, "files_of", of_comparison),
+        (paper, "comparisons", lambda: ""),
     ):
         setattr(patched, name, once(getattr(patched, name), key))
     patched = task
     patched.analyze_file = saving.analyze_file
+    patched = comparing
+    patched.compare = comparison.compare
     patched = publication
     patched.figure_files = figure_files.figure_files
     patched = typer.main
     patched.get_command = cache(typer.main.get_command)
+    commands = app._Commands
+    resolved: dict[str, Any] = {}
+
+    def resolve(self: Any, context: Any, arguments: list[str]) -> tuple[Any, Any, list[str]]:
+        if arguments[0] not in resolved:
+            resolved[arguments[0]] = resolve_command(self, context, arguments)[:2]
+        return *resolved[arguments[0]], arguments[1:]
+
+    resolve_command = commands.resolve_command
+    patched = commands
+    patched.resolve_command = resolve
     patched = executors
     patched.open_executor = lambda *_given: partial(_executor)

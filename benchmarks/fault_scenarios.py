@@ -9,6 +9,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
+from fault_process import CLOSED_ABOVE, MOUNTED, NO_EXCHANGE
+
 from elbowscrew import (
     analyze,
     compare,
@@ -50,6 +52,8 @@ class Scenario:
     parts: tuple[tuple[str, ...], ...]
     passing: tuple[str, ...] = ()
     quick: bool = True
+    disks: frozenset[int] = frozenset()
+    """Other disks on which it is disturbed, too, by what they cannot: where folders are replaced."""
 
     @property
     def command(self) -> str:
@@ -63,6 +67,14 @@ def tree_of(folder: Path) -> Tree:
         for path in sorted(folder.rglob("*"))
         if path.is_file() and ".elbowscrew-" not in path.as_posix()
     }
+
+
+def state_of(folder: Path) -> frozenset[tuple[str, str]]:
+    """All that is below a folder, to the last byte."""
+    return frozenset(
+        (path.relative_to(folder).as_posix(), hashlib.sha256(path.read_bytes()).hexdigest() if path.is_file() else "")
+        for path in folder.rglob("*")
+    )
 
 
 def temporaries_of(folder: Path) -> list[str]:
@@ -158,6 +170,19 @@ def _figures(folder: Path) -> None:
         (folder / "figs" / name).write_text("old", encoding="utf-8")
 
 
+def _study_with_old_pages(folder: Path) -> None:
+    for k in range(2):
+        _trial(folder, f"in/t{k}.csv", seed=k)
+        analysis = analyze_file(folder / "in" / f"t{k}.csv", Settings(figure_format=("none",)))
+        save_analysis(analysis, folder / "study" / f"t{k}", figure_formats=())
+    (folder / "study" / "index.html").write_text("")
+
+
+def _samples_cut(folder: Path) -> None:
+    """A copy that was cut off between two of its files."""
+    (folder / _SAMPLES[0]).write_bytes((path() / _SAMPLES[0]).read_bytes())
+
+
 def _nothing(_folder: Path) -> None:
     """Make nothing."""
 
@@ -178,10 +203,15 @@ _SAMPLES, _SAMPLE_STUDY = (
 
 SCENARIOS = (
     Scenario("analyze", ("analyze", "t.csv", *FAST), _trial, ((_R,),), quick=False),  # type: ignore[arg-type]
-    Scenario("analyze --force", ("analyze", "t.csv", *FAST, "--force"), _result, ((_R,),)),
+    Scenario("analyze --force", ("analyze", "t.csv", *FAST, "--force"), _result, ((_R,),),
+             disks=frozenset({NO_EXCHANGE, CLOSED_ABOVE, MOUNTED})),
     Scenario("analyze with figures", ("analyze", "t.csv", "-q", "--force"), _result, ((_R,),), quick=False),
+    Scenario("analyze with exports into new folders",
+             ("analyze", "t.csv", *FAST, "--export", "mat,sto", "-o", "new/folders/result"), _trial,  # type: ignore[arg-type]
+             (("new",),), quick=False),
     Scenario("batch", ("batch", "in", *FAST), _study, _PARTS, passing=_TABLES, quick=False),
-    Scenario("batch again", ("batch", "in", *FAST), _study_done, _PARTS, passing=_TABLES),
+    Scenario("batch again", ("batch", "in", *FAST), _study_done, _PARTS, passing=_TABLES,
+             disks=frozenset({NO_EXCHANGE})),
     Scenario("report", ("report", _R, "-q"), _result_with_old_page, ((f"{_R}/report.html", f"{_R}/SHA256SUMS"),)),
     Scenario("report --mesh", ("report", _R, "--mesh", "arm=bone.obj", "-q"), _result_and_bone,
              ((f"{_R}/meshes.json", f"{_R}/report.html", f"{_R}/SHA256SUMS"),), quick=False),
@@ -189,17 +219,26 @@ SCENARIOS = (
              (("view.png",),), quick=False),
     Scenario("report of all", ("report", ".", "-q"), _result_with_old_page,
              ((f"{_R}/report.html", f"{_R}/SHA256SUMS"), ("index.html",)), quick=False),
+    Scenario("report of a study", ("report", "study", "-q"), _study_with_old_pages,
+             (*((f"study/t{k}/report.html", f"study/t{k}/SHA256SUMS") for k in range(2)), ("study/index.html",)),
+             quick=False),
     Scenario("report --figures", _FIGURES, _result, (_DRAWN,), quick=False),
     Scenario("report --figures --force", (*_FIGURES, "--force"), _figures, (_DRAWN,)),
     Scenario("compare", ("compare", "t.csv", *PLAN), _trial, (("t_compare",),), quick=False),  # type: ignore[arg-type]
-    Scenario("compare --force", ("compare", "t.csv", *PLAN, "--force"), _compared, (("t_compare",),)),
+    Scenario("compare --force", ("compare", "t.csv", *PLAN, "--force"), _compared, (("t_compare",),),
+             disks=frozenset({NO_EXCHANGE, CLOSED_ABOVE, MOUNTED})),
+    Scenario("compare of a folder", ("compare", "in", *PLAN), _study, (("in_compare",),), quick=False),
     Scenario("interpolate", ("interpolate", "r/keyframes.csv", "--frames", "30", "-o", "m.csv"), _motion,
              (("m.csv",),), quick=False),
     Scenario("interpolate --force", ("interpolate", "r/keyframes.csv", "--frames", "30", "--force"), _motion,
              (("keyframes_motion.csv",),)),
     Scenario("simulate", _SIMULATE, _nothing, (("s.csv", "s.truth.json"),), quick=False),
-    Scenario("simulate --force", (*_SIMULATE, "--force"), _simulated, (("s.csv", "s.truth.json"),)),
+    Scenario("simulate --force", (*_SIMULATE, "--force"), _simulated, (("s.csv", "s.truth.json"),),
+             disks=frozenset({NO_EXCHANGE})),
+    Scenario("simulate --landmarks", (*_SIMULATE, "--landmarks"), _nothing,
+             (("s.csv", "s.truth.json", "s.landmarks.toml"),), quick=False),
     Scenario("samples --copy", ("samples", "--copy", "."), _nothing, (_SAMPLES, _SAMPLE_STUDY), quick=False),
+    Scenario("samples --copy again", ("samples", "--copy", "."), _samples_cut, (_SAMPLES, _SAMPLE_STUDY), quick=False),
     Scenario("paper --figures", ("paper", "--figures", "figs"), _nothing,
              (("figs/figures_7_and_8.png", "figs/figures_9_and_10.png"),), quick=False),
 )  # fmt: skip

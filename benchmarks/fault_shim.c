@@ -11,22 +11,26 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/sendfile.h>
 #include <sys/stat.h>
 #include <sys/types.h>
 #include <unistd.h>
 
-enum { NOTHING, FAIL, KILL };
+enum { NOTHING, FAIL, KILL, KILL_ON };
+
+/* What the disk itself cannot. */
+enum { NO_EXCHANGE = 1, CLOSED_ABOVE = 2, MOUNTED = 4 };
 
 static char root[4096];
 static long at = -1, count = 0;
-static int action = NOTHING, number = 0, without_exchange = 0, journal = -1, full = 0;
+static int action = NOTHING, number = 0, disk = 0, journal = -1, full = 0;
 static char last[64];
 
 #define REAL(name) __typeof__(&name) real = (__typeof__(&name))dlsym(RTLD_NEXT, #name)
 
-void fault_arm(const char *folder, long call, int what, int code, int no_exchange, int log) {
+void fault_arm(const char *folder, long call, int what, int code, int cannot, int log) {
     strncpy(root, folder, sizeof root - 1);
-    at = call, action = what, number = code, without_exchange = no_exchange, journal = log;
+    at = call, action = what, number = code, disk = cannot, journal = log;
     count = 0, full = 0;
 }
 
@@ -56,6 +60,25 @@ static void of_name(int folder, const char *name, char *path) {
     snprintf(path, 4096, "%.*s/%s", (int)(length < 3000 ? length : 3000), base, name);
 }
 
+static int is_in_root(const char *path) {
+    size_t length = strlen(root);
+    return root[0] && !strncmp(path, root, length) && path[length] == '/' && !strchr(path + length + 1, '/');
+}
+
+/* -1, and errno, if the disk cannot do this to a name in the folder: nothing may be made there, or nothing moved. */
+static int refused(const char *path, int moves) {
+    if (!disk || !is_in_root(path)) return 0;
+    if (disk & CLOSED_ABOVE) {
+        errno = EACCES;
+        return -1;
+    }
+    if (moves && disk & MOUNTED) {
+        errno = EBUSY;
+        return -1;
+    }
+    return 0;
+}
+
 /* -1, and errno, if the call is to fail. */
 static int decide(const char *call, const char *path, int takes_room) {
     if (!root[0] || strncmp(path, root, strlen(root))) return 0;
@@ -64,9 +87,10 @@ static int decide(const char *call, const char *path, int takes_room) {
         errno = ENOSPC;
         return -1;
     }
+    if (action == KILL_ON && at > 0 && count > at) kill(getpid(), number);
     if (count != at) return 0;
     snprintf(last, sizeof last, "%s", call);
-    if (action == KILL) {
+    if (action == KILL || action == KILL_ON) {
         kill(getpid(), number);
         return 0;
     }
@@ -98,6 +122,37 @@ ssize_t write(int handle, const void *data, size_t size) {
     ssize_t done = real(handle, data, size);
     if (done > 0) record("write", path, "", data, done);
     return done;
+}
+
+#define SENDFILE(name, offset_type)                                             \
+    ssize_t name(int to, int from, offset_type *offset, size_t size) {          \
+        REAL(name);                                                             \
+        char path[4096];                                                        \
+        of_handle(to, path);                                                    \
+        return decide("write", path, 1) ? -1 : real(to, from, offset, size);    \
+    }
+SENDFILE(sendfile, off_t)
+SENDFILE(sendfile64, off64_t)
+
+int fchmod(int handle, mode_t mode) {
+    REAL(fchmod);
+    char path[4096];
+    of_handle(handle, path);
+    return decide("chmod", path, 0) ? -1 : real(handle, mode);
+}
+
+int chmod(const char *name, mode_t mode) {
+    REAL(chmod);
+    char path[4096];
+    of_name(AT_FDCWD, name, path);
+    return decide("chmod", path, 0) ? -1 : real(name, mode);
+}
+
+int utimensat(int folder, const char *name, const struct timespec times[2], int flags) {
+    REAL(utimensat);
+    char path[4096];
+    of_name(folder, name, path);
+    return decide("utime", path, 0) ? -1 : real(folder, name, times, flags);
 }
 
 int fsync(int handle) {
@@ -138,6 +193,7 @@ static int opened(int done, int flags, const char *path) {
         MODE char path[4096];                                           \
         of_name(AT_FDCWD, file, path);                                  \
         if (decide("open", path, flags & O_CREAT)) return -1;           \
+        if (flags & O_CREAT && refused(path, 0)) return -1;             \
         return opened(real(file, flags, mode), flags, path);            \
     }
 OPEN(open)
@@ -149,6 +205,7 @@ OPEN(open64)
         MODE char path[4096];                                           \
         of_name(folder, file, path);                                    \
         if (decide("open", path, flags & O_CREAT)) return -1;           \
+        if (flags & O_CREAT && refused(path, 0)) return -1;             \
         return opened(real(folder, file, flags, mode), flags, path);    \
     }
 OPENAT(openat)
@@ -158,7 +215,7 @@ int mkdir(const char *name, mode_t mode) {
     REAL(mkdir);
     char path[4096];
     of_name(AT_FDCWD, name, path);
-    if (decide("mkdir", path, 1)) return -1;
+    if (decide("mkdir", path, 1) || refused(path, 0)) return -1;
     int done = real(name, mode);
     if (!done) record("mkdir", path, "", 0, 0);
     return done;
@@ -198,7 +255,7 @@ int rename(const char *from, const char *to) {
     REAL(rename);
     char one[4096], other[4096];
     of_name(AT_FDCWD, from, one), of_name(AT_FDCWD, to, other);
-    if (decide("rename", one, 0)) return -1;
+    if (decide("rename", one, 0) || refused(one, 1) || refused(other, 1)) return -1;
     int done = real(from, to);
     if (!done) record("rename", one, other, 0, 0);
     return done;
@@ -208,11 +265,11 @@ int renameat2(int from_folder, const char *from, int to_folder, const char *to, 
     REAL(renameat2);
     char one[4096], other[4096];
     of_name(from_folder, from, one), of_name(to_folder, to, other);
-    if (without_exchange) {
+    if (disk & NO_EXCHANGE) {
         errno = ENOSYS;
         return -1;
     }
-    if (decide("exchange", one, 0)) return -1;
+    if (decide("exchange", one, 0) || refused(one, 1) || refused(other, 1)) return -1;
     int done = real(from_folder, from, to_folder, to, flags);
     if (!done) record("exchange", one, other, 0, 0);
     return done;

@@ -18,10 +18,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fault_process import run_forked
-
 if TYPE_CHECKING:
-    from faults import Tally
+    from faults import Bench, Tally
 
 
 @dataclass(eq=False)
@@ -114,25 +112,17 @@ def calls_in(journal: Path) -> Iterator[tuple[str, str, str, bytes]]:
             yield call, one, other, stream.read(int(size))
 
 
-def cut_power(name: str, scratch: Path, tally: Tally, *, step: int, sync_step: int) -> None:
+def cut_power(bench: Bench, scratch: Path, tally: Tally, *, step: int, sync_step: int) -> None:
     """Cut power during one scenario: at every `sync_step`-th sync, and at every `step`-th call."""
-    from fault_scenarios import SCENARIOS, part_of, temporaries_of, tree_of
-    from faults import warm_up
+    from fault_scenarios import part_of, tree_of
 
-    scenario = next(one for one in SCENARIOS if one.name == name)
+    work, journal = bench.work, scratch / "journal"
     shutil.rmtree(scratch, ignore_errors=True)
-    before, work, journal = scratch / "before", scratch / "work", scratch / "journal"
-    before.mkdir(parents=True)
-    scenario.prepare(before)
-    warm_up(scenario.arguments, before, work)
-    shutil.rmtree(work)
-    shutil.copytree(before, work)
-    old = tree_of(work)
-    assert run_forked(scenario.arguments, work, journal=journal).code == 0
-    new = tree_of(work)
+    scratch.mkdir()
+    bench.begin()
+    assert bench.run(journal=journal).code == 0
     calls = list(calls_in(journal))
-    shutil.rmtree(work)
-    shutil.copytree(before, work)
+    bench.begin()
     disk, syncs = Disk(work), 0
     for k, call in enumerate(calls):
         disk.play(*call)
@@ -141,17 +131,16 @@ def cut_power(name: str, scratch: Path, tally: Tally, *, step: int, sync_step: i
         if not last and k % step and not (call[0] == "fsync" and syncs % sync_step == 0):
             continue
         for strict in (False, True):
+            name, place = f"{bench.name}, power", f"{'strict' if strict else 'ordered'} after call {k}, {call[0]}"
+            if tally.is_known(name, place):
+                continue
             shutil.rmtree(work, ignore_errors=True)
             disk.put(work, strict=strict)
             tree, found = tree_of(work), []
-            for part in scenario.parts:
-                now, was, will = (part_of(one, part) for one in (tree, old, new))
+            for part in bench.scenario.parts:
+                now, was, will = (part_of(one, part) for one in (tree, bench.old, bench.new))
                 pending = len(part) > 1 and (now.items() <= was.items() or now.items() <= will.items())
-                known = now in (was, will) or pending or (not now and part[0] in scenario.passing)
+                known = now in (was, will) or pending or (not now and part[0] in bench.scenario.passing)
                 if not known or (last and now != will):
                     found.append(f"{part[0]} is neither the old one nor the new one")
-            again = run_forked(scenario.arguments, work)
-            done = all(part_of(tree, part) == part_of(new, part) for part in scenario.parts)
-            if (again.code != 0 and not (done and again.code == 6)) or tree_of(work) != new or temporaries_of(work):
-                found.append(f"the next run ended with {again.code}: {again.said[-200:]} {temporaries_of(work)}")
-            tally.add(f"{name}, power", f"{'strict' if strict else 'ordered'} after call {k} {call[:3]}", found)
+            tally.add(name, place, found + bench.faults_of_next_run(tree))
