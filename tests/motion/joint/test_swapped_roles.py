@@ -5,12 +5,15 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
+import moving_joints as mj
 import numpy as np
 import pytest
 
 from elbowscrew import Analysis, Recording, Settings, analyze, simulate_trial
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry.arrays import Float
+from elbowscrew.motion.joint.likelihood import Poses
+from elbowscrew.motion.joint.starts import find_two_axes
 
 
 def analyzed(recording: Recording, proximal: str, distal: str, express_in: str) -> Analysis:
@@ -75,3 +78,24 @@ def test_a_body_that_stands_still_is_like_none(jitter: float, stated: dict[str, 
         assert line.line.point == pytest.approx(lines[0].line.point, abs=2e-6)
         assert line.axis_cone == pytest.approx(lines[0].axis_cone, rel=0.005)
         assert line.point_radius == pytest.approx(lines[0].point_radius, rel=0.005)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_where_the_bodies_frames_are_changes_no_search(seed: int) -> None:
+    """A hinge whose body leaps aside while it turns: no two axes have moved so, and several pairs come near."""
+    rng = np.random.default_rng(seed)
+    angle = np.radians(np.clip(np.arange(-15, 43) * 10.0, 0.0, 130.0))
+    poses = dq.multiply(
+        mj.turned(angle, mj.line(mj.unit(rng.normal(size=3)), rng.normal(0.0, 0.1, 3))), mj.rest_pose(rng)
+    )
+    leap = np.zeros((58, 8))
+    leap[:, 0] = 1.0
+    leap[16:28, 5:] = 0.5 * rng.normal(0.0, 0.02, 3)
+    seen, covariance = mj.noisy(dq.multiply(leap, poses), rng, 0.05, 3e-4)
+    near = find_two_axes(Poses.of(seen, covariance))
+    away = mj.rest_pose(rng) if seed else dq.dual_quat_from_pose([1.0, 0.0, 0.0, 0.0], [1.0, -2.0, 0.5])
+    far = find_two_axes(Poses.of(dq.multiply(away, seen), covariance))
+    assert far.cost == pytest.approx(near.cost, rel=1e-3)
+    moved = dq.transform_lines(dq.multiply(away, near.mechanism.proximal), [0.0, 0.0, 1.0, 0.0, 0.0, 0.0])
+    found = dq.transform_lines(far.mechanism.proximal, [0.0, 0.0, 1.0, 0.0, 0.0, 0.0])
+    assert off(moved[:3], found[:3]) < 3e-3

@@ -8,6 +8,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -32,6 +33,8 @@ _SCANNED: Final = (0.005, 0.015, 0.04, 0.1)  # m between axes whose distance no 
 _MOST_SCANNED: Final = 3
 _RACE_FRAMES: Final = 80
 _ROUNDS: Final = 6
+_FIRST_ROUNDS: Final = 3
+_AHEAD: Final = 6
 _FRAMES: Final = 150
 _NEARLY_PARALLEL: Final = 0.35
 
@@ -59,8 +62,45 @@ def find_two_axes(poses: Poses) -> Fit[TwoAxesMechanism]:
         Of a `TwoAxesMechanism`; a phantom only where nothing else comes near.
     """
     few, _ = poses.thinned(_FRAMES)
-    fewer, racing = few.thinned(_RACE_FRAMES)
     hinge = fit_mechanism(OneAxis.start(few.joint), few, iterations=8, tolerance=1e-2)
+    to_crossing = _to_crossing(hinge) if poses.located else about_z(np.zeros(()))
+    proximal, distal = (dq.multiply(line, to_crossing) for line in (hinge.mechanism.proximal, hinge.mechanism.distal))
+    seen = Poses(
+        joint=dq.multiply(dq.conjugate(proximal), dq.multiply(poses.joint, distal)),
+        whitener=poses.whitener @ adjoint(distal),
+    )
+    found = _find_about_z(seen, _moved_to_z(hinge, to_crossing))
+    at = found.mechanism
+    return found._replace(
+        mechanism=replace(at, proximal=dq.multiply(proximal, at.proximal), distal=dq.multiply(distal, at.distal))
+    )
+
+
+def _to_crossing(hinge: Fit[OneAxis]) -> Float:
+    """Slide (8,) along a hinge's axis to where the twist ``(w, v)`` that it leaves shifts least: ``v + s w x z``.
+
+    With the bodies told in frames there, on the axis, every search sees the same numbers, whichever body is called
+    proximal and wherever the frames are that their poses are given in.
+    """
+    w, v = np.split(hinge.residual, 2, axis=1)
+    turned = float(np.sum(w[:, :2] ** 2))
+    slide = float(np.sum(v[:, 1] * w[:, 0] - v[:, 0] * w[:, 1])) / turned if turned > 0.0 else 0.0
+    return about_z(np.zeros(()), slide)
+
+
+def _moved_to_z(hinge: Fit[OneAxis], slide: Float) -> Fit[OneAxis]:
+    """The same hinge between frames of both bodies that lie on its axis."""
+    still = about_z(np.zeros(()))
+    return hinge._replace(
+        mechanism=replace(hinge.mechanism, proximal=still, distal=still),
+        residual=hinge.residual @ adjoint(dq.conjugate(slide)).T,
+    )
+
+
+def _find_about_z(poses: Poses, hinge: Fit[OneAxis]) -> Fit[TwoAxesMechanism]:
+    """Find them where the hinge that fits best is the z axis of both bodies."""
+    few, _ = poses.thinned(_FRAMES)
+    fewer, racing = few.thinned(_RACE_FRAMES)
     starts = _constant_angle_starts(poses.thinned(_ROTATION_FRAMES)[0].joint, few.joint)
     if poses.located:
         starts += [*_parallel_starts(few.joint), *_residual_starts(hinge, None)]
@@ -79,7 +119,7 @@ def find_two_axes(poses: Poses) -> Fit[TwoAxesMechanism]:
     best = _on(going, few)
     least = min(best, key=lambda runner: runner.cost)
     if poses.located and (least.phantom or _sine(least.fit) < _NEARLY_PARALLEL):
-        scanned = _race(_residual_starts(hinge, _SCANNED), racing, fewer)
+        scanned = _race_of_the_best(_residual_starts(hinge, _SCANNED), racing, fewer)
         near = [runner for runner in scanned if not runner.phantom and runner.cost < 3.0 * least.cost]
         best += _on(sorted(near, key=lambda runner: runner.cost)[:_MOST_SCANNED], few)
     return _winner(best, few)
@@ -105,6 +145,14 @@ def _run(start: TwoAxesMechanism, poses: Poses, iterations: int, tolerance: floa
 
 def _race(starts: list[TwoAxesMechanism], racing: Index, poses: Poses) -> list[_Runner]:
     fits = race([start.on(racing) for start in starts], poses, rounds=_ROUNDS)
+    return [_Runner(fit, is_phantom(fit)) for fit in fits]
+
+
+def _race_of_the_best(starts: list[TwoAxesMechanism], racing: Index, poses: Poses) -> list[_Runner]:
+    """Race many starts for a while, and go on with those that are ahead."""
+    fits = race([start.on(racing) for start in starts], poses, rounds=_FIRST_ROUNDS)
+    ahead = sorted(fits, key=lambda fit: fit.cost)[:_AHEAD]
+    fits = race([fit.mechanism for fit in ahead], poses, rounds=_ROUNDS - _FIRST_ROUNDS)
     return [_Runner(fit, is_phantom(fit)) for fit in fits]
 
 
