@@ -142,6 +142,17 @@ def test_residuals_of_a_fit_tell_the_noise_of_the_markers(markers: int) -> None:
     assert moved.marker_noise == pytest.approx(sigma, rel=0.12)
 
 
+def test_residuals_of_round_off_are_no_noise() -> None:
+    """Markers without any error leave some 1e-17 m: whatever a joint leaves would be far beyond that."""
+    given = {"marker_offsets": square_cluster(4)}
+    frames = poses(50, (0.0, 0.0))
+    for size, told in ((1e-16, False), (1e-8, True)):
+        found = pose_noise(
+            body(frames, marker_residual=np.full(50, size), **given), RATE_HZ, Settings(noise="residuals")
+        )
+        assert (found is not None) == told
+
+
 def test_a_mean_error_is_less_than_the_root_of_the_mean_square() -> None:
     """Of a normal error in space, the mean distance is sqrt(8 / (3 pi)) of the RMS distance."""
     rng = np.random.default_rng(2)

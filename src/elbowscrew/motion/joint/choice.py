@@ -28,6 +28,7 @@ _WANDERS: Final = "an axis that wanders with the angle explains as much as two a
 _HARDLY: Final = "so little motion tells no axis"
 _NO_CENTER: Final = "whether it turns about one center, orientations alone do not tell"
 _NO_ORDER: Final = "it hardly turns about both at once, which would tell which of them goes with which body"
+_OUTLIERS: Final = "as outliers have it, which a robust fit would weigh down"
 _LITTLE: Final = "a second rotation is seen, but is too small to tell its axis"
 
 
@@ -145,7 +146,7 @@ def _best(contest: Contest) -> Choice:
     if not contest.sure_axes():
         doubt = f"a direction is not known to {np.degrees(LARGEST_AXIS_SD):.0f} deg"
     elif retraced > _MUCH_RETRACED:
-        doubt = "their angles go together, as those of one axis that wanders would"
+        doubt = "it goes back the way it came, as one axis that wanders with the angle would"
     elif over(left_single, left_two) < NEED_SMALL:
         doubt = "one axis does not leave much more"
     elif not contest.poses.located and not two.leaves_little:
@@ -173,11 +174,14 @@ def _unless_too_far(contest: Contest, name: Fitted, gain: float, *, doubt: str |
 
 
 def _none_fits(contest: Contest, reason: str) -> Choice:
-    """Free if no valid type comes within 12 mm, else undetermined."""
-    if all(contest.too_far(name) for name, tried in contest.tried.items() if tried.valid):
-        least = min(tried.fit.residual_translation for tried in contest.tried.values() if tried.valid)
-        free = f"no joint explains the motion: every type leaves {1000.0 * least:.0f} mm or more"
-        return _chosen(contest, "free", "determined", free)
+    """Free if no valid type comes within 12 mm, and not for outliers, else undetermined."""
+    valid = [name for name, tried in contest.tried.items() if tried.valid]
+    if all(contest.too_far(name) for name in valid):
+        least = min(valid, key=lambda name: contest[name].fit.residual_translation)
+        left = f"every type leaves {1000.0 * contest[least].fit.residual_translation:.0f} mm or more"
+        if contest.left_by_few_frames(least):
+            return _chosen(contest, "undetermined", None, f"{left}, but most of it in few frames, {_OUTLIERS}")
+        return _chosen(contest, "free", "determined", f"no joint explains the motion: {left}")
     return _chosen(contest, "undetermined", None, reason)
 
 

@@ -28,6 +28,7 @@ _LITTLE_ROTATION: Final = np.radians(2.5)
 _LITTLE_SHIFT: Final = 0.0015
 _LEAST_MOTION: Final = np.radians(1.5)
 _LARGEST_LEFT: Final = 0.012
+_LEAST_OF_MOST: Final = 0.1  # share of the squares that the better three quarters of the frames have
 _LARGEST_CENTER_SD: Final = 0.05
 _LARGEST_ANGLE_SD: Final = np.radians(8.0)
 _LEAST_RANGE: Final = np.radians(1.5)
@@ -178,6 +179,12 @@ class Contest:
             return False
         white = _white_square(self._on_successive_frames(name).residual[:, 3:])
         return bool(fit.residual_translation**2 - white > _LARGEST_LEFT**2)
+
+    def left_by_few_frames(self, name: Fitted) -> bool:
+        """Whether most of the translation that a type leaves is that of a few frames, as outliers make it."""
+        fit = self[name].fit
+        square = np.sort(fit.weight * np.sum(fit.residual[:, 3:] ** 2, axis=1))
+        return bool(square[: 3 * len(square) // 4].sum() < _LEAST_OF_MOST * square.sum())
 
     def rotation_beyond_noise(self, name: Fitted) -> float:
         """RMS rotation (rad) that a type leaves and that is not white in time; 0 where that is not half of it."""

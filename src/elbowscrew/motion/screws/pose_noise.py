@@ -27,7 +27,7 @@ _STILL_S: Final = 0.5
 _FEWEST_STILL_FRAMES: Final = 20
 _LARGEST_DRIFT: Final = 3.0
 _STILL_NOISE_M: Final = 0.001
-_NO_JITTER_M: Final = 1e-9  # poses that do not change at all, but for the rounding of their mean
+_NO_JITTER_M: Final = 1e-9  # what does not change or err at all, but for the rounding of sums
 _LARGEST_ERROR_M: Final = 1.0
 _MOST_FRAMES: Final = 20_000
 _LEAST_SHOWN: Final = 0.01
@@ -210,7 +210,7 @@ def _error_column(body: RigidBody, rate_hz: float, settings: Settings) -> PoseNo
 def _from_square(body: RigidBody, square: Float | None, source: str, settings: Settings) -> PoseNoise | None:
     """Marker noise of mean squared residuals: a pose takes 6 of the 3 M degrees of freedom."""
     known = None if square is None else square[np.isfinite(square)]
-    if known is None or not known.size or not known.any():
+    if known is None or not known.size or np.median(known) <= _NO_JITTER_M**2:  # round-off is no noise
         return None
     count = _ASSUMED_MARKERS if body.marker_offsets is None else len(body.marker_offsets)
     if count < 3:
