@@ -27,6 +27,7 @@ M_co = TypeVar("M_co", bound="Mechanism", covariant=True)
 _TRIES: Final = 10
 _LARGEST_FRAME_STEP: Final = 0.7
 _SETTLED: Final = 1e-4
+_RACE_GAIN: Final = 1e-3
 _SMALLEST_STEP: Final = 1e-7
 _ROBUST_ROUNDS: Final = 30
 _ROBUST_STEPS: Final = 2
@@ -289,7 +290,8 @@ def race(mechanisms: list[M], poses: Poses, *, rounds: int) -> list[Fit[M]]:
         Starts, their frames those of the poses; `Mechanism.stacked` makes one of them.
     poses : Poses
     rounds : int
-        Steps that each tries; one that does not lower the cost is taken back and tried shorter in the next.
+        Steps that each tries, fewer where none of them gains any more; one that does not lower the cost is taken back
+        and tried shorter in the next.
     """
     weight = np.ones(len(poses.joint))
     field = mechanisms[0].stacked(mechanisms)
@@ -306,9 +308,12 @@ def race(mechanisms: list[M], poses: Poses, *, rounds: int) -> list[Fit[M]]:
         new = _reduced(after, poses, weight)
         new_cost = new.square.sum(axis=-1)
         better = new_cost <= cost * (1.0 + 1e-12)
+        ended = better.all() and (cost - new_cost <= _RACE_GAIN * cost).all()
         field = field.where_better(after, better)
         at = _Reduced(*(_where(better, mine, theirs) for mine, theirs in zip(new, at, strict=True)))
         cost = np.where(better, new_cost, cost)
+        if ended:
+            break
         damping = np.where(better, np.maximum(0.1 * damping, 1e-10), 100.0 * np.maximum(damping, 1e-6))
     return [
         _fitted(one, _Reduced(*(part[k] for part in at)), weight) for k, one in enumerate(field.parted(len(mechanisms)))
