@@ -162,7 +162,7 @@ def _axes(view: TrialView) -> str:
 def _joint(view: TrialView) -> str:
     joint = view.joint_summary
     kind, preferred = joint["joint_type"], joint["preferred"]
-    status = {"forced": "stated", None: "not determined"}.get(kind["status"], kind["status"])
+    status = "" if kind["status"] is None else f" ({'stated' if kind['status'] == 'forced' else kind['status']})"
     if preferred is not None:
         mean = "mean axis over the range of a " if joint["mean_axis"] is not None else "axis of a "
         how = f"{mean}{preferred.replace('_', '-')} by maximum likelihood of all relative poses"
@@ -170,7 +170,7 @@ def _joint(view: TrialView) -> str:
         how = "by maximum likelihood of all relative poses"
     else:
         how = "no single axis: mean of the helical axes, weighted by sin²(θ/2)"
-    return f"{JOINT_TYPE_WORDS[kind['type']]} ({status}); {how}"
+    return f"{JOINT_TYPE_WORDS[kind['type']]}{status}; {how}"
 
 
 def _interval(view: TrialView) -> str | None:
