@@ -63,37 +63,42 @@ def find_two_axes(poses: Poses) -> Fit[TwoAxesMechanism]:
     """
     few, _ = poses.thinned(_FRAMES)
     hinge = fit_mechanism(OneAxis.start(few.joint), few, iterations=8, tolerance=1e-2)
-    to_crossing = _to_crossing(hinge) if poses.located else about_z(np.zeros(()))
-    proximal, distal = (dq.multiply(line, to_crossing) for line in (hinge.mechanism.proximal, hinge.mechanism.distal))
+    first, second = _turned_to_body(hinge.mechanism) if poses.located else (about_z(np.zeros(())),) * 2
+    proximal, distal = dq.multiply(hinge.mechanism.proximal, first), dq.multiply(hinge.mechanism.distal, second)
     seen = Poses(
         joint=dq.multiply(dq.conjugate(proximal), dq.multiply(poses.joint, distal)),
         whitener=poses.whitener @ adjoint(distal),
     )
-    found = _find_about_z(seen, _moved_to_z(hinge, to_crossing))
+    found = _find_about_z(seen, _moved_to_z(hinge, first, second))
     at = found.mechanism
     return found._replace(
         mechanism=replace(at, proximal=dq.multiply(proximal, at.proximal), distal=dq.multiply(distal, at.distal))
     )
 
 
-def _to_crossing(hinge: Fit[OneAxis]) -> Float:
-    """Slide (8,) along a hinge's axis to where the twist ``(w, v)`` that it leaves shifts least: ``v + s w x z``.
+def _turned_to_body(hinge: OneAxis) -> tuple[Float, Float]:
+    """Screw motions (8,) of the proximal and of the distal frame of a hinge's axis along it.
 
-    With the bodies told in frames there, on the axis, every search sees the same numbers, whichever body is called
-    proximal and wherever the frames are that their poses are given in.
+    They lead to beside the origin of that body whose origin is nearer the axis, with x towards it, and to no angle in
+    the middle frame. With both bodies told in frames there the searches see the same numbers wherever the other body's
+    frame is, as where poses are those in the laboratory or in an arm that stands still.
     """
-    w, v = np.split(hinge.residual, 2, axis=1)
-    turned = float(np.sum(w[:, :2] ** 2))
-    slide = float(np.sum(v[:, 1] * w[:, 0] - v[:, 0] * w[:, 1])) / turned if turned > 0.0 else 0.0
-    return about_z(np.zeros(()), slide)
+    middle = float(hinge.frames[len(hinge.frames) // 2, 0])
+    lines = (hinge.proximal, hinge.distal)
+    origins = [dq.transform_points(dq.conjugate(line), np.zeros(3)) for line in lines]
+    nearer = int(np.argmin([np.hypot(origin[0], origin[1]) for origin in origins]))
+    x, y, along = origins[nearer]
+    turn = float(np.arctan2(y, x))
+    return about_z(np.asarray(turn + middle * nearer), along), about_z(np.asarray(turn - middle * (1 - nearer)), along)
 
 
-def _moved_to_z(hinge: Fit[OneAxis], slide: Float) -> Fit[OneAxis]:
-    """The same hinge between frames of both bodies that lie on its axis."""
-    still = about_z(np.zeros(()))
+def _moved_to_z(hinge: Fit[OneAxis], first: Float, second: Float) -> Fit[OneAxis]:
+    """The same hinge between frames of both bodies that lie on its axis, moved along it by screw motions (8,)."""
+    still, at = about_z(np.zeros(())), hinge.mechanism
+    turned = 2.0 * (np.arctan2(second[3], second[0]) - np.arctan2(first[3], first[0]))
     return hinge._replace(
-        mechanism=replace(hinge.mechanism, proximal=still, distal=still),
-        residual=hinge.residual @ adjoint(dq.conjugate(slide)).T,
+        mechanism=replace(at, proximal=still, distal=still, frames=at.frames + turned),
+        residual=hinge.residual @ adjoint(dq.conjugate(second)).T,
     )
 
 
