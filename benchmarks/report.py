@@ -16,7 +16,7 @@ from elbowscrew.report.study import read_study
 from elbowscrew.report.study_page import study_page
 
 ROUNDS = 9
-TRIALS = 1000
+TRIALS = 10_000
 
 
 def milliseconds(run: Callable[[], object]) -> float:

@@ -111,7 +111,7 @@ def test_header_and_cards(told: Told) -> None:
     ]
     assert cards["Model error"] == [
         f"{dec(model['rms_angle_error_deg'])} deg",
-        f"RMS over time of the angle, and {dec(model['rms_displacement_mm'])} mm of the RMS displacement; the model "
+        f"RMS over time of the rotation, and {dec(model['rms_displacement_mm'])} mm of the RMS displacement; the model "
         f"covers {dec(100.0 * model['covered_share'], 1)} % of the recording",
     ]
     lost = trial["frames"] - trial["measured_frames"] - trial["filled_frames"]
@@ -192,20 +192,25 @@ def test_tables_of_the_joints_type(told: Told) -> None:
         ]
     if two is not None:
         words = told.summary["trial"]["joint"]
-        assert rows_after(told, "Axis")[:2] == [
-            [
-                f"{k}, fixed in the {words[end]}",
-                *(
-                    ", ".join(vec(two[f"axis{k}"][f"{what}"], decimals))
-                    for body in ("proximal", "distal")
-                    for what, decimals in ((f"direction_in_{body}", 4), (f"point_in_{body}_mm", 1))
-                ),
-                dec(two[f"axis{k}"]["cone95_deg"], 3),
-                dec(two[f"axis{k}"]["radius95_mm"], 3),
-                dec(two[f"axis{k}"]["range_deg"], 1),
-                dec(two[f"axis{k}"]["angle_sd_deg"], 3),
-            ]
-            for k, end in ((1, "proximal"), (2, "distal"))
+        axes = [two["axis1"], two["axis2"]]
+        assert rows_after(told, "Of each axis") == [
+            *(
+                [f"{name}, {words[body]}{unit}", *(", ".join(vec(axis[key.format(body)], decimals)) for axis in axes)]
+                for body in ("proximal", "distal")
+                for name, key, decimals, unit in (
+                    ("Direction", "direction_in_{}", 4, ""),
+                    ("Point", "point_in_{}_mm", 1, ", mm"),
+                )
+            ),
+            *(
+                [name, *(dec(axis[key], decimals) for axis in axes)]
+                for name, key, decimals in (
+                    ("95 % cone, deg", "cone95_deg", 3),
+                    ("95 % radius, mm", "radius95_mm", 3),
+                    ("Range, deg", "range_deg", 1),
+                    ("Angle known to (sd), deg", "angle_sd_deg", 3),
+                )
+            ),
         ]
 
 

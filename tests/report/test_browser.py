@@ -8,6 +8,7 @@ import re
 import shutil
 import time
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
@@ -18,6 +19,8 @@ import pytest
 from drawn_trials import drawn_trial
 from PIL import Image
 
+from elbowscrew.report.study import read_study
+from elbowscrew.report.study_page import study_page
 from elbowscrew.report.trial_page import trial_page
 
 playwright = pytest.importorskip("playwright.sync_api")
@@ -234,6 +237,56 @@ def test_without_javascript_tables_and_figures_are_there(open_page: Any, result:
     else:
         assert page.locator("#trials tbody tr").count() == 18
         assert not page.locator("#tools").is_visible()
+        plain = page.locator("#trials tbody tr").all_inner_texts()
+        drawn = open_page(path)
+        assert drawn.locator("#trials tbody tr").all_inner_texts() == plain
+        parts = "[...document.querySelectorAll('#trials tbody tr > *')].map((cell) => cell.innerHTML.trim())"
+        assert [part for part in drawn.evaluate(parts) if "<svg" in part or "href" in part] == [
+            part for part in page_parts(path.read_text(encoding="utf-8")) if "<svg" in part or "href" in part
+        ]
+
+
+def page_parts(html: str) -> list[str]:
+    """Insides of the cells of the table of the trials as they stand in the file, as a browser writes them."""
+    body = html[html.index('id="trials"') :]
+    body = body[body.index("<tbody") : body.index("</tbody")]
+    return [
+        re.sub(r"(<path [^>]*)/>", r"\1></path>", part) for part in re.findall(r"<t[hd][^>]*>(.*?)</t[hd]>", body, re.S)
+    ]
+
+
+@pytest.fixture(scope="module")
+def many(study: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The page of a study of 2000 trials, numbered."""
+    found = read_study(study)
+    one = found.trials[0]
+    numbers = one.values  # noqa: PD011 - of no data frame
+    trials = [replace(one, folder=f"t{k:04d}", values={**numbers, "top": 5000.0 - k}) for k in range(2000)]
+    path = tmp_path_factory.mktemp("many") / "index.html"
+    path.write_text(study_page(replace(found, trials=tuple(trials))), encoding="utf-8")
+    return path
+
+
+def test_rows_of_many_trials_are_drawn_as_they_come_into_view(open_page: Any, many: Path) -> None:
+    page = open_page(many, viewport={"width": 1280, "height": 900})
+    rows = page.locator("#trials tbody th")
+    assert 50 <= rows.count() < 500
+    assert page.locator("#trials").get_attribute("aria-rowcount") == "2001"
+    area = page.locator(".window")
+    tall = area.evaluate("(area) => area.scrollHeight")
+    area.evaluate("(area) => { area.scrollTop = area.scrollHeight; }")
+    page.locator("#trials tbody th", has_text="t1999").wait_for()
+    assert rows.count() < 1000
+    assert page.locator("#trials tr", has_text="t1999").get_attribute("aria-rowindex") == "2001"
+    assert area.evaluate("(area) => area.scrollHeight") == pytest.approx(tall, rel=0.3)
+    page.locator("#trials thead button", has_text="Largest angle").click()
+    assert rows.first.inner_text() == "t1999"
+    page.locator("#filter").fill("t0123")
+    assert rows.all_inner_texts() == ["t0123"]
+    assert page.locator("#count").inner_text() == "1 of 2000 trials"
+    page.locator("#filter").fill("")
+    page.evaluate("window.dispatchEvent(new Event('beforeprint'))")
+    assert rows.count() == 2000
 
 
 @pytest.mark.parametrize("which", ["trial", "study"])
@@ -263,6 +316,24 @@ def test_the_page_of_a_long_trial_is_short_until_it_is_unfolded(open_page: Any, 
     assert page.evaluate(screens) > 9.0
 
 
+def test_the_page_of_two_axes_and_anatomy_is_short_and_nothing_on_it_scrolls_sideways(
+    open_page: Any, tmp_path: Path
+) -> None:
+    (tmp_path / "report.html").write_text(trial_page(drawn_trial("two axes"), tmp_path), encoding="utf-8")
+    page = open_page(tmp_path / "report.html", viewport={"width": 1280, "height": 900})
+    assert page.evaluate("document.documentElement.scrollHeight / window.innerHeight") < 8.0
+    for summary in page.locator("summary").all():
+        summary.click()
+    assert page.evaluate(SIDEWAYS) == []
+
+
+def test_no_table_of_a_study_but_that_of_its_trials_scrolls_sideways(open_page: Any, study: Path) -> None:
+    page = open_page(study / "index.html", viewport={"width": 1280, "height": 900})
+    assert set(page.evaluate(SIDEWAYS)) <= {"Table of the trials"}
+
+
+SIDEWAYS = """[...document.querySelectorAll('.scroll')].filter((part) => part.scrollWidth > part.clientWidth + 1)
+  .map((part) => part.getAttribute('aria-label'))"""
 BROKEN_WORDS = """[...document.querySelectorAll('th, td, dt, dd, h1, h2, h3, caption, label')].flatMap((place) => {
   const texts = document.createTreeWalker(place, NodeFilter.SHOW_TEXT), found = [];
   for (let node = texts.nextNode(); node; node = texts.nextNode()) {
@@ -282,6 +353,13 @@ def test_no_word_is_broken_on_a_phone(open_page: Any, result: Path) -> None:
     for summary in page.locator("summary").all():
         summary.click()
     assert page.evaluate(BROKEN_WORDS) == []
+
+
+@pytest.mark.parametrize("width", [390, 1280])
+def test_axe_finds_nothing_serious_on_a_study_in_the_dark(open_page: Any, study: Path, width: int) -> None:
+    page = open_page(study / "index.html", color_scheme="dark", viewport={"width": width, "height": 900})
+    found = axe.Axe().run(page).response
+    assert [fault["id"] for fault in found["violations"] if fault["impact"] in ("serious", "critical")] == []
 
 
 def test_in_the_dark_the_page_and_the_view_are_dark_and_on_paper_light(open_page: Any, result: Path) -> None:

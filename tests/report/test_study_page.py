@@ -13,6 +13,7 @@ from urllib.parse import unquote
 import numpy as np
 import pytest
 from finished_results import HOSTILE, write_rows
+from read_charts import picture_in
 from sealed import resealed
 
 from elbowscrew import analyze, save_analysis, simulate_trial
@@ -21,11 +22,12 @@ from elbowscrew.cli import main
 from elbowscrew.errors import OutputError, ResultError
 from elbowscrew.report import remake_pages, results_in, write_study_page
 from elbowscrew.report.study import read_study
-from elbowscrew.report.study_page import study_page, thumbnail
+from elbowscrew.report.study_page import study_page
+from elbowscrew.report.trials_table import ROWS_AS_TEXT, thumb_code, thumbnail
 from elbowscrew.results.proof import ProvedFile
 from elbowscrew.results.table_reading import read_columns
 
-STUDY_MOST_BYTES = 10_000_000
+MOST_BYTES_A_TRIAL = 300  # ten thousand trials in 3 MB
 TABLES = ("summary.csv", "failures.csv", "repetitions.csv", "cycles.csv")
 WRITTEN = ("index.html", "repetitions.csv", "cycles.csv")
 
@@ -74,7 +76,7 @@ def test_the_outlier_is_flagged_within_its_condition(study: Path) -> None:
     page = text_of(study)
     (row,) = re.findall(r'<tr><th scope="row"><a href="[^"]+">trial 5</a>.*?</tr>', page)
     assert "Largest angle high" in row
-    assert page.count("Largest angle high") == 1
+    assert page[: page.index("<script")].count("Largest angle high") == 1
     assert "Of studies without an outlier at most 5 % have one flagged" in page
 
 
@@ -190,29 +192,73 @@ def test_the_same_results_give_the_same_bytes(study: Path) -> None:
     assert write_study_page(study).read_text(encoding="utf-8") == before
 
 
-def test_a_thousand_trials_make_a_page_of_less_than_ten_megabytes(study: Path) -> None:
+@pytest.mark.parametrize("named", [True, False], ids=["subjects", "no subjects"])
+def test_a_trial_more_takes_a_few_hundred_bytes(study: Path, named: bool) -> None:
     found = read_study(study)
-    many = [
-        replace(found.trials[k % 18], folder=f"folder {k}/a trial with a rather long name {k}", page=True)
-        for k in range(1000)
+    size = []
+    for count in (600, 1800):
+        trials = [
+            replace(
+                found.trials[k % 18],
+                folder=f"folder {k}/a trial with a rather long name {k}",
+                page=True,
+                factors={"subject": f"S{k // 20}", "condition": ("slow", "fast")[k % 2]} if named else {},
+            )
+            for k in range(count)
+        ]
+        page = study_page(replace(found, trials=tuple(trials), factors=found.factors if named else ()))
+        data = json.loads(re.findall(r'id="data">(.*?)</script>', page, re.DOTALL)[0])
+        assert data["folders"] == [trial.folder for trial in trials]
+        assert len(links(page)) == ROWS_AS_TEXT
+        assert f"only the first {ROWS_AS_TEXT} of {count} trials" in page
+        size.append(len(page.encode()))
+    assert (size[1] - size[0]) / 1200 < MOST_BYTES_A_TRIAL
+    assert size[1] < 1_000_000
+
+
+def test_of_many_trials_the_spread_is_drawn_and_not_each(study: Path) -> None:
+    found = read_study(study)
+    trials = [
+        replace(found.trials[0], folder=f"t{k}", factors={}, values={**found.trials[0].values, "top": 100.0 + k})
+        for k in range(200)
     ]
-    page = study_page(replace(found, trials=tuple(many)))
-    assert len(links(page)) == 1000
-    assert len(page.encode()) < STUDY_MOST_BYTES
+    page = study_page(replace(found, trials=tuple(trials), factors=()))
+    strip = picture_in(page[page.index('aria-label="Chart: Largest angle"') :])
+    assert not [one for one in strip.iter("circle") if one.get("class") == "one"]
+    assert sum(one.get("class") == "many" for one in strip.iter("path")) == 1
+    assert "Spread of the trials: all trials" in page
+    assert "10th to 90th percentile of the trials" in page
 
 
-def test_a_thumbnail_takes_a_few_hundred_bytes_however_long_the_trial() -> None:
+def test_a_thumbnail_takes_some_bytes_however_long_the_trial() -> None:
     time_s = np.linspace(0.0, 100.0, 100_000)
     theta = 60.0 - 60.0 * np.cos(time_s / 10.0)
     theta[500:900] = np.nan
-    drawn = thumbnail(time_s, theta, (0.0, 120.0))
-    assert len(drawn) < 1200
+    code = thumb_code(time_s, theta, (0.0, 120.0))
+    assert len(code) == 66
+    drawn = thumbnail(code)
     heights = [float(y) for y in re.findall(r"[ML][\d.]+ ([\d.]+)", drawn)]
     assert min(heights) == pytest.approx(2.0, abs=0.1)  # the highest angle is at the top
     assert max(heights) == pytest.approx(32.0, abs=0.1)
     along = [float(x) for x in re.findall(r"[ML]([\d.]+) ", drawn)]
-    assert (along[0], along[-1]) == (1.0, 131.0)  # from edge to edge, whatever the clock begins at
-    assert thumbnail(time_s + 250.0, theta, (0.0, 120.0)) == drawn
+    assert (along[0], along[-1]) == (1.0, 98.5)  # from edge to edge, whatever the clock begins at
+    assert thumb_code(time_s + 250.0, theta, (0.0, 120.0)) == code
+    theta[20_000:60_000] = np.nan
+    gappy = thumb_code(time_s, theta, (0.0, 120.0))
+    assert gappy[:12] == code[:12]
+    assert gappy[14:38] == 24 * "."
+    assert thumbnail(gappy).count("M") == 2
+    assert thumb_code(time_s, np.full_like(theta, np.nan), (0.0, 1.0)) == 66 * "."
+    assert thumb_code(np.zeros(1), np.zeros(1), (0.0, 0.0)) == 66 * "0"
+
+
+def test_a_number_that_no_trial_has_makes_no_column(study: Path) -> None:
+    page = text_of(study)
+    assert "Range about the second axis" not in page
+    found = read_study(study)
+    values = [{**trial.values, "second": 20.0 if k == 3 else np.nan} for k, trial in enumerate(found.trials)]
+    trials = tuple(replace(trial, values=one) for trial, one in zip(found.trials, values, strict=True))
+    assert ">Range about the second axis, deg</th>" in study_page(replace(found, trials=trials))
 
 
 def test_the_columns_of_a_batchs_manifest_are_those_between_path_and_frames(result: Path, tmp_path: Path) -> None:

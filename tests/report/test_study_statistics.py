@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import shutil
 from html import unescape
@@ -123,6 +124,84 @@ def test_the_effect_and_the_deviations_that_went_in_come_out(page: str) -> None:
     for row in shown.values():
         assert float(row[5]) == pytest.approx(WITHIN_DEG, rel=0.4)
         assert float(row[4]) == pytest.approx(BETWEEN_DEG, rel=0.6)
+
+
+def test_differences_are_those_of_the_subjects_by_pandas_and_scipy(page: str, frame: pd.DataFrame) -> None:
+    shown = {row[0]: row[1:] for row in rows_of(page, "h-differences")[1:]}
+    assert set(shown) == set(NUMBERS)
+    for name, (words, subjects, mean, sd) in shown.items():
+        column, decimals = NUMBERS[name]
+        unit, fine = 0.5001 * 10.0**-decimals, 0.5001 * 10.0 ** -(decimals + 1)
+        means = frame.pivot_table(index="subject", columns="condition", values=column)
+        off = means["slow"] - means["fast"]
+        assert (words, int(subjects)) == ("slow − fast".replace("−", "-"), 8)
+        paired = stats.ttest_rel(means["slow"], means["fast"]).confidence_interval(0.95)
+        assert numbers_in(mean) == pytest.approx([off.mean(), paired.low, paired.high], abs=unit)
+        assert float(sd) == pytest.approx(off.std(), abs=fine)
+    _, low, high = numbers_in(shown["Largest angle, deg"][2])
+    assert low < -EFFECT_DEG < high  # the effect that went in
+    # Far narrower than of subjects that are not paired: 5 deg between them cancel.
+    assert high - low < 2.0 * stats.t.ppf(0.975, 7) * 1.5 * WITHIN_DEG * np.sqrt(2 / 3 / 8)
+    assert "none is widened for the number of comparisons" in page
+
+
+def test_the_difference_of_the_curves_has_the_band_of_its_subjects(made: Path, page: str) -> None:
+    of_subjects = means_of(made)
+    off = (of_subjects.loc["slow"] - of_subjects.loc["fast"]).to_numpy()
+    part = page[page.index('id="h-differences"') :]
+    chart = Read(picture_in(part))
+    unit = 1.1 * chart.pixel * 0.1
+    (line,) = chart.outline("mean")
+    assert line[:, 1] == pytest.approx(off.mean(axis=0), abs=unit)
+    assert np.stack([one[:, 1] for one in chart.outline("thin")]) == pytest.approx(off, abs=unit)
+    (zero,) = chart.outline("level")
+    assert zero == pytest.approx(np.array([[0.0, 0.0], [100.0, 0.0]]), abs=0.05)
+    (band,) = chart.outline("band-spread")
+    rng = np.random.default_rng(2010)
+    times = rng.multinomial(8, np.full(8, 1 / 8), size=2000)
+    values = off[:, 50]
+    samples = [np.repeat(values, count) for count in times]
+    ratios = [
+        abs(one.mean() - values.mean()) / (one.std(ddof=1) / np.sqrt(8)) if np.ptp(one) > 1e-9 else 0.0
+        for one in samples
+    ]
+    half = np.quantile(ratios, 0.95) * stats.sem(values)
+    at = band[np.abs(band[:, 0] - 50) < 0.1, 1]
+    assert [at.min(), at.max()] == pytest.approx([values.mean() - half, values.mean() + half], abs=unit)
+    assert "Mean of 8 subjects with both, 63 trials." in part
+    notes = re.findall(r"<metadata>(.*?)</metadata>", part, re.DOTALL)
+    assert [name for name, *_ in json.loads(unescape(notes[0]))["series"] if name.startswith("S")] == [
+        f"S{k}" for k in range(1, 9)
+    ]
+
+
+def test_of_few_subjects_each_difference_is_told(few: Path, frame: pd.DataFrame) -> None:
+    page = text_of(few)
+    rows = {row[0]: row for row in rows_of(page, "h-differences")}
+    means = frame.pivot_table(index="subject", columns="condition", values="top_deg").loc[["S1", "S2", "S3"]]
+    off = means["slow"] - means["fast"]
+    told = re.findall(r"(S\d) (-?[\d.]+)", rows["Largest angle, deg"][-1])
+    assert [name for name, _ in told] == list(off.index)
+    assert [float(value) for _, value in told] == pytest.approx(off.tolist(), abs=0.051)
+    part = page[page.index('id="h-differences"') :]
+    chart = Read(picture_in(part))
+    assert not chart.outline("band-spread")
+    assert len(chart.outline("thin")) == 3
+    assert "Mean of 3 subjects with both, 21 trials; too few subjects for a band." in part
+
+
+def test_what_cannot_be_paired_is_not_compared(template: Path, trials: list[Made], tmp_path: Path) -> None:
+    apart = [one for one in trials if (one.condition == "fast") == (one.subject < "S3")][:9]
+    chosen = [one for one in apart if one.condition == "fast"][:3] + [one for one in apart if one.condition == "slow"][
+        :3
+    ]
+    assert len({one.condition for one in chosen}) == 2
+    write_made(template, tmp_path / "s", chosen)
+    write_study_page(tmp_path / "s")
+    page = text_of(tmp_path / "s")
+    part = page[page.index('id="h-differences"') :]
+    assert "nothing can be paired" in part[: part.index("</section>")]
+    assert "<table" not in part[: part.index("</section>")]
 
 
 def test_the_long_tables_are_those_of_the_trials_with_their_keys(made: Path, trials: list[Made]) -> None:
@@ -268,6 +347,7 @@ def test_without_subjects_nothing_is_said_of_them(
     page = text_of(tmp_path / "s")
     assert "SD between subjects" not in page
     assert page.count("No subject is named") == 3
+    assert "no subject that is named has trials under two of them" in page
     counts = {name: sum(one.condition == name for one in trials[:9]) for name in ("fast", "slow")}
     assert all(f"{name}: mean of {count} trials." in page for name, count in counts.items())
     assert "band-group" not in page[page.index("<body") :]

@@ -25,8 +25,10 @@ from elbowscrew.model.summary_types import (
 )
 from elbowscrew.report.measures import Measure
 from elbowscrew.report.study import Failure
+from elbowscrew.report.study_differences import DifferenceRow, Differences
 from elbowscrew.report.study_groups import AxisRow, NumberRow
-from elbowscrew.report.study_page import Factor, TrialRow
+from elbowscrew.report.study_page import Factor
+from elbowscrew.report.trials_table import TrialRow
 
 TYPES: dict[str, Any] = {
     "summary": Summary,
@@ -42,6 +44,8 @@ TYPES: dict[str, Any] = {
 STUDY_TYPES: dict[str, Any] = {
     "row": TrialRow,
     "number": NumberRow,
+    "differences": Differences,
+    "difference": DifferenceRow,
     "axis": AxisRow,
     "factor": Factor,
     "column": Measure,
@@ -112,7 +116,8 @@ def test_every_template_is_looked_at(root: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "key", ["row.outlier", "column.decimals", "factor.levels", "number.found.icc", "axis.point_sd"]
+    "key",
+    ["row.outlier", "column.decimals", "factor.levels", "number.found.icc", "difference.found.low", "axis.point_sd"],
 )
 def test_a_misspelled_key_of_a_study_is_seen(root: Path, key: str) -> None:
     source = template(root, "study.html")

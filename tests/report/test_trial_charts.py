@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from drawn_trials import drawn_trial
 from read_charts import Read, keys_in, numbers, panels_in, picture_in
 
 from elbowscrew.choices import METHOD_LABELS
@@ -24,6 +25,7 @@ from elbowscrew.report.trial_charts import (
     theta_chart,
 )
 from elbowscrew.results.trial_views import view_of_result
+from elbowscrew.view.long_trials import stretch_of
 from elbowscrew.view.trial_view import TrialView
 
 TRACKING = [("rect", "fill-lost", "not tracked"), ("rect", "fill-filled", "filled in")]
@@ -92,6 +94,40 @@ def test_angle_over_time(trial: TrialView) -> None:
     top = int(np.nanargmax(theta))
     assert f"over {trial.time_s[-1] - trial.time_s[0]:.2f} seconds" in text
     assert f"{theta[top]:.1f} degrees, at frame {trial.frame[top]}." in text
+
+
+def test_a_long_trial_has_an_overview_and_a_stretch() -> None:
+    trial = drawn_trial("long")
+    theta = np.degrees(trial.angle)
+    stretch = stretch_of(trial)
+    assert stretch is not None
+    rows = slice(stretch.first, stretch.end)
+    html = theta_chart(trial)
+    above, below = panels_in(html)
+    assert [above.words, below.words] == [["Time (s)", "θ (deg)"], ["Time (s)", "Angle θ (deg)"]]
+    assert_band(above, "band-spread", theta, theta)
+    (mark,) = above.every("rect", "fill-stretch")
+    ends = [float(mark.get("x", "")), float(mark.get("x", "")) + float(mark.get("width", ""))]
+    assert np.polyval(above.x, ends) == pytest.approx(trial.time_s[[rows.start, rows.stop - 1]], abs=2 * above.x[0])
+    for panel, look in ((above, "thin-measured"), (below, "measured")):
+        points = np.concatenate(panel.outline(look))
+        times = trial.time_s[[rows.start, rows.stop - 1]]
+        assert [points[:, 0].min(), points[:, 0].max()] == pytest.approx(times, abs=2 * panel.x[0])
+        assert points[:, 1].max() == pytest.approx(np.nanmax(theta[rows]), abs=panel.pixel)
+    inside = (trial.keyframes.row >= rows.start) & (trial.keyframes.row < rows.stop)
+    known = np.isfinite(theta[trial.keyframes.row])
+    assert len(below.dots("keyframe")) == int((inside & known).sum())
+    assert f"below, of {stretch.told}, measured and modeled" in description(html)[1]
+    errors = error_chart(trial)
+    for panel, values in zip(
+        panels_in(errors), (np.degrees(trial.angle_error), 1000.0 * trial.rms_displacement), strict=True
+    ):
+        assert_band(panel, "band-spread", values, values)
+        (middle,) = panel.outline("measured")
+        assert len(middle) < 200  # no block
+        assert np.nanmin(values) <= middle[:, 1].min() + panel.pixel
+        assert middle[:, 1].max() <= np.nanmax(values) + panel.pixel
+    assert f"over time, of {stretch.told}." in description(euler_chart(trial))[1]
 
 
 def test_all_of_the_curves_is_in_sight(trial: TrialView) -> None:

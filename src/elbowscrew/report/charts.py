@@ -108,11 +108,11 @@ class Chart:
         _, top, _, bottom = self._inner
         return bottom - (values - self._y[0]) * (bottom - top) / (self._y[1] - self._y[0])
 
-    def line(self, x: Float, y: Float, look: str, label: str = "") -> None:
-        """Draw a curve, thinned to what the pixels can show."""
+    def line(self, x: Float, y: Float, look: str, label: str = "", *, name: str = "") -> None:
+        """Draw a curve, thinned to what the pixels can show; `name` is its own among those of one label."""
         rows = drawn_rows(y, keep_gaps=True, parts=int(self._inner[2] - self._inner[0]))
         self._drawn.append(f'<path class="{look}" d="{path_of(self.x(x[rows]), self.y(y[rows]))}"/>')
-        self._keep(label or look, x[rows], y[rows])
+        self._keep(name or label or look, x[rows], y[rows])
         self._note(look, label)
 
     def band(self, x: Float, low: Float, high: Float, look: str, label: str = "") -> None:

@@ -10,16 +10,19 @@ import numpy as np
 from markupsafe import Markup
 
 from elbowscrew.geometry.arrays import Bool, Float
-from elbowscrew.report.charts import picture, range_of, tick_text, ticks_between
+from elbowscrew.report.charts import path_of, picture, range_of, tick_text, ticks_between
 
 _LEAST: Final = 5
 _WIDTH: Final = 640.0
 _ROW: Final = 40.0
 _LONGEST: Final = 22
+MOST_POINTS: Final = 150
+"""Trials of a group that are drawn one by one; of more it is how many there are of each value."""
+_BINS: Final = 60
 
 
 def strip_chart(name: str, title: str, unit: str, groups: Mapping[str, tuple[Float, Sequence[str], Bool]]) -> Markup:
-    """Draw every trial as a point, a strip for each group, over a box of its quartiles.
+    """Draw every trial as a point, or many as a histogram, a strip for each group, over a box of its quartiles.
 
     Parameters
     ----------
@@ -51,18 +54,30 @@ def strip_chart(name: str, title: str, unit: str, groups: Mapping[str, tuple[Flo
         shown = group if len(group) <= _LONGEST else group[: _LONGEST - 1] + "…"
         parts.append(f'<text x="{left - 10:g}" y="{middle + 5:g}" text-anchor="end">{escape(shown)}</text>')
         known = numbers[np.isfinite(numbers)]
+        many = known.size > MOST_POINTS
+        if many:
+            parts.append(_histogram(known, middle, along, (low, high)))
         if known.size >= _LEAST:
             parts.append(_box(known, middle, along))
         # Points side by side, by a sequence that spreads evenly and is the same every time.
         spread = (np.arange(numbers.size) * 0.618034 % 1.0 - 0.5) * 0.5 * _ROW
         for value, offset, outlying, trial in zip(numbers.tolist(), spread.tolist(), far.tolist(), names, strict=True):
-            if value == value:
+            if value == value and (outlying or not many):
                 look = "far" if outlying else "one"
                 told = f"<title>{escape(trial)}</title>" if outlying else ""
                 tag = f'<circle class="{look}" cx="{along(value):.1f}" cy="{middle + offset:.1f}" r="3"'
                 parts.append(f"{tag}>{told}</circle>" if told else f"{tag}/>")
     text = f"{title} of every trial" + (f" in {len(groups)} groups" if len(groups) > 1 else "") + ", outliers marked."
     return picture(name, title, text, _WIDTH, bottom + 50.0, parts)
+
+
+def _histogram(known: Float, middle: float, along: Callable[[float], float], span: tuple[float, float]) -> str:
+    """Outline of how many values there are, alike above and below the middle of the strip."""
+    counts, edges = np.histogram(known, _BINS, span)
+    up = np.repeat(0.44 * _ROW * counts / counts.max(), 2)
+    x = np.repeat([along(float(edge)) for edge in edges], 2)[1:-1]
+    y = np.concatenate([middle - up, middle + up[::-1]])
+    return f'<path class="many" d="{path_of(np.concatenate([x, x[::-1]]), y)}Z"/>'
 
 
 def _box(known: Float, middle: float, along: Callable[[float], float]) -> str:

@@ -15,6 +15,8 @@ from elbowscrew.report.study_groups import Group, subjects_or_trials
 
 _LOOKS: Final = 6
 _NAMED: Final = 5
+_MOST_LINES: Final = 30
+_MIDDLE: Final = (10.0, 90.0)
 _SIZE: Final = (640.0, 300.0)
 
 
@@ -78,32 +80,60 @@ def left_out_text(left_out: Sequence[str]) -> str:
     )
 
 
+def difference_chart(name: str, words: str, curve: GroupCurve) -> CurveChart:
+    """Draw the mean of the subjects' differences of two conditions, with its band, and each subject's."""
+    title = f"Difference: {words}"
+    chart = _chart(name, title, {words: curve}, "Difference of the angle", "Difference of θ (deg)")
+    chart.segment((0.0, 100.0), (0.0, 0.0), "level")
+    told = _mean_of(chart, curve, "subject", "mean difference")
+    count = len(curve.subjects)
+    few = "; too few subjects for a band" if curve.low is None else ""
+    text = f"Mean of {count} subject{'s' if count > 1 else ''} with both, {curve.trials} trials{few}{told}"
+    return CurveChart(title, chart.svg(), text)
+
+
 def _together(name: str, title: str, curves: Mapping[str, GroupCurve], by_subject: bool) -> CurveChart:
     chart = _chart(name, title, curves)
     for k, (group, curve) in enumerate(curves.items()):
         if curve.low is not None and curve.high is not None:
             chart.band(PERCENT, np.degrees(curve.low), np.degrees(curve.high), f"band-group{k}", f"{group}: 95 %")
     for k, (group, curve) in enumerate(curves.items()):
-        if curve.low is None:
+        if curve.low is None and len(curve.subjects) <= _MOST_LINES:
             label = f"{group}: {'subjects' if by_subject else 'trials'}"
-            for one in curve.of_subjects:
-                chart.line(PERCENT, np.degrees(one), f"thin group{k}", label)
+            for who, one in zip(curve.subjects, curve.of_subjects, strict=True):
+                chart.line(PERCENT, np.degrees(one), f"thin group{k}", label, name=f"{group}: {who}")
         chart.line(PERCENT, np.degrees(curve.mean), f"mean group{k}", group)
     return CurveChart(title, chart.svg(), " ".join(_told(group, curve, by_subject) for group, curve in curves.items()))
 
 
 def _alone(name: str, group: str, curve: GroupCurve, by_subject: bool, curves: Mapping[str, GroupCurve]) -> CurveChart:
-    title = f"Each {'subject' if by_subject else 'trial'}: {group}"
+    one = "subject" if by_subject else "trial"
+    many = len(curve.subjects) > _MOST_LINES
+    title = f"{'Spread of the ' + one + 's' if many else 'Each ' + one}: {group}"
     chart = _chart(name, title, curves)
+    told = _mean_of(chart, curve, one, "mean")
+    return CurveChart(title, chart.svg(), _told(group, curve, by_subject).removesuffix(".") + told)
+
+
+def _mean_of(chart: Chart, curve: GroupCurve, one: str, mean: str) -> str:
+    """Draw a mean over what it is of, and say so where that is too much for lines."""
+    told = "."
+    if len(curve.subjects) > _MOST_LINES:
+        low, high = np.percentile(np.degrees(curve.of_subjects), _MIDDLE, axis=0)
+        chart.band(PERCENT, low, high, "band-middle", f"10th to 90th percentile of the {one}s")
+        told = "; light: at each percent, between the 10th and the 90th percentile of these."
     if curve.low is not None and curve.high is not None:
-        chart.band(PERCENT, np.degrees(curve.low), np.degrees(curve.high), "band-spread", "mean, 95 %")
-    for one in curve.of_subjects:
-        chart.line(PERCENT, np.degrees(one), "thin", "subjects" if by_subject else "trials")
-    chart.line(PERCENT, np.degrees(curve.mean), "mean", "mean")
-    return CurveChart(title, chart.svg(), _told(group, curve, by_subject))
+        chart.band(PERCENT, np.degrees(curve.low), np.degrees(curve.high), "band-spread", f"{mean}, 95 %")
+    if len(curve.subjects) <= _MOST_LINES:
+        for who, line in zip(curve.subjects, curve.of_subjects, strict=True):
+            chart.line(PERCENT, np.degrees(line), "thin", f"{one}s", name=who)
+    chart.line(PERCENT, np.degrees(curve.mean), "mean", mean)
+    return told
 
 
-def _chart(name: str, title: str, curves: Mapping[str, GroupCurve]) -> Chart:
+def _chart(
+    name: str, title: str, curves: Mapping[str, GroupCurve], what: str = "Angle", label: str = "θ (deg)"
+) -> Chart:
     """Begin a chart whose scale holds all curves of a joint, so that charts can be compared."""
     ends = [
         np.degrees(part)
@@ -111,14 +141,15 @@ def _chart(name: str, title: str, curves: Mapping[str, GroupCurve]) -> Chart:
         for part in (curve.of_subjects.ravel(), curve.low, curve.high)
         if part is not None
     ]
+    ends += [np.zeros(1)] if what != "Angle" else []
     return Chart(
         name,
         title,
-        "Angle over the time of the cycle, from 0 to 100 %.",
+        f"{what} over the time of the cycle, from 0 to 100 %.",
         x_range=(0.0, 100.0),
         y_range=range_of(*ends),
         x_label="Time of the cycle (%)",
-        y_label="θ (deg)",
+        y_label=label,
         size=_SIZE,
     )
 

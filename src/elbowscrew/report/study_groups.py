@@ -20,11 +20,12 @@ _JOINT: Final = "joint"
 
 
 class Group(NamedTuple):
-    """Trials of one joint under one condition: their rows in the study."""
+    """Trials of one joint under one condition, `level`, empty where nothing says it: their rows in the study."""
 
     name: str
     joint: str
     rows: list[int]
+    level: str = ""
 
 
 class NumberRow(TypedDict):
@@ -65,9 +66,10 @@ def groups_of(study: Study, trials: Sequence[StudyTrial]) -> tuple[list[Group], 
     found: dict[str, Group] = {}
     for k, trial in enumerate(trials):
         words = [trial.joint] if several else []
-        words += [] if factor is None else [trial.factors.get(factor, "") or "–"]
+        level = "" if factor is None else trial.factors.get(factor, "")
+        words += [] if factor is None else [level or "–"]
         name = ", ".join(words) or _ALL
-        found.setdefault(name, Group(name, trial.joint, [])).rows.append(k)
+        found.setdefault(name, Group(name, trial.joint, [], level)).rows.append(k)
     grouped_by = " and ".join(name for name in (_JOINT * several, factor) if name) or None
     return [found[name] for name in sorted(found)], grouped_by
 

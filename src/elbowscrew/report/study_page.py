@@ -5,40 +5,25 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Final, NamedTuple, TypedDict
-from urllib.parse import quote
 
 import numpy as np
 from markupsafe import Markup
 
-from elbowscrew.geometry.arrays import Float
 from elbowscrew.group.curves import LEAST_FOR_BAND
 from elbowscrew.group.outliers import FALSE_ALARMS, LEAST, Outliers
-from elbowscrew.report.charts import path_of
-from elbowscrew.report.distributions import strip_chart
-from elbowscrew.report.measures import COLUMNS, MEASURES
+from elbowscrew.report.distributions import MOST_POINTS, strip_chart
+from elbowscrew.report.measures import MEASURES
 from elbowscrew.report.pages import INDEX, MARK, render
 from elbowscrew.report.study import Failure, Study, StudyTrial, read_study
 from elbowscrew.report.study_curves import curve_charts, curves_of, left_out_text
+from elbowscrew.report.study_differences import MOST_COMPARED, differences_of
 from elbowscrew.report.study_groups import Group, axis_rows, groups_of, number_rows, outlying, values_of
 from elbowscrew.report.study_tables import STUDY_TABLES, TABLE_MARK, study_tables
+from elbowscrew.report.trials_table import marks_of, shown_columns, table_data, table_rows
 from elbowscrew.results.staging import write_files
-from elbowscrew.view.decimation import drawn_rows
 
-_THUMB: Final = (132.0, 34.0)
-_THUMB_BUCKETS: Final = 40
 _MOST_STRIPS: Final = 24
-
-
-class TrialRow(TypedDict):
-    """What the table shows of a trial: the numbers of `COLUMNS` by their keys, NaN where not known."""
-
-    folder: str
-    link: str | None
-    thumb: Markup
-    factors: list[tuple[str, str]]
-    values: Mapping[str, float]
-    warnings: Sequence[str]
-    outlier: list[str]
+_SCRIPTS: Final = ("page.js", "study.js")
 
 
 class WrittenStudy(NamedTuple):
@@ -88,17 +73,17 @@ def study_page(study: Study, tables: Sequence[str] = ()) -> str:
         HTML that needs no other file but the trials' pages it links to. The same results give the same bytes.
     """
     trials = study.trials
-    scale = _scale(trials)
-    rows = [_row(trial, scale) for trial in trials]
     groups, grouped_by = groups_of(study, trials)
     found = outlying(trials, groups)
-    _mark_outliers(rows, trials, found)
+    marks = marks_of(trials, found)
     curves = curves_of(trials, groups)
+    differences = differences_of(trials, groups)
     subjects = {trial.subject for trial in trials} - {""}
     content = {
         "name": study.name,
         "tables": tables,
-        "rows": rows,
+        "count": len(trials),
+        "rows": table_rows(trials, marks),
         "factors": [Factor(name=name, levels=_levels(trials, name)) for name in study.factors],
         "group_name": grouped_by,
         "subjects": len(subjects),
@@ -106,60 +91,21 @@ def study_page(study: Study, tables: Sequence[str] = ()) -> str:
         "curves": curve_charts(curves, groups),
         "left_out": left_out_text(curves.left_out),
         "least_for_band": LEAST_FOR_BAND,
+        "differences": differences,
+        "most_compared": MOST_COMPARED,
         "axes": axis_rows(trials, groups),
-        "columns": COLUMNS,
+        "columns": shown_columns(trials),
         "charts": _charts(trials, groups if len(groups) <= _MOST_STRIPS else _one_group(groups), found),
         "failures": [*study.failures, *study.unread],
         "others": study.others,
-        "outliers": sum(bool(row["outlier"]) for row in rows),
-        "warned": sum(bool(row["warnings"]) for row in rows),
+        "outliers": sum(bool(outlier) for outlier, _ in marks),
+        "warned": sum(bool(warnings) for _, warnings in marks),
         "false_alarms": FALSE_ALARMS,
         "least": LEAST,
+        "most_points": MOST_POINTS,
     }
-    return render("study.html", styles=("page.css", "study.css"), scripts=("study.js",), data={}, content=content)
-
-
-def thumbnail(time_s: Float, theta: Float, scale: tuple[float, float]) -> Markup:
-    """Draw an angle over time in a few hundred bytes; times are the trial's own, angles to a common scale."""
-    width, height = _THUMB
-    rows = drawn_rows(theta, keep_gaps=True, parts=_THUMB_BUCKETS)
-    span = float(time_s[-1] - time_s[0]) or 1.0
-    x = np.round(1.0 + (width - 2.0) * (time_s[rows] - time_s[0]) / span)
-    y = np.round(height - 2.0 - (height - 4.0) * (theta[rows] - scale[0]) / ((scale[1] - scale[0]) or 1.0), 1)
-    shape = path_of(x, y).replace(".0", "")
-    return Markup(  # noqa: S704 - numbers only
-        f'<svg class="thumb" width="{width:g}" height="{height:g}" aria-hidden="true" focusable="false">'
-        f'<path d="{shape}"/></svg>'
-    )
-
-
-def _scale(trials: Sequence[StudyTrial]) -> tuple[float, float]:
-    known = [trial.theta[np.isfinite(trial.theta)] for trial in trials]
-    known = [theta for theta in known if theta.size]
-    if not known:
-        return 0.0, 1.0
-    return min(float(theta.min()) for theta in known), max(float(theta.max()) for theta in known)
-
-
-def _row(trial: StudyTrial, scale: tuple[float, float]) -> TrialRow:
-    return {
-        "folder": trial.folder,
-        "link": quote(f"{trial.folder}/report.html", safe="/") if trial.page else None,
-        "thumb": thumbnail(trial.time_s, trial.theta, scale),
-        "factors": list(trial.factors.items()),
-        "values": trial.values,
-        "warnings": trial.warnings,
-        "outlier": [],
-    }
-
-
-def _mark_outliers(rows: list[TrialRow], trials: Sequence[StudyTrial], found: Mapping[str, Outliers]) -> None:
-    for measure in MEASURES:
-        of = found[measure.key]
-        for sides, whose in ((of.trial, False), (of.subject, True)):
-            for k in np.flatnonzero(sides).tolist():
-                text = f"{measure.title} {'high' if sides[k] > 0 else 'low'}"
-                rows[k]["outlier"].append(f"{trials[k].subject}: {text}" if whose else text)
+    data = table_data(trials, study.factors, marks)
+    return render("study.html", styles=("page.css", "study.css"), scripts=_SCRIPTS, data=data, content=content)
 
 
 def _one_group(groups: Sequence[Group]) -> list[Group]:

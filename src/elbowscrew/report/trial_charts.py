@@ -10,6 +10,7 @@ from markupsafe import Markup
 from numpy.typing import NDArray
 
 from elbowscrew.choices import METHOD_LABELS
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.sensitivity import NORMAL_95
 from elbowscrew.motion.movements.phases import runs_of
 from elbowscrew.report.charts import (
@@ -24,47 +25,82 @@ from elbowscrew.report.charts import (
     ticks_between,
 )
 from elbowscrew.report.scene import WIDEST
+from elbowscrew.view.long_trials import Stretch, envelope, shown_part, stretch_of
 from elbowscrew.view.scene import directions_across, joint_bundle
 from elbowscrew.view.trial_view import TrialView
 
+_TALL: Final = 340.0
+_ABOVE, _LOWER = 165.0, 300.0  # of a long trial
+_PARTS: Final = "range of each part of the recording"
 _ASPECT: Final = (0.5 * WIDTH - 78.0) / (0.42 * WIDTH - 56.0)  # of the inner part of a panel of the axes
 
 
 def theta_chart(trial: TrialView) -> Markup:
-    """Measured and modeled angle over time, with keyframes, movements and what was lost or filled in."""
-    angle = np.degrees(trial.angle)
+    """Measured and modeled angle over time, with keyframes, movements and what was lost or filled in.
+
+    Of a long trial what the angle spans all through, and below it the stretch that stands for the others.
+    """
+    shown, stretch = shown_part(trial)
+    height = _TALL if stretch is None else _LOWER
+    angle = np.degrees(shown.angle)
     motion = trial.summary["motion"]
     chart = _over_time(
-        trial,
-        "theta",
-        "Angle over time",
-        f"Measured and modeled rotation angle over {trial.time_s[-1] - trial.time_s[0]:.2f} seconds; it is largest, "
-        f"{motion['theta_max_deg']:.1f} degrees, at frame {motion['theta_max_frame']}.",
-        range_of(angle, np.degrees(trial.modeled_angle)),
-        "Angle θ (deg)",
+        shown, "theta", "", "", range_of(angle, np.degrees(shown.modeled_angle)), "Angle θ (deg)", height=height
     )
-    time_s, phases = trial.time_s, trial.phases
+    time_s, phases = shown.time_s, shown.phases
     chart.spans(zip(time_s[phases.onset_rows], time_s[phases.offset_rows], strict=True), "fill-moving", "moving")
-    _mark_tracking(chart, trial)
-    _mark_interval(chart, trial)
+    _mark_tracking(chart, shown)
+    _mark_interval(chart, shown)
     chart.line(time_s, angle, "measured", "measured")
-    chart.line(time_s, np.degrees(trial.modeled_angle), "modeled", model_name(trial))
-    rows = trial.keyframes.row
+    chart.line(time_s, np.degrees(shown.modeled_angle), "modeled", model_name(trial))
+    rows = shown.keyframes.row
     chart.points(time_s[rows], angle[rows], "keyframe", "keyframes")
-    return chart.svg()
+    text = (
+        f"Measured and modeled rotation angle over {trial.time_s[-1] - trial.time_s[0]:.2f} seconds; it is largest, "
+        f"{motion['theta_max_deg']:.1f} degrees, at frame {motion['theta_max_frame']}."
+    )
+    if stretch is None:
+        return chart.keys() + picture("theta", "Angle over time", text, WIDTH, height, [chart.panel()])
+    above = _overview(trial, stretch)
+    text += f" Above, what it spans all through; below, of {stretch.told}, measured and modeled."
+    panels = [above.panel(), chart.panel(0.0, _ABOVE)]
+    return above.keys() + chart.keys() + picture("theta", "Angle over time", text, WIDTH, height + _ABOVE, panels)
+
+
+def _overview(trial: TrialView, stretch: Stretch) -> Chart:
+    """What the angle spans all through a long trial, and where the stretch is that is drawn in full."""
+    angle, rows = np.degrees(trial.angle), slice(stretch.first, stretch.end)
+    chart = _over_time(trial, "overview", "", "", range_of(angle), "θ (deg)", height=_ABOVE - 5.0)
+    found = envelope(trial, angle)
+    chart.band(found.time_s, found.low, found.high, "band-spread", _PARTS)
+    first, last = trial.time_s[[stretch.first, stretch.end - 1]].tolist()
+    chart.spans([(first, last)], "fill-stretch", "drawn in full below")
+    chart.line(trial.time_s[rows], angle[rows], "thin-measured", name="measured")
+    return chart
+
+
+def _span(chart: Chart, trial: TrialView, values: Float) -> None:
+    """Draw the range and the median of each part of a long trial."""
+    found = envelope(trial, values)
+    chart.band(found.time_s, found.low, found.high, "band-spread", _PARTS)
+    chart.line(found.time_s, found.middle, "measured", "median of each part")
 
 
 def error_chart(trial: TrialView) -> Markup:
-    """Angle error and RMS displacement of the model over time, one above the other."""
+    """Angle error and RMS displacement of the model over time, one above the other; of a long trial their ranges."""
     panels: list[str] = []
     keys = Markup()
+    is_long = stretch_of(trial) is not None
     errors = [(np.degrees(trial.angle_error), "Angle error", "deg")]
     if trial.located:
         errors.append((1000.0 * trial.rms_displacement, "RMS displacement", "mm"))
     for k, (values, label, unit) in enumerate(errors):
         chart = _over_time(trial, f"error{k}", "", "", range_of(values, zero=True), f"{label} ({unit})", height=230.0)
-        _mark_tracking(chart, trial)
-        chart.line(trial.time_s, values, "measured", "model against measurement")
+        if is_long:
+            _span(chart, trial, values)
+        else:
+            _mark_tracking(chart, trial)
+            chart.line(trial.time_s, values, "measured", "model against measurement")
         if np.isfinite(values).any():
             level = float(np.sqrt(np.nanmean(values**2)))
             chart.segment((trial.time_s[0], trial.time_s[-1]), (level, level), "level", label="RMS")
@@ -77,13 +113,14 @@ def error_chart(trial: TrialView) -> Markup:
 
 
 def euler_chart(trial: TrialView) -> Markup:
-    """Measured and modeled e0..e3 over time, four panels."""
-    measured, modeled = trial.euler_parameters, trial.modeled_euler_parameters
+    """Measured and modeled e0..e3 over time, four panels; of a long trial in its stretch."""
+    shown, stretch = shown_part(trial)
+    measured, modeled = shown.euler_parameters, shown.modeled_euler_parameters
     panels = []
     keys = Markup()
     for k in range(4):
         chart = _over_time(
-            trial,
+            shown,
             f"euler{k}",
             "",
             "",
@@ -92,14 +129,14 @@ def euler_chart(trial: TrialView) -> Markup:
             width=0.5 * WIDTH,
             height=230.0,
         )
-        _mark_tracking(chart, trial)
-        chart.line(trial.time_s, measured[:, k], "measured", "measured")
-        chart.line(trial.time_s, modeled[:, k], "modeled", "modeled")
-        rows = trial.keyframes.row
-        chart.points(trial.time_s[rows], measured[rows, k], "keyframe", "keyframes", radius=3.0)
+        _mark_tracking(chart, shown)
+        chart.line(shown.time_s, measured[:, k], "measured", "measured")
+        chart.line(shown.time_s, modeled[:, k], "modeled", "modeled")
+        rows = shown.keyframes.row
+        chart.points(shown.time_s[rows], measured[rows, k], "keyframe", "keyframes", radius=3.0)
         panels.append(chart.panel(0.5 * WIDTH * (k % 2), 235.0 * (k // 2)))
         keys = chart.keys()
-    text = "e0 to e3, measured and modeled, over time."
+    text = f"e0 to e3, measured and modeled, over time{'' if stretch is None else f', of {stretch.told}'}."
     return keys + picture("euler", "Euler parameters over time", text, WIDTH, 465.0, panels)
 
 
@@ -180,7 +217,7 @@ def repetition_chart(curve: Mapping[str, NDArray[Any]], count: int) -> Markup:
         y_range=range_of(mean - sd, mean + sd),
         x_label="Time of the cycle (%)",
         y_label="Angle θ (deg)",
-        size=(WIDTH, 280.0),
+        size=(WIDTH, 250.0),
     )
     chart.band(curve["percent"], mean - sd, mean + sd, "band-known", "± standard deviation")
     chart.line(curve["percent"], mean, "measured", f"mean of {count} repetitions")
@@ -202,7 +239,7 @@ def _over_time(
     label: str,
     *,
     width: float = WIDTH,
-    height: float = 340.0,
+    height: float = _TALL,
 ) -> Chart:
     time_s = trial.time_s
     return Chart(

@@ -41,6 +41,7 @@ from elbowscrew.results.summary_reading import SUMMARY
 from elbowscrew.results.trial_views import view_of_proved
 from elbowscrew.settings import SETTINGS, Settings
 from elbowscrew.view.figure_names import FIGURE_ENTRIES, caption_file
+from elbowscrew.view.long_trials import stretch_of
 from elbowscrew.view.trial_view import TrialView
 
 _SCRIPTS: Final = ("page.js", "trial.js")
@@ -126,6 +127,7 @@ def trial_page(trial: TrialView, folder: Path, *, place: Path | None = None) -> 
         "axis_sd_deg": trial.settings.axis_sd_deg,
         "long_table": _LONG_TABLE,
         "hardly_deg": _HARDLY_DEG,
+        "stretch": stretch_of(trial),
         "theta_chart": theta_chart(trial),
         "axis_chart": axis_chart(trial) if trial.located else None,
         "error_chart": error_chart(trial),

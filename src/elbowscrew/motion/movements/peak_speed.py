@@ -161,11 +161,12 @@ def speed_doubts(quat: Float, elapsed: Float, cycles: Cycles, repetitions: Repet
     if not off:
         return ()
     share, told, found = max(off, key=lambda one: one[0])
+    sd = f" (sd {np.degrees(found.sd):.2g})" if np.isfinite(found.sd) else ""
     strokes = "1 stroke" if len(off) == 1 else f"{len(off)} strokes"
     message = (
         f"the highest speed of {strokes} is off by more than {100.0 * _TOLD_SHARE:.0f} %, by {100.0 * share:.0f} % at "
-        f"worst: {np.degrees(told):.4g} deg/s by the filter, {np.degrees(found.speed):.4g} (sd "
-        f"{np.degrees(found.sd):.2g}) by a local fit to the poses; a filter overshoots where a motion sets in or turns "
+        f"worst: {np.degrees(told):.4g} deg/s by the filter, {np.degrees(found.speed):.4g}{sd} "
+        "by a local fit to the poses; a filter overshoots where a motion sets in or turns "
         "at once, smooths what is faster than its cut-off, and leaves the noise below it (--lowpass HZ sets it)"
     )
     return (QualityWarning(code="speeds-off", message=message, count=len(off)),)

@@ -34,8 +34,9 @@ const page = (() => {
     link.click();
     window.setTimeout(() => URL.revokeObjectURL(link.href), 1000);
   };
+  const SVG = document.querySelector("svg").namespaceURI;
   const element = (name, attributes, text) => {
-    const made = document.createElementNS("http://www.w3.org/2000/svg", name);
+    const made = document.createElementNS(SVG, name);
     Object.entries(attributes).forEach(([key, value]) => made.setAttribute(key, value));
     if (text !== undefined) made.textContent = text;
     return made;
@@ -88,14 +89,17 @@ const page = (() => {
   };
   const brief = (value) => String(Number(value.toPrecision(5))).replace("-", "−");
   const NEAR = 4; // pixels of the chart
+  const MOST_VALUES = 10;
   const valuesAt = (told, wanted) => {
     const [, low, high] = told.along;
     const near = (NEAR * (high - low)) / (told.box[2] - told.box[0]);
-    return told.series.flatMap(([name, x, y]) => {
+    const found = told.series.flatMap(([name, x, y]) => {
       const k = x.length ? nearest(x, wanted) : -1;
       const known = k >= 0 && y[k] !== null && Math.abs(x[k] - wanted) <= near;
       return known ? [`${name} ${brief(y[k])}`] : [];
     });
+    // Of many the one that lies on top, a mean, comes first.
+    return found.length > MOST_VALUES ? [found.at(-1), ...found.slice(0, MOST_VALUES - 1), "…"] : found;
   };
 
   document.querySelectorAll("figure").forEach((figure) => {
@@ -140,5 +144,5 @@ const page = (() => {
     });
   });
 
-  return { color, isDark, dark, onPaper, save };
+  return { color, isDark, dark, onPaper, save, element };
 })();
