@@ -16,7 +16,8 @@ from elbowscrew.cli import main
 from elbowscrew.errors import OutputError, ResultError
 from elbowscrew.motion.interpolation.keyframe_sources import ComparisonPlan
 from elbowscrew.opening import sha256_of
-from elbowscrew.report import write_study_page, write_trial_page
+from elbowscrew.report import remake_pages, write_study_page, write_trial_page
+from elbowscrew.report.study import read_study
 from elbowscrew.results.proof import ProvedFile, proof_of
 from elbowscrew.results.staging import check_result_folder
 from elbowscrew.results.summary_reading import read_summary
@@ -234,3 +235,11 @@ def test_pages_that_a_crash_has_emptied_are_made_again(copy: Path) -> None:
         assert main(["report", str(copy.parent), "-q"]) == 0
         assert (copy / "report.html").read_text(encoding="utf-8").startswith("<!DOCTYPE html>")
         assert (copy.parent / "index.html").read_text(encoding="utf-8").startswith("<!DOCTYPE html>")
+
+
+@pytest.mark.parametrize("name", ["summary.json", "screw.csv"])
+def test_a_result_that_has_lost_a_file_is_not_passed_over(copy: Path, name: str) -> None:
+    (copy / name).unlink()
+    made = remake_pages([copy.parent])
+    assert any(name in str(error) for error in made.errors)
+    assert [one.path for one in read_study(copy.parent).unread] == ["r"]

@@ -16,7 +16,7 @@ from elbowscrew.errors import OutputError
 from elbowscrew.plots.registry import FIGURES
 from elbowscrew.results.exporting import EXPORTS
 from elbowscrew.results.result_files import RESULT_FILES
-from elbowscrew.results.staging import result_folder, write_files
+from elbowscrew.results.staging import replace_file, result_folder, write_files
 from elbowscrew.view.figure_names import FIGURE_ENTRIES
 
 OLD = '{"elbowscrew": "0.0.1"}'
@@ -209,3 +209,27 @@ def test_of_files_that_belong_together_all_appear_or_none(tmp_path: Path) -> Non
     with pytest.raises(KeyboardInterrupt):
         write_files(tmp_path, {"a.csv": ["whole"], "b.csv": lines()}, replaceable=None)
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("name", ["screw.csv", "SHA256SUMS", "figures/theta.png", "report.html"])
+def test_a_folder_in_the_place_of_a_file_of_ours_is_somebodys(tmp_path: Path, name: str) -> None:
+    target = earlier_result(tmp_path / "result")
+    (target / name).unlink(missing_ok=True)
+    (target / name).mkdir()
+    (target / name / "thesis.tex").write_text("years of work")
+    with (
+        pytest.raises(OutputError, match=f"the folder holds '{name}/', which is not ours"),
+        result_folder(target, force=True) as staged,
+    ):
+        (staged / "summary.json").write_text("new")
+    assert (target / name / "thesis.tex").read_text() == "years of work"
+
+
+def test_a_folder_in_the_place_of_a_table_of_a_batch_is_somebodys(tmp_path: Path) -> None:
+    table = tmp_path / "summary.csv"
+    table.mkdir()
+    (table / "thesis.tex").write_text("years of work")
+    with pytest.raises(OutputError, match=r"summary\.csv: cannot be written: Is a directory"):
+        replace_file(table, b"new")
+    assert (table / "thesis.tex").read_text() == "years of work"
+    assert list(tmp_path.iterdir()) == [table]

@@ -66,6 +66,7 @@ def is_stray(name: str) -> bool:
 def files_in(folder: Path) -> Iterator[str]:
     """Yield what is in a result folder and in its ``figures``, but strays and what a killed run has left.
 
+    The name of any other folder ends with a slash: it is none of ours, whatever it is called, and may hold anything.
     Names are asked for as they are taken: of a folder with a million files, which is none of ours, a few.
     """
     with os.scandir(folder) as entries:
@@ -74,9 +75,13 @@ def files_in(folder: Path) -> Iterator[str]:
                 continue
             if one.name == "figures" and one.is_dir(follow_symlinks=False):
                 with os.scandir(one.path) as inner:
-                    yield from (f"figures/{figure.name}" for figure in inner if not is_stray(figure.name))
+                    yield from (f"figures/{_told(figure)}" for figure in inner if not is_stray(figure.name))
             else:
-                yield one.name
+                yield _told(one)
+
+
+def _told(entry: os.DirEntry[str]) -> str:
+    return f"{entry.name}/" if entry.is_dir(follow_symlinks=False) else entry.name
 
 
 def is_summary(path: Path) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager
@@ -160,10 +161,15 @@ def replace_file(target: Path, content: bytes) -> None:
     Raises
     ------
     OutputError
-        If the disk does not take it; an earlier file is as it was.
+        If a folder has its name, or the disk does not take it; what was there is as it was.
     """
+
+    def check(former: Path) -> None:
+        if former.is_dir() and not former.is_symlink():
+            raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
+
     try:
-        write_set(target.parent, {target.name: content}, lambda _former: None)
+        write_set(target.parent, {target.name: content}, check)
     except OSError as error:
         raise output_error(target, error) from error
 

@@ -28,6 +28,7 @@ from elbowscrew.model.summary_types import ModelSummary, MovementSummary, Summar
 from elbowscrew.results.joint_summary import joint_summary, preferred_fit
 from elbowscrew.results.meshes_file import kept_meshes
 from elbowscrew.results.proof import Proof, proof_of
+from elbowscrew.results.result_files import SUMS
 from elbowscrew.results.summary import summary_from_analysis
 from elbowscrew.results.summary_reading import SUMMARY, read_joint_summary, read_summary, settings_in
 from elbowscrew.results.table_reading import Attributes, as_read, read_attributes, read_columns
@@ -58,8 +59,13 @@ UNREADABLE: Final = (KeyError, TypeError, ValueError, IndexError, AttributeError
 
 
 def is_result(folder: Path) -> bool:
-    """Tell whether a folder holds the result of one trial."""
-    return (folder / SUMMARY).is_file() and (folder / "screw.csv").is_file()
+    """Tell whether a folder holds the result of one trial, or what is left of one, by the digests of its files."""
+    if (folder / SUMMARY).is_file() and (folder / "screw.csv").is_file():
+        return True
+    try:
+        return (folder / SUMS).is_file() and proof_of(folder).has(SUMMARY)
+    except ResultError:
+        return False
 
 
 class Viewed(ABC):
