@@ -89,6 +89,34 @@ def test_written_trials_are_read_back(tmp_path: Path, layout: Any, unit: Any) ->
     assert recording.rate_hz == pytest.approx(100.0)
 
 
+@pytest.mark.parametrize("joint_type", ["hinge", "two-axes"])
+def test_intervals_are_those_of_the_trial_saved_and_read(tmp_path: Path, joint_type: Any) -> None:
+    """The markers are as well known in memory: without them the 5 mm of skin were no part of the intervals."""
+    trial = simulate_trial(proximal="moving", joint_type=joint_type, skin_mm=5.0, gaps=2, frames=240, inversion=100)
+    export, _ = save_simulation(trial, tmp_path / "t.csv")
+    radii = []
+    for recording in (trial.recording, read_recording(export)):
+        found = analyze(recording)
+        told = found.joint_type
+        assert told is not None
+        if joint_type == "hinge":
+            best = found.joint_axis.best
+            assert best is not None
+            assert best.decided_by == "A"
+            radii.append([best.axis_cone, best.point_radius])
+        else:
+            assert told.two_axes is not None
+            assert told.decided_by == "A"
+            radii.append([r for line in told.two_axes.lines for r in (line.axis_cone, line.point_radius)])
+    assert radii[0] == pytest.approx(radii[1], rel=1e-3)
+
+
+def test_what_is_exact_tells_of_no_noise() -> None:
+    for body in simulate_trial(marker_noise_mm=0.0).recording.bodies:
+        assert body.marker_residual is None
+        assert body.marker_motion is None
+
+
 def test_the_seed_decides() -> None:
     one, same, other = (simulate_trial(seed=seed) for seed in (1, 1, 2))
     first = one.recording.bodies[1].dual_quat_lab_body

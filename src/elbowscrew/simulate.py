@@ -14,7 +14,7 @@ from elbowscrew.geometry import pose_from_points, quaternion
 from elbowscrew.geometry.arrays import Bool, Float
 from elbowscrew.geometry.dual_quaternion import dual_quat_from_pose, multiply, transform_points
 from elbowscrew.joints import joints_of
-from elbowscrew.model import Landmarks, Recording, RigidBody, TrackingLoss
+from elbowscrew.model import Landmarks, MarkerMotion, Recording, RigidBody, TrackingLoss
 from elbowscrew.model.anatomy import LANDMARKS_OF
 from elbowscrew.motion.interpolation.laws import LAWS
 from elbowscrew.simulated_joint import (
@@ -190,8 +190,7 @@ class SimulatedTrial:
     Attributes
     ----------
     recording : Recording
-        The poses, fitted to the markers as seen. Of how these move among themselves it holds nothing: save the trial
-        and read it for intervals that hold what skin does.
+        The poses, fitted to the markers as seen, and how these move among themselves: as a saved trial is read.
     markers : mapping of str to ndarray, shape (N, M, 3)
         The markers of each body, by the body's name, in the laboratory, meters; NaN where not seen.
     truth : dict
@@ -371,7 +370,8 @@ def _observed(
     seen = transform_points(pose[:, None, :], offsets if moved.shift is None else offsets + moved.shift)
     if wanted.marker_noise_mm > 0.0:
         seen = seen + rng.normal(scale=1e-3 * wanted.marker_noise_mm, size=seen.shape)
-    if wanted.marker_noise_mm > 0.0 or moved.shift is not None:
+    erring = wanted.marker_noise_mm > 0.0 or moved.shift is not None
+    if erring:
         pose = pose_from_points(offsets, seen)
     if wanted.sign_flips:
         pose = pose * np.where(rng.random(len(pose)) < 0.5, -1.0, 1.0)[:, None]
@@ -381,4 +381,9 @@ def _observed(
         pose = np.where(lost[:, None], np.nan, pose)
         seen = np.where(lost[:, None, None], np.nan, seen)
     body = RigidBody(name=name, identifier=identifier, dual_quat_lab_body=pose, loss=loss, marker_offsets=offsets)
+    if erring:  # exact markers tell of no noise
+        off = seen - transform_points(pose[:, None, :], offsets)
+        residual = np.sqrt(np.mean(np.sum(off**2, axis=2), axis=1))
+        motion = MarkerMotion.of_markers(pose, seen, offsets, own_shape=False)
+        body = replace(body, marker_residual=residual, marker_motion=motion)
     return body, seen

@@ -13,13 +13,15 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from elbowscrew.column_file import ColumnFile
-from elbowscrew.geometry import dual_quaternion, quaternion
+from elbowscrew.geometry import dual_quaternion, nonrigid_coordinates, quaternion
+from elbowscrew.geometry._blocks import evenly_thinned
 from elbowscrew.geometry.arrays import Bool, Float, Index
 from elbowscrew.model.array_record import ArrayRecord
 
 # Exports print six decimals, so that a norm is off by 1e-6; a digit or a cell gone wrong shows above this.
 _NORM_TOLERANCE: Final = 5e-3
 _FARTHEST_M: Final = 1e4
+_MOST_KEPT: Final = 65_536
 
 
 class TrackingLoss(IntEnum):
@@ -110,6 +112,17 @@ class MarkerMotion(ArrayRecord):
     row: Float
     nonrigid: Float
     own_shape: bool
+
+    @classmethod
+    def of_markers(cls, pose: Float, seen: Float, shape: Float, *, own_shape: bool) -> MarkerMotion:
+        """Take it from a body's poses (N, 8) and its markers (N, M, 3) in the laboratory, of a long recording in some.
+
+        The shape (M, 3) is that of the markers in the body's frame.
+        """
+        rows = evenly_thinned(np.arange(len(pose)), _MOST_KEPT)
+        in_body = dual_quaternion.transform_points(dual_quaternion.conjugate(pose[rows])[:, None, :], seen[rows])
+        nonrigid = nonrigid_coordinates(in_body, shape)
+        return cls(shape=shape, row=rows.astype(np.float64), nonrigid=nonrigid, own_shape=own_shape)
 
     def at(self, rows: Index) -> Float:
         """Non-rigid coordinates (F, 3 M - 6) of the kept rows nearest these (F,)."""

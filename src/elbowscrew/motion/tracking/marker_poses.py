@@ -8,15 +8,13 @@ from typing import Final
 import numpy as np
 
 from elbowscrew.errors import SettingError
-from elbowscrew.geometry import FittedPose, fit_poses, fit_poses_dual_qr, nonrigid_coordinates
-from elbowscrew.geometry._blocks import evenly_thinned
+from elbowscrew.geometry import FittedPose, fit_poses, fit_poses_dual_qr
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_quaternion import conjugate, transform_points
 from elbowscrew.model import MarkerMotion, Recording, RigidBody, TrackingLoss, at_origin, marker_matches
 from elbowscrew.motion.tracking.resolution import coarse_step
 
 _REFINEMENTS: Final = 2
-_MOST_FRAMES: Final = 65_536
 
 POSE_METHODS: Final[dict[str, tuple[Callable[[Float, Float], FittedPose], int]]] = {
     "svd": (fit_poses, 3),
@@ -79,18 +77,10 @@ def body_from_markers(recording: Recording, name: str, patterns: tuple[str, ...]
         loss=np.where(lost, TrackingLoss.BLANK, TrackingLoss.NONE).astype(np.uint8),
         marker_offsets=shape,
         marker_residual=fitted.deviation if svd else fit_poses(shape, seen).deviation,
-        marker_motion=_motion(fitted.dual_quat, seen, shape),
+        marker_motion=MarkerMotion.of_markers(fitted.dual_quat, seen, shape, own_shape=True),
         shape_deviation=None if svd else fitted.deviation,
         coarse_step=coarse_step(seen.reshape(len(seen), -1)),
     )
-
-
-def _motion(pose: Float, seen: Float, shape: Float) -> MarkerMotion:
-    """How the markers move among themselves, of a long recording in some frames."""
-    rows = evenly_thinned(np.arange(len(pose)), _MOST_FRAMES)
-    in_body = transform_points(conjugate(pose[rows])[:, None, :], seen[rows])
-    nonrigid = nonrigid_coordinates(in_body, shape)
-    return MarkerMotion(shape=shape, row=rows.astype(np.float64), nonrigid=nonrigid, own_shape=True)
 
 
 def cluster_shape(seen: Float) -> Float | None:
