@@ -120,6 +120,43 @@ def adjoint(dual_quat: ArrayLike) -> Float:
     return matrix
 
 
+def inverse_left_jacobian(twist: ArrayLike) -> Float:
+    """How the logarithm of a displacement changes with a small one before it: ``log(exp(c) exp(r)) = r + J c``.
+
+    Parameters
+    ----------
+    twist : array_like, shape (..., 6)
+        The logarithm r: rotation (rad), then translation.
+
+    Returns
+    -------
+    ndarray, shape (..., 6, 6)
+        To 1e-8 for rotations up to 0.3 rad, to 1e-5 up to 1 rad, to 1 % up to half a turn (and lengths of 1).
+
+    References
+    ----------
+    Solà, Deray and Atchuthan 2018, A micro Lie theory for state estimation in robotics. The series
+    ``x/(1 - exp(-x)) = 1 + x/2 + x^2/12 - x^4/720 + x^6/30240``, x the matrix ``-[[w]x 0; [v]x [w]x]``.
+
+    Examples
+    --------
+    >>> inverse_left_jacobian([0, 0, 0.1, 0, 0, 0]) @ [1e-6, 0, 0, 0, 0, 0] * 1e6 + 0.0
+    array([ 0.99916653, -0.05      ,  0.        ,  0.        ,  0.        ,
+            0.        ])
+    """
+    r = np.asarray(twist, dtype=np.float64)
+    x = np.zeros((*r.shape, 6))
+    for first in (0, 3):
+        a, b, c = np.moveaxis(r[..., first : first + 3], -1, 0)
+        x[..., first, 1], x[..., first, 2] = c, -b
+        x[..., first + 1, 0], x[..., first + 1, 2] = -c, a
+        x[..., first + 2, 0], x[..., first + 2, 1] = b, -a
+    x[..., 3:, 3:] = x[..., :3, :3]
+    second = x @ x
+    fourth = second @ second
+    return np.asarray(np.eye(6) + x / 2.0 + second / 12.0 - fourth / 720.0 + fourth @ second / 30_240.0)
+
+
 def integrate_twist(start: ArrayLike, twist: ArrayLike, time_step: ArrayLike) -> Float:
     """Pose after moving with a constant body twist for a time: ``Q exp(twist time / 2)``.
 

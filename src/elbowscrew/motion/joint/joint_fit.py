@@ -17,8 +17,7 @@ from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry._small_angle import length
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.quaternion import quat_from_rotation_matrix, rotation_matrix_from_quat
-from elbowscrew.geometry.sensitivity import cross_matrix
-from elbowscrew.geometry.twist import adjoint
+from elbowscrew.geometry.twist import adjoint, inverse_left_jacobian
 from elbowscrew.motion.joint.likelihood import information_of
 
 _ITERATIONS: Final = 30
@@ -31,8 +30,6 @@ _HALVINGS: Final = 12
 _LEAST_GAIN: Final = 1e-9
 _SHORT: Final = 1e-4  # rad and m: longer steps gain nothing only where the poses do not determine the joint
 _LEAST_SCALE: Final = 1e-150  # whose reciprocal has a square
-# ``x/(1 - exp(-x)) = 1 + x/2 + x^2/12 - x^4/720 + ...``: the powers from 1 on.
-_INVERSE_JACOBIAN: Final = (1.0 / 2.0, 1.0 / 12.0, 0.0, -1.0 / 720.0, 0.0, 1.0 / 30_240.0)
 _ROBUST_START: Final = 10
 _ROBUST_ROUNDS: Final = 100
 # Residuals across the angle have 5 degrees of freedom a frame: median of chi-square, and Tukey's constant that keeps
@@ -218,7 +215,7 @@ def _weights_in_line(at: _Step, W: Float) -> Float:
 def _square(at: _Step, joint: Float, W: Float) -> Float:
     """Squared whitened distance of each frame, its angle at the optimum."""
     residual, W_line = _residual(at, joint), _weights_in_line(at, W)
-    return _across(residual, W_line, _carried(residual, _own_column(at))[..., 0])[0]
+    return _across(residual, W_line, (inverse_left_jacobian(residual) @ _own_column(at))[..., 0])[0]
 
 
 def _across(residual: Float, W_line: Float, along: Float) -> tuple[Float, Float, Float, Float]:
@@ -266,7 +263,8 @@ class _Equations(NamedTuple):
 
 def _normal_equations(at: _Step, joint: Float, W: Float, weight: Float, screw: bool) -> _Equations:
     residual, W_line = _residual(at, joint), _weights_in_line(at, W)
-    columns = _carried(residual, np.concatenate([_derivatives(at, screw), _own_column(at)], axis=2))
+    # The residual's frame turns with the model: without its Jacobian these are not the equations of the least cost.
+    columns = inverse_left_jacobian(residual) @ np.concatenate([_derivatives(at, screw), _own_column(at)], axis=2)
     G, along = columns[..., :-1], columns[..., -1]
     WG = W_line @ G
     square, weighted, own_pull, own = _across(residual, W_line, along)
@@ -275,27 +273,6 @@ def _normal_equations(at: _Step, joint: Float, W: Float, weight: Float, screw: b
     information = np.einsum("f,fip,fiq->pq", weight, G, WG) - np.einsum("f,fp,fq->pq", weight / own, mixed, mixed)
     gradient = weight @ (pull - mixed * (own_pull / own)[:, None])
     return _Equations(information, gradient, own_pull / own, mixed / own[:, None], residual, along, square)
-
-
-def _carried(residual: Float, change: Float) -> Float:
-    """How the residual (F, 6) changes with small twists of the model's pose (F, 6, P): ``J change``.
-
-    J is the inverse of the left Jacobian of the residual, whose frame turns with the model. Without it the equations
-    are not those of the least cost: the larger the noise, the farther from it they end.
-
-    References
-    ----------
-    Solà, Deray and Atchuthan 2018, A micro Lie theory for state estimation in robotics.
-    """
-    # ``-ad(r)``, ad the matrix ``[[w]x 0; [v]x [w]x]``.
-    turn = np.zeros((len(residual), 6, 6))
-    turn[:, :3, :3] = turn[:, 3:, 3:] = -cross_matrix(residual[:, :3])
-    turn[:, 3:, :3] = -cross_matrix(residual[:, 3:])
-    total, power = change, change
-    for coefficient in _INVERSE_JACOBIAN:
-        power = turn @ power
-        total = total + coefficient * power
-    return total
 
 
 def _step(at: _Step, joint: Float, W: Float, weight: Float, screw: bool) -> tuple[_Step, float]:
