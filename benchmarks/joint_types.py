@@ -1,7 +1,7 @@
 """Whether the search for two axes fails, which joint is told for which, and what the intervals cover.
 
     python benchmarks/joint_types.py [--quick] [--stated] [--seed N] [--trials N] [starts] [types] [pronation]
-        [coverage] [intervals]
+        [coverage] [intervals] [angles]
 
 Synthetic joints with both bodies' noise. Types: by noise, range and what real joints add, an axis that wanders by 5 deg
 and a cluster that moves on the bone by 4 deg and 5 mm; the noise's size is told to the choice with
@@ -22,8 +22,8 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "support"))
 
 import moving_joints as mj
-from cluster_noise import skin, smooth_skin, turning, wander, white
-from typed_noise import Kind, joint_of, skin_of_both, typed_coverage
+from cluster_noise import Noise, skin, smooth_skin, turning, wander, white
+from typed_noise import Kind, angles_held, joint_of, skin_of_both, typed_coverage
 
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry import quaternion as qn
@@ -45,7 +45,7 @@ TYPES = ("rigid", "hinge", "two_axes", "ball", "free")
 def main() -> None:
     """Print the tables in Markdown."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("parts", nargs="*", default=["starts", "types", "pronation", "coverage", "intervals"])
+    parser.add_argument("parts", nargs="*", default=["starts", "types", "pronation", "coverage", "intervals", "angles"])
     parser.add_argument("--quick", action="store_true")
     parser.add_argument("--seed", type=int, default=15)
     parser.add_argument("--stated", action="store_true", help="tell the choice of types how large the noise is")
@@ -64,11 +64,13 @@ def main() -> None:
         coverage(trials or (30 if options.quick else 300), options.seed)
     if "intervals" in options.parts:
         intervals(trials or (10 if options.quick else 60), options.seed)
+    if "angles" in options.parts:
+        angles(trials or (5 if options.quick else 30), options.seed)
 
 
-def intervals(trials: int, seed: int) -> None:
-    """Print how often intervals are told, and which hold, that stand on markers, residuals and blocks."""
-    noises = {
+def noises() -> dict[str, Noise]:
+    """Kinds of noise of the markers, by their names."""
+    return {
         "white 0.2 mm": white(),
         "skin with the flexion, 5 mm": skin(5e-3),
         "skin with both angles, 5 mm": skin_of_both(5e-3),
@@ -76,6 +78,20 @@ def intervals(trials: int, seed: int) -> None:
         "markers wander, 2 mm": wander(2e-3),
         "clusters turn, 2 deg": turning(np.radians(2.0)),
     }
+
+
+def angles(trials: int, seed: int) -> None:
+    """Print which share of the errors of two axes' angles is within 1.96 standard deviations."""
+    print("\n| deg | noise | given axes | with their errors |\n| --- | --- | --- | --- |")
+    for top_deg in (60.0, 140.0):
+        for name, noise in noises().items():
+            given, whole = angles_held(joint_of("two_axes", top_deg), noise, trials, seed=seed)
+            cells = [", ".join(f"{share:.2f}" for share in shares) for shares in (given, whole)]
+            print(f"| {top_deg:g} | {name} | {cells[0]} | {cells[1]} |", flush=True)
+
+
+def intervals(trials: int, seed: int) -> None:
+    """Print how often intervals are told, and which hold, that stand on markers, residuals and blocks."""
     joints: tuple[tuple[Kind, float, int], ...] = (
         ("two_axes", 140.0, 1),
         ("two_axes", 60.0, 1),
@@ -86,7 +102,7 @@ def intervals(trials: int, seed: int) -> None:
     print("\n| joint | deg | cycles | noise | held | told | told and missed | sharpness |")
     print("| --- | --- | --- | --- | --- | --- | --- | --- |")
     for kind, top_deg, cycles in joints:
-        for name, noise in noises.items():
+        for name, noise in noises().items():
             found = typed_coverage(kind, joint_of(kind, top_deg, cycles), noise, trials, seed=seed, rms_alone=False)
             held, told, missed = (
                 ", ".join(f"{what} {share:.2f}" for what, share in zip(found.names, shares, strict=True))

@@ -14,6 +14,8 @@ from trials import LINE, START
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry import quaternion as qn
 from elbowscrew.geometry.arrays import Float
+from elbowscrew.geometry.sensitivity import NORMAL_95
+from elbowscrew.motion.joint.every_frame import Everywhere, numbers_everywhere
 from elbowscrew.motion.joint.interval import JointInterval
 from elbowscrew.motion.joint.likelihood import Fit, Mechanism, Poses, fit_mechanism
 from elbowscrew.motion.joint.simple_types import Ball
@@ -149,3 +151,21 @@ def _of_axes(found: Mechanism, interval: JointInterval) -> tuple[list[float], li
     error += [abs(between - BETWEEN), abs(abs(geometry.distance) - APART)]
     radius += [interval.radius(row[None]) for row in slopes[:2]]
     return error, radius
+
+
+def angles_held(hinge: Hinge, noise: Noise, trials: int, *, seed: int) -> tuple[Float, Float]:
+    """Share (2,) of the errors of two axes' angles within 1.96 deviations: for given axes, and with what these err."""
+    truth = np.stack([hinge.angle, second_angle(hinge)], axis=1)
+    rng = np.random.default_rng(seed)
+    given, whole = [], []
+    for _ in range(trials):
+        case = seen(hinge, noise(hinge, rng))
+        fit, interval = fitted_type("two_axes", case)
+        covariance = joint_covariance(case.joint, *case.noise)
+        every = Everywhere(case.joint, lambda rows, C=covariance: C[rows], np.ones(hinge.frames), covariance[0])
+        found = numbers_everywhere(fit.mechanism, every, case.joint[0], interval)
+        off = np.abs(found.angle * np.sign(np.sum(found.angle * truth, axis=0)) - (truth - truth[0]))[15::30]
+        own, axes = np.sqrt(max(fit.variance, 1.0)) * found.angle_sd[15::30], found.axes_sd[15::30]
+        given.append(np.mean(off <= NORMAL_95 * own, axis=0))
+        whole.append(np.mean(off <= NORMAL_95 * np.hypot(own, axes), axis=0))
+    return np.mean(given, axis=0), np.mean(whole, axis=0)

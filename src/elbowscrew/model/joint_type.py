@@ -241,8 +241,8 @@ class JointAngles(TableRecord):
     frame, time_s : ndarray, shape (N,)
     angle, angle_sd : ndarray, shape (N, k)
         rad: about the axis of a hinge, about both axes, or the rotation vector of a ball in the proximal body's axes.
-        The standard deviation is that by the noise of the frame and of the reference, for given axes, scaled by the
-        residuals where these are larger; NaN in frames that were filled.
+        The standard deviation is that by the noise of the frame and of the reference, scaled by the residuals where
+        these are larger, and of two axes by the errors of the axes, too; NaN in frames that were filled.
     residual_rotation, residual_translation : ndarray, shape (N,)
         That the joint leaves of each measured pose, rad and m.
     """

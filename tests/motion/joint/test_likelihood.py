@@ -10,13 +10,13 @@ from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.twist import adjoint, inverse_left_jacobian
 from elbowscrew.motion.joint.fitting import Fitted, fit_type
-from elbowscrew.motion.joint.likelihood import Fit, Mechanism, Poses, fit_mechanism, refined
+from elbowscrew.motion.joint.likelihood import Fit, Mechanism, Poses, fit_mechanism, refined, settled
 
 KINDS: tuple[Fitted, ...] = ("rigid", "hinge", "screw_hinge", "two_axes", "ball")
 
 
-def moved(kind: Fitted, seed: int) -> Poses:
-    """Poses with 1 deg and 2 mm of noise, the cluster on the skin."""
+def moved(kind: Fitted, seed: int, share: float = 1.0) -> Poses:
+    """Poses with 1 deg and 2 mm of noise, the cluster on the skin, or a share of both."""
     rng = np.random.default_rng(seed)
     exact = {
         "rigid": lambda: mj.rigid(120, rng),
@@ -25,7 +25,7 @@ def moved(kind: Fitted, seed: int) -> Poses:
         "two_axes": lambda: mj.two_axes(120, (120.0, 80.0), 80.0, 0.01, rng),
         "ball": lambda: mj.ball(120, 70.0, rng),
     }[kind]().poses
-    return Poses.of(*mj.noisy(mj.with_skin(exact, rng, 4.0, 0.005), rng, 1.0, 2e-3))
+    return Poses.of(*mj.noisy(mj.with_skin(exact, rng, 4.0 * share, 0.005 * share), rng, share, 2e-3 * share))
 
 
 def own_steps(fit: Fit[Mechanism]) -> Float:
@@ -90,3 +90,18 @@ def test_a_residual_changes_as_its_jacobian_says() -> None:
             columns.append((ends[0] - ends[1]) / 2e-5)
         assert inverse_left_jacobian(twist) == pytest.approx(np.stack(columns, axis=1), abs=error)
         assert inverse_left_jacobian(twist) @ twist == pytest.approx(twist)
+
+
+@pytest.mark.parametrize("kind", ["hinge", "two_axes"])
+def test_angles_follow_the_axes_as_the_fit_says(kind: Fitted) -> None:
+    """Against angles that are found anew with the axes moved; to first order in what the joint leaves."""
+    poses = moved(kind, 35, 1e-3)
+    fit = refined(fit_type(kind, poses), poses)
+    for k, step in enumerate(1e-5 * np.eye(fit.mechanism.shared_count)):
+        ends = []
+        for sign in (1.0, -1.0):
+            start = fit.mechanism.moved(sign * step, sign * fit.own_by_shared[..., k] * 1e-5)
+            ends.append(settled(start, poses, rounds=6).mechanism.frames)
+        change = (ends[0] - ends[1]) / 2e-5
+        turns = np.round((change - fit.own_by_shared[..., k]) * 2e-5 / (2.0 * np.pi)) * 2.0 * np.pi / 2e-5
+        assert change - turns == pytest.approx(fit.own_by_shared[..., k], abs=1e-3)

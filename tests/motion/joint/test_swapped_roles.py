@@ -64,7 +64,11 @@ def test_a_body_that_stands_still_is_like_none(jitter: float, stated: dict[str, 
     arm, forearm = trial.bodies
     shaken = jitter * np.random.default_rng(4).normal(size=(len(arm.loss), 6)) * [10.0, 10.0, 10.0, 1.0, 1.0, 1.0]
     still = dq.multiply(arm.dual_quat_lab_body[0], dq.exp(0.5 * shaken))
-    recording = replace(trial, bodies=(replace(arm, dual_quat_lab_body=still), forearm))
+    assert arm.marker_motion is not None
+    # Its markers are as still as its poses.
+    at_rest = replace(arm.marker_motion, nonrigid=0.0 * arm.marker_motion.nonrigid)
+    quiet = replace(arm, dual_quat_lab_body=still, marker_residual=np.zeros(arm.loss.size), marker_motion=at_rest)
+    recording = replace(trial, bodies=(quiet, forearm))
     roles = (("none", forearm.name, "distal"), (arm.name, forearm.name, "distal"), (forearm.name, arm.name, "proximal"))
     lines = []
     for proximal, distal, express_in in roles:

@@ -15,10 +15,12 @@ from elbowscrew.geometry.arrays import Float, Index
 from elbowscrew.geometry.quaternion import rotation_matrix_from_quat
 from elbowscrew.geometry.sensitivity import cross_matrix
 from elbowscrew.geometry.twist import adjoint
+from elbowscrew.motion.joint.interval import JointInterval
 from elbowscrew.motion.joint.likelihood import Mechanism, Poses, settled
 from elbowscrew.motion.joint.simple_types import Ball
 
 _MOST_SETTLED: Final = 20_000
+_FRAMES_ASKED: Final = 8  # for the factors between variances and radii, which are all but alike in all frames
 _BLOCK: Final = 2048
 _DUAL_QUAT: Final = 8
 _TURN: Final = 2.0 * np.pi
@@ -57,17 +59,22 @@ class FrameNumbers(NamedTuple):
     angle, angle_sd : ndarray, shape (N, k)
         rad, from the reference pose; the standard deviations are those of the stated noise of the frame and of the
         reference, for given axes.
+    axes_sd : ndarray, shape (N, k)
+        What the errors of the axes add to them; 0 where they are not told.
     residual_rotation, residual_translation : ndarray, shape (N,)
         rad and m, the latter at the origin of `Mechanism.residual_frame`.
     """
 
     angle: Float
     angle_sd: Float
+    axes_sd: Float
     residual_rotation: Float
     residual_translation: Float
 
 
-def numbers_everywhere(mechanism: Mechanism, frames: Everywhere, reference: Float) -> FrameNumbers:
+def numbers_everywhere(
+    mechanism: Mechanism, frames: Everywhere, reference: Float, errors: JointInterval | None = None
+) -> FrameNumbers:
     """Put a joint on all frames, block by block, so that a long trial needs no more memory than its result.
 
     Parameters
@@ -77,6 +84,8 @@ def numbers_everywhere(mechanism: Mechanism, frames: Everywhere, reference: Floa
     frames : Everywhere
     reference : ndarray, shape (8,)
         Pose that angles count from.
+    errors : JointInterval, optional
+        Of the shared numbers of a joint with axes, which the angles follow.
 
     Returns
     -------
@@ -92,7 +101,12 @@ def numbers_everywhere(mechanism: Mechanism, frames: Everywhere, reference: Floa
     settle = _settled_block if every else _NearestWeights.of(mechanism, frames, rows).stepped
     count = len(frames.joint)
     angle, deviation = np.full((count, own), np.nan), np.full((count, own), np.nan)
+    by_axes = np.where(np.isfinite(frames.joint[:, :1]), np.zeros((count, own)), np.nan)
     rotation, translation = np.full(count, np.nan), np.full(count, np.nan)
+    spread = None
+    if errors is not None and rows.size:
+        some = _settled_block(mechanism, frames, evenly_thinned(rows, _FRAMES_ASKED)).by_shared - start.by_shared
+        spread = errors.spread(mechanism.whole(some.reshape(-1, some.shape[2])))
     last: Float | None = None
     for first in range(0, rows.size, _BLOCK):
         block = rows[first : first + _BLOCK]
@@ -106,17 +120,23 @@ def numbers_everywhere(mechanism: Mechanism, frames: Everywhere, reference: Floa
                 found = found - _TURN * np.round((found[0] - last) / _TURN)
             angle[block] = found
             last = angle[block[-1]]
+            if spread is not None:
+                by_axes[block] = spread.deviations(mechanism.whole(at.by_shared - start.by_shared))
         deviation[block] = np.sqrt(np.diagonal(covariance, axis1=1, axis2=2))
         rotation[block] = length(at.residual[:, :3])
         translation[block] = length(at.residual[:, 3:])
-    return FrameNumbers(angle, deviation, rotation, translation)
+    return FrameNumbers(angle, deviation, by_axes, rotation, translation)
 
 
 class OwnNumbers(NamedTuple):
-    """Own numbers (F, ...) of some frames, their covariances (F, k, k), and the residuals (F, 6)."""
+    """Own numbers (F, ...) of some frames, their covariances (F, k, k), and the residuals (F, 6).
+
+    `by_shared` (F, k, P) is how they follow the shared numbers that are told.
+    """
 
     own: Float
     covariance: Float
+    by_shared: Float
     residual: Float
 
 
@@ -126,12 +146,12 @@ def reference_numbers(mechanism: Mechanism, frames: Everywhere, reference: Float
     covariance = frames.covariance(np.arange(1)) if known is None else known[None]
     fit = settled(mechanism, Poses.of(reference[None], covariance), rounds=5)
     share = 0.0 if known is None else 1.0
-    return OwnNumbers(fit.mechanism.frames, share * fit.own_covariance, fit.residual)
+    return OwnNumbers(fit.mechanism.frames, share * fit.own_covariance, fit.own_by_shared, fit.residual)
 
 
 def _settled_block(mechanism: Mechanism, frames: Everywhere, rows: Index) -> OwnNumbers:
     fit = settled(mechanism, frames.poses(rows))
-    return OwnNumbers(fit.mechanism.frames, fit.own_covariance, fit.residual)
+    return OwnNumbers(fit.mechanism.frames, fit.own_covariance, fit.own_by_shared, fit.residual)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -144,6 +164,7 @@ class _NearestWeights:
     tree: Any
     weight: Float
     covariance: Float
+    by_shared: Float
 
     @classmethod
     def of(cls, mechanism: Mechanism, frames: Everywhere, rows: Index) -> _NearestWeights:
@@ -158,7 +179,9 @@ class _NearestWeights:
             whitener = poses.whitener @ adjoint(mechanism.residual_frame)
             own = whitener @ fit.mechanism.on(part).linear(poses.joint).own
             parts.append(fit.own_covariance[part] @ np.swapaxes(own, -1, -2) @ whitener)
-        return cls(cKDTree(_neighborhood(fit.mechanism.frames)), np.concatenate(parts), fit.own_covariance)
+        return cls(
+            cKDTree(_neighborhood(fit.mechanism.frames)), np.concatenate(parts), fit.own_covariance, fit.own_by_shared
+        )
 
     def stepped(self, mechanism: Mechanism, frames: Everywhere, rows: Index) -> OwnNumbers:
         """One step from the closed form."""
@@ -168,7 +191,7 @@ class _NearestWeights:
         step = np.einsum("fki,fi->fk", self.weight[nearest], linear.residual)
         moved = at.moved(np.zeros(linear.shared.shape[2]), step)
         residual = linear.residual - np.einsum("fik,fk->fi", linear.own, step)
-        return OwnNumbers(moved.frames, self.covariance[nearest], residual)
+        return OwnNumbers(moved.frames, self.covariance[nearest], self.by_shared[nearest], residual)
 
 
 def _neighborhood(own: Float) -> Float:

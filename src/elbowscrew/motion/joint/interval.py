@@ -8,12 +8,12 @@ moves as a whole with the flexion no single trial shows; the user states it.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Final, Literal
+from typing import Final, Literal, NamedTuple
 
 import numpy as np
 
 from elbowscrew.geometry.arrays import Float, Index
-from elbowscrew.geometry.sensitivity import confidence_radius
+from elbowscrew.geometry.sensitivity import NORMAL_95, confidence_radius
 from elbowscrew.motion.joint.blocks import block_jackknife
 from elbowscrew.motion.joint.influence import Influence
 from elbowscrew.motion.joint.nonrigid import Segment, nonrigid_covariance, residual_covariance
@@ -88,6 +88,18 @@ class SkinMotion:
     turn: float = 0.0
 
 
+class Spread(NamedTuple):
+    """Covariances (M, P, P) by each method, in which its radii are 1.96 standard deviations, and that of the skin."""
+
+    each: Float
+    skin: Float
+
+    def deviations(self, rows: Float) -> Float:
+        """Standard deviation of each number ``rows @ x``, rows (..., P); 1.96 of them hold 95 % of its errors."""
+        squares = [np.sum((rows @ one) * rows, axis=-1) for one in (*self.each, self.skin)]
+        return np.asarray(np.sqrt(np.max(squares[:-1], axis=0) + squares[-1]))
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class JointInterval:
     """Radii that hold the errors of a fitted joint's shared numbers.
@@ -136,6 +148,36 @@ class JointInterval:
         """Radius that holds the error of ``rows @ x``; NaN where the frames do not determine the joint."""
         found = self.radii(rows, level)
         return float(np.hypot(max(found.values()), self.skin_radius(rows, level))) if found else float("nan")
+
+    def spread(self, rows: Float) -> Spread:
+        """What gives the deviations of many numbers at once, its factors being those of some rows (N, P) of them."""
+        if self.residuals is None:
+            size = np.shape(rows)[1]
+            return Spread(np.full((1, size, size), np.nan), np.zeros((size, size)))
+        parts: list[tuple[Method, Mixture | None]] = [
+            ("A", self.markers),
+            ("B", self.residuals.white),
+            ("B", self.residuals.colored),
+            ("J", self.blocks),
+        ]
+        radii = [self.radii(row[None]) for row in rows]
+        scaled = []
+        for name, mixture in parts:
+            if mixture is None:
+                continue
+            covariance = self._of_all(mixture.mean, rows.shape[1])
+            square = np.einsum("np,pq,nq->n", rows, covariance, rows)
+            factors = [one[name] ** 2 / part for one, part in zip(radii, square, strict=True) if part > 0.0]
+            scaled.append(max(factors, default=0.0) / NORMAL_95**2 * covariance)
+        skin = np.zeros_like(scaled[0]) if self.skin is None else self._of_all(self.skin, rows.shape[1])
+        return Spread(np.stack(scaled), skin)
+
+    def _of_all(self, covariance: Float, count: int) -> Float:
+        if self.told is None:
+            return covariance
+        found = np.zeros((count, count))
+        found[np.ix_(self.told, self.told)] = covariance
+        return found
 
     def decided_by(self, rows: Float) -> Method | None:
         """Which method gave the radius."""

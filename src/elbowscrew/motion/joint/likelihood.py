@@ -193,6 +193,8 @@ class Fit(NamedTuple, Generic[M_co]):
         Inverse of the covariance of the shared numbers that are told (`told`) under the stated noise.
     own_covariance : ndarray, shape (F, k, k)
         Of the frame's own numbers for given shared ones, under the stated noise.
+    own_by_shared : ndarray, shape (F, k, P)
+        How the frame's own numbers at their optimum change with the shared ones that are told.
     """
 
     mechanism: M_co
@@ -202,6 +204,7 @@ class Fit(NamedTuple, Generic[M_co]):
     weight: Float
     information: Float
     own_covariance: Float
+    own_by_shared: Float
 
     @property
     def told(self) -> tuple[int, ...] | None:
@@ -420,7 +423,9 @@ def refined(fit: Fit[M], poses: Poses) -> Fit[M]:
 
 
 def _fitted(mechanism: M, at: _Reduced, weight: Float) -> Fit[M]:
-    return Fit(mechanism, at.square, at.whitened, at.residual, weight, at.information, at.own_covariance)
+    return Fit(
+        mechanism, at.square, at.whitened, at.residual, weight, at.information, at.own_covariance, -at.own_by_shared
+    )
 
 
 def fit_robustly(fit: Fit[M], poses: Poses) -> Fit[M]:
@@ -476,6 +481,7 @@ def settled(mechanism: M, poses: Poses, *, rounds: int = 3) -> Fit[M]:
         weight=join([fit.weight for fit in fits]),
         information=np.sum([fit.information for fit in fits], axis=0),
         own_covariance=join([fit.own_covariance for fit in fits]),
+        own_by_shared=join([fit.own_by_shared for fit in fits]),
     )
 
 

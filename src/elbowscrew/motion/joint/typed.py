@@ -103,10 +103,10 @@ def identify_joint(
         start = reference_numbers(mechanism, everywhere, reference)
         at = _oriented(mechanism.zeroed(start.own[0]), left=left, located=poses.located)
         written = fit_mechanism(at, most, iterations=0, weight=fit.weight)
-        every = numbers_everywhere(at, everywhere, reference)
+        interval = interval_of_type(written, most, evidence.at(rows), np.zeros(2))
+        every = numbers_everywhere(at, everywhere, reference, interval)
         every = every._replace(angle=_near_zero(every.angle))
         allowed = coordinates_of(replace(at, frames=np.zeros((1, 2))), reference)
-        interval = interval_of_type(written, most, evidence.at(rows), np.zeros(2))
         two = _two_axes(written, reference, interval, noise_known=noise_known, order_determined=choice.order_told)
         method = interval.decided_by(_TILTS[0])
         if choice.status == "determined" and not all(line.determined for line in two.lines):
@@ -145,7 +145,7 @@ def _result(
 ) -> JointType:
     """Put a result together; `scale` is how many times the stated variance the residuals have."""
     if every is None:
-        every = FrameNumbers(np.zeros((0, 0)), np.zeros((0, 0)), np.zeros(0), np.zeros(0))
+        every = FrameNumbers(*[np.zeros((0, 0))] * 3, *[np.zeros(0)] * 2)
     return JointType(
         type=choice.type,
         status=choice.status,
@@ -157,7 +157,7 @@ def _result(
         decided_by=decided_by,
         coordinates=coordinates,
         angle=every.angle,
-        angle_sd=np.sqrt(scale) * every.angle_sd,
+        angle_sd=np.hypot(np.sqrt(scale) * every.angle_sd, every.axes_sd),
         residual_rotation=every.residual_rotation,
         residual_translation=every.residual_translation,
     )
