@@ -28,6 +28,8 @@ _TRIES: Final = 10
 _LARGEST_FRAME_STEP: Final = 0.7
 _SETTLED: Final = 1e-4
 _RACE_GAIN: Final = 1e-3
+_NEAR: Final = 1e-3
+_OWN_ROUNDS: Final = 2
 _SMALLEST_STEP: Final = 1e-7
 _REFINEMENTS: Final = 30
 # Steps shrink until they are round-off, which does not. Short ones gain less than round-off would judge.
@@ -253,8 +255,7 @@ class Fit(NamedTuple, Generic[M_co]):
 class _Reduced(NamedTuple):
     """Equations of the shared numbers; `here` is the squared distance (F,) where each frame's own numbers are now.
 
-    `square` is that across them, which they are expected to come to: only the former tells whether a step was a good
-    one, as long as they are away from their optimum.
+    `square` is that across them, which they are expected to come to: right to third order in how far they have to go.
     """
 
     here: Float
@@ -317,7 +318,7 @@ def race(mechanisms: list[M], poses: Poses, *, rounds: int) -> list[Fit[M]]:
     weight = np.ones(len(poses.joint))
     field = mechanisms[0].stacked(mechanisms)
     at = _reduced(field, poses, weight)
-    cost = at.here.sum(axis=-1)
+    cost = at.square.sum(axis=-1)
     damping = np.full(len(mechanisms), 1e-6)
     for _ in range(rounds):
         scale = np.sqrt(np.maximum(np.diagonal(at.information, axis1=-2, axis2=-1), _TINY))
@@ -327,7 +328,7 @@ def race(mechanisms: list[M], poses: Poses, *, rounds: int) -> list[Fit[M]]:
         own = at.own_step - (at.own_by_shared @ step[:, None, :, None])[..., 0]
         after = field.moved(field.whole(step), np.clip(own, -_LARGEST_FRAME_STEP, _LARGEST_FRAME_STEP))
         new = _reduced(after, poses, weight)
-        new_cost = new.here.sum(axis=-1)
+        new_cost = new.square.sum(axis=-1)
         better = new_cost <= cost * (1.0 + 1e-12)
         ended = better.all() and (cost - new_cost <= _RACE_GAIN * cost).all()
         field = field.where_better(after, better)
@@ -367,10 +368,11 @@ def fit_mechanism(
         Of each frame; 1 by itself.
     """
     weight = np.ones(len(poses.joint)) if weight is None else weight
-    at, damping = _reduced(mechanism, poses, weight), 1e-6
+    mechanism, at = _at_own_optimum(mechanism, poses, weight)
+    damping = 1e-6
     if not at.gradient.size:  # nothing is shared that the poses tell of
         return settled(mechanism, poses)
-    cost = float(weight @ at.here)
+    cost = float(weight @ at.square)
     for _ in range(iterations):
         scale = np.sqrt(np.maximum(np.diag(at.information), _TINY))
         scaled = at.information / np.outer(scale, scale)
@@ -382,9 +384,8 @@ def fit_mechanism(
             if unsettled < _SETTLED and at.gradient @ step <= tolerance * cost:
                 return _fitted(mechanism, at, weight)
             own = np.clip(at.own_step - at.own_by_shared @ step, -_LARGEST_FRAME_STEP, _LARGEST_FRAME_STEP)
-            after = mechanism.moved(mechanism.whole(step), own)
-            new = _reduced(after, poses, weight)
-            new_cost = float(weight @ new.here)
+            after, new = _at_own_optimum(mechanism.moved(mechanism.whole(step), own), poses, weight)
+            new_cost = float(weight @ new.square)
             if new_cost <= cost * (1.0 + 1e-12):
                 break
             damping = 10.0 * max(damping, 1e-7)
@@ -396,6 +397,18 @@ def fit_mechanism(
         if gain <= tolerance * cost and unsettled < _SETTLED:
             break
     return _fitted(mechanism, at, weight)
+
+
+def _at_own_optimum(mechanism: M, poses: Poses, weight: Float) -> tuple[M, _Reduced]:
+    """With the frames' own numbers near enough to their optimum that the cost there is right."""
+    at = _reduced(mechanism, poses, weight)
+    for _ in range(_OWN_ROUNDS):
+        if not np.abs(at.own_step).max(initial=0.0) > _NEAR:
+            break
+        own = np.clip(at.own_step, -_LARGEST_FRAME_STEP, _LARGEST_FRAME_STEP)
+        mechanism = mechanism.moved(np.zeros(mechanism.shared_count), own)
+        at = _reduced(mechanism, poses, weight)
+    return mechanism, at
 
 
 def refined(fit: Fit[M], poses: Poses) -> Fit[M]:
