@@ -162,7 +162,7 @@ def angles_held(hinge: Hinge, noise: Noise, trials: int, *, seed: int) -> tuple[
         case = seen(hinge, noise(hinge, rng))
         fit, interval = fitted_type("two_axes", case)
         covariance = joint_covariance(case.joint, *case.noise)
-        every = Everywhere(case.joint, lambda rows, C=covariance: C[rows], np.ones(hinge.frames), covariance[0])
+        every = Everywhere(case.joint, covariance.__getitem__, np.ones(hinge.frames), covariance[0])
         found = numbers_everywhere(fit.mechanism, every, case.joint[0], interval)
         off = np.abs(found.angle * np.sign(np.sum(found.angle * truth, axis=0)) - (truth - truth[0]))[15::30]
         own, axes = np.sqrt(max(fit.variance, 1.0)) * found.angle_sd[15::30], found.axes_sd[15::30]

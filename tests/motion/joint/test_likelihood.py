@@ -68,8 +68,8 @@ def test_fits_from_three_starts_are_one(kind: Fitted) -> None:
     ends = []
     for size in (0.0, 1.0, 5.0):
         start = fit.mechanism.moved(size * deviation * rng.normal(size=deviation.size), own_steps(fit))
-        end = refined(fit_mechanism(start.placed(poses.joint), poses), poses).mechanism
-        model = dq.multiply(poses.joint, dq.exp(-0.5 * _in_distal(end, poses)))
+        found = refined(fit_mechanism(start.placed(poses.joint), poses), poses).mechanism
+        model = dq.multiply(poses.joint, dq.exp(-0.5 * _in_distal(found, poses)))
         ends.append(model * np.sign(model[:, :1]))
     for end in ends[1:]:
         assert np.abs(end - ends[0]).max() < 1e-12

@@ -236,7 +236,8 @@ def is_phantom(fit: Fit[Mechanism]) -> bool:
 
 def _line_gap(line: Float, other: Float) -> float:
     """Between two lines (6,), whichever way they point, a radian weighing as much as 0.1 m."""
-    return min(float(length((line - sense * other) / np.repeat([1.0, _LENGTH], 3))) for sense in (1.0, -1.0))
+    sense = 1.0 if line[:3] @ other[:3] >= 0.0 else -1.0
+    return float(length((line - sense * other) / np.repeat([1.0, _LENGTH], 3)))
 
 
 def _weighted_median(values: Float, weight: Float) -> float:
