@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from elbowscrew.geometry.arrays import Float
-from elbowscrew.geometry.twist import adjoint, inverse_left_jacobian
+from elbowscrew.geometry.twist import adjoint
 from elbowscrew.motion.joint.likelihood import Fit, Mechanism, Poses
 
 
@@ -32,7 +32,7 @@ class Pieces(NamedTuple):
 
 
 def influence_pieces(fit: Fit[Mechanism], poses: Poses) -> Pieces:
-    """Take a fit apart, frame by frame, weights of a robust fit included.
+    """Take a fit apart, frame by frame, weights of a robust fit included; to first order in the residuals.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ def influence_pieces(fit: Fit[Mechanism], poses: Poses) -> Pieces:
         Those of the fit.
     """
     linear = fit.mechanism.linear(poses.joint)
-    whitener = poses.whitener @ adjoint(fit.mechanism.residual_frame) @ inverse_left_jacobian(linear.residual)
+    whitener = poses.whitener @ adjoint(fit.mechanism.residual_frame)
     k = linear.own.shape[2]
     across = np.linalg.qr(whitener @ linear.own, mode="complete")[0][..., k:]
     across = across if k else np.eye(poses.whitener.shape[-2])
