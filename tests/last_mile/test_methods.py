@@ -30,7 +30,8 @@ def without_markers(make: Callable[[], Recording]) -> Callable[[], Recording]:
 
     def made() -> Recording:
         recording = make()
-        gone: dict[str, Any] = dict.fromkeys(("marker_offsets", "marker_residual", "reported_error", "shape_deviation"))
+        of_markers = ("marker_offsets", "marker_residual", "marker_motion", "reported_error", "shape_deviation")
+        gone: dict[str, Any] = dict.fromkeys(of_markers)
         return replace(recording, bodies=tuple(replace(body, **gone) for body in recording.bodies), markers=())
 
     return made
@@ -88,7 +89,7 @@ CASES: dict[str, tuple[Callable[[], Recording], dict[str, Any]]] = {
     "own two angles": (two_axes_moving, {"method": "joint"}),
     "stated hinge": (USUAL, {"joint_type": "hinge"}),
     "ball, signed": (ball, {"signed": "yes"}),
-    "filtered": (USUAL, {"lowpass_hz": 6.0}),
+    "filtered": (without_markers(USUAL), {"lowpass_hz": 6.0}),
     "automatic": (USUAL, {"lowpass_hz": "auto"}),
     "resampled": (USUAL, {"resample_hz": 50.0}),
     "markers": (with_markers, {"proximal_markers": ("Left Upper Arm:*",), "distal_markers": ("Left Forearm:*",)}),
