@@ -15,8 +15,9 @@ sys.path.insert(0, str(Path(__file__).parent.parent / "tests" / "support"))
 from drawn_trials import KINDS, drawn_trial
 from ink import faults_of
 
+from elbowscrew.plots.layout import settle
 from elbowscrew.plots.registry import FIGURES
-from elbowscrew.plots.style import publication_style, settle
+from elbowscrew.plots.style import publication_style
 from elbowscrew.view.figure_names import FIGURE_ENTRIES, has_figure
 
 WIDTHS_MM = (60.0, 70.0, 85.0, 120.0, 170.0, 180.0)

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from elbowscrew import Comparison, ComparisonPlan, Recording, Settings, analyze, compare, read_recording, simulate_trial
 from elbowscrew.choices import MethodName
 from elbowscrew.errors import SettingError
-from elbowscrew.plots import style
+from elbowscrew.plots import layout, style
 from elbowscrew.plots.comparison import plain_ticks, series_look
 
 ROOT = Path(__file__).parent.parent
@@ -224,7 +224,7 @@ def draw(results: dict[str, Comparison], target: Path) -> None:
         poses.set_title("b", loc="left")
         poses.set_title("constant speed between, ScLERP", loc="center", fontweight="normal")
         poses.legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=2, fontsize=6.5)
-        style.settle(figure)
+        layout.settle(figure)
         figure.savefig(target / "how-few-poses.png", dpi=200, metadata={"Software": None})
 
 

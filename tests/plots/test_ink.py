@@ -16,9 +16,10 @@ from elbowscrew import compare, simulate_trial
 from elbowscrew.group.curves import PERCENT, group_curve
 from elbowscrew.motion.interpolation.keyframe_sources import ComparisonPlan
 from elbowscrew.plots.comparison import comparison_figure
+from elbowscrew.plots.layout import settle
 from elbowscrew.plots.overlay import conditions_figure, mean_curve, overlay_figure, subjects_figure
 from elbowscrew.plots.registry import FIGURES
-from elbowscrew.plots.style import letter, new_figure, publication_style, settle
+from elbowscrew.plots.style import letter, new_figure, publication_style
 from elbowscrew.view.figure_names import FIGURE_ENTRIES, has_figure
 
 WIDTHS_MM = (70.0, 85.0, 120.0, 170.0, 180.0)
@@ -99,7 +100,7 @@ def test_what_is_wrong_is_seen() -> None:
         ax.text(0.4, 0.4, "first")
         ax.text(0.41, 0.41, "second")
         assert "'first' over 'second'" in drawn(figure)
-        ax.text(0.9, 0.2, "a text that is too long")
+        ax.text(0.8, 0.2, "a text that is too long ——————————")
         assert "is cut off" in drawn(figure)
         assert "ink at the right edge" in drawn(figure)
         ax.legend(loc="center")

@@ -16,7 +16,8 @@ from PIL import Image
 from elbowscrew import Settings, analyze, save_analysis, simulate_trial
 from elbowscrew.cli import main
 from elbowscrew.errors import UsageError
-from elbowscrew.plots.style import new_figure, publication_style, settle
+from elbowscrew.plots.layout import settle
+from elbowscrew.plots.style import new_figure, publication_style
 from elbowscrew.report.figure_files import figure_files, files_of
 from elbowscrew.view.figure_names import FIGURE_ENTRIES, USUAL_FIGURES, chosen_figures
 

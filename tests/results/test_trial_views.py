@@ -17,7 +17,8 @@ from sealed import resealed
 from elbowscrew import Analysis, Settings, analyze, save_analysis, simulate_trial
 from elbowscrew.errors import ResultError
 from elbowscrew.plots import FIGURES
-from elbowscrew.plots.style import publication_style, settle
+from elbowscrew.plots.layout import settle
+from elbowscrew.plots.style import publication_style
 from elbowscrew.results.trial_views import is_result, view_of, view_of_result
 from elbowscrew.view.figure_names import has_figure
 from elbowscrew.view.trial_view import TrialView

@@ -14,7 +14,7 @@ from mpl_toolkits.mplot3d.axes3d import Axes3D
 
 from elbowscrew.choices import FigureName
 from elbowscrew.errors import UsageError
-from elbowscrew.plots import style
+from elbowscrew.plots import layout, style
 from elbowscrew.plots.panels import Panel, panels_of
 from elbowscrew.plots.registry import FIGURES
 from elbowscrew.view.figure_names import FIGURE_ENTRIES, has_figure
@@ -138,7 +138,7 @@ class Plots:
                 panel.draw(ax, self._view)
             style.letter(*axes)
             style.legend(figure, *axes)
-            style.settle(figure)
+            layout.settle(figure)
         return tuple(axes)
 
     def __repr__(self) -> str:
@@ -158,7 +158,7 @@ def drawn(
             own = [ax for ax in figure.axes if ax.get_label() != "<colorbar>"]
             for ax in own:
                 _style(list(ax.lines), style_of_curve, figure)
-            style.settle(figure)
+            layout.settle(figure)
         return tuple(own)
     panels = panels_of(name, view)
     _check_axes(name, panels, axes)

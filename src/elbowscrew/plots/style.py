@@ -2,26 +2,21 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager
 from contextvars import ContextVar
 from difflib import get_close_matches
-from itertools import pairwise
 from typing import Any, Final, cast
 
 import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties, fontManager
-from matplotlib.layout_engine import ConstrainedLayoutEngine
-from matplotlib.ticker import FixedLocator, MaxNLocator
-from matplotlib.transforms import Bbox
 
 from elbowscrew.errors import UsageError, shown
+from elbowscrew.plots.canvas import Sheet
 
 # One color means one thing in all figures. From the palettes of Okabe and Ito and of Tol; line styles, markers and
 # lightness tell the lines apart in grey as well. No transparency, which EPS does not have.
@@ -79,12 +74,7 @@ def tint(color: str) -> str:
 MM_PER_INCH: Final = 25.4
 POINTS_PER_MM: Final = 72.0 / MM_PER_INCH
 DOTS_PER_INCH: Final = 300
-_TEXT: Final = 7.5
-_SETTLED: Final = 4  # layouts at most
-_LEAST_AIR: Final = 2.0  # pixels
-_RAISED: Final = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-_POWER: Final = re.compile(r"1e(.+)")
-_UNIT: Final = re.compile(r"(.*)\(([^()]*)\)", re.DOTALL)
+TEXT: Final = 7.5
 _RC: Final[dict[Any, Any]] = {
     "font.size": 8.0,
     "axes.labelsize": 8.0,
@@ -96,12 +86,12 @@ _RC: Final[dict[Any, Any]] = {
     "axes.spines.top": False,
     "axes.spines.right": False,
     "axes.formatter.useoffset": False,
-    "xtick.labelsize": _TEXT,
-    "ytick.labelsize": _TEXT,
+    "xtick.labelsize": TEXT,
+    "ytick.labelsize": TEXT,
     "xtick.major.width": 0.7,
     "ytick.major.width": 0.7,
     "hatch.linewidth": 0.5,
-    "legend.fontsize": _TEXT,
+    "legend.fontsize": TEXT,
     "legend.frameon": False,
     "legend.framealpha": 1.0,
     "axes3d.xaxis.panecolor": "#F6F6F6",
@@ -149,15 +139,13 @@ def known_font(name: str) -> str:
 
 
 def new_figure(width_mm: float, height_mm: float) -> Figure:
-    """Return an empty figure of that size on paper, without pyplot's global state; `settle` lays it out."""
+    """Return an empty figure of that size on paper, without pyplot's global state; `layout.settle` lays it out."""
     size = width_mm / MM_PER_INCH, height_mm / MM_PER_INCH
     if _SHOWN.get():
         import matplotlib.pyplot as plt
 
         return plt.figure(figsize=size)
-    figure = Figure(figsize=size, dpi=DOTS_PER_INCH)
-    FigureCanvasAgg(figure)  # so that laying out and drawing share a renderer
-    return figure
+    return Sheet(size, DOTS_PER_INCH)
 
 
 _SHOWN: Final[ContextVar[bool]] = ContextVar("_SHOWN", default=False)
@@ -193,7 +181,7 @@ def legend(figure: Figure, *panels: Axes, below: bool = False) -> None:
     width, height = figure.get_size_inches()
     columns = _columns(figure, list(keys), 72.0 * width)
     rows = -(-len(keys) // columns)
-    figure.set_size_inches(width, height + (1.5 * rows + 1.0) * _TEXT / 72.0)
+    figure.set_size_inches(width, height + (1.5 * rows + 1.0) * TEXT / 72.0)
     place: Any = "outside lower center" if below else "outside upper center"
     figure.legend(keys.values(), keys.keys(), loc=place, ncols=columns)
 
@@ -201,144 +189,13 @@ def legend(figure: Figure, *panels: Axes, below: bool = False) -> None:
 def _columns(figure: Figure, labels: list[str], width: float) -> int:
     """How many columns of a legend fit into a width, points."""
     renderer = cast(Any, figure.canvas).get_renderer()
-    font = FontProperties(size=_TEXT)
+    font = FontProperties(size=TEXT)
     points = 72.0 / figure.dpi
     widths = [points * renderer.get_text_width_height_descent(label, font, "$" in label)[0] for label in labels]
-    beside = (mpl.rcParams["legend.handlelength"] + mpl.rcParams["legend.handletextpad"]) * _TEXT
-    between = mpl.rcParams["legend.columnspacing"] * _TEXT
+    beside = (mpl.rcParams["legend.handlelength"] + mpl.rcParams["legend.handletextpad"]) * TEXT
+    between = mpl.rcParams["legend.columnspacing"] * TEXT
     for columns in range(len(labels), 1, -1):
         parts = [max(part.tolist()) for part in np.array_split(np.array(widths), columns)]
-        if sum(parts) + columns * beside + (columns - 1) * between + 2.0 * _TEXT <= width:
+        if sum(parts) + columns * beside + (columns - 1) * between + 2.0 * TEXT <= width:
             return columns
     return 1
-
-
-def settle(figure: Figure) -> None:
-    """Lay a figure out once and for all, the places of its axes rounded.
-
-    Ticks are found anew when the axes have their size, and may be wider than those the layout left room for: then it is
-    laid out again. Tick labels that would touch are thinned.
-
-    The layout's solver leaves last digits that differ from run to run, and with them the bytes of a file. It works
-    here once: as the figure's own engine it would do so, and draw all for it, each time the figure is saved.
-    """
-    for attempt in range(_SETTLED):
-        ConstrainedLayoutEngine().execute(figure)
-        for ax in figure.axes:
-            _place(ax, ax.get_position(original=True).bounds)
-        figure.draw_without_rendering()
-        _place_spaces(figure)
-        if _multiplied(figure) or _thinned(figure):
-            continue
-        if not _cut_off(figure):
-            return
-        if attempt > 0:
-            _keep_ticks(figure)
-
-
-def _multiplied(figure: Figure) -> bool:
-    """Write powers of ten by which ticks are multiplied into the units, and keep them; tell whether there were any.
-
-    Matplotlib would write them above the axes, over the panel's letter.
-    """
-    found = False
-    for axis in (axis for ax in figure.axes for axis in cast(Any, ax)._axis_map.values()):
-        formatter = axis.get_major_formatter()
-        told = _POWER.fullmatch(formatter.get_offset())
-        if told and axis.get_offset_text().get_visible():
-            power = int(told[1].replace("\N{MINUS SIGN}", "-"))
-            formatter.set_powerlimits((power, power))
-            axis.get_offset_text().set_visible(False)
-            axis.set_label_text(_multiplied_label(axis.get_label_text(), f"10{str(power).translate(_RAISED)}"))
-            found = True
-    return found
-
-
-def _multiplied_label(label: str, factor: str) -> str:
-    """Put a factor before the unit in parentheses at the end of a label; an empty one stays so."""
-    found = _UNIT.fullmatch(label)
-    name, unit = found.groups() if found else (f"{label} ", "–")
-    return f"{name}({factor}{'' if unit == '–' else f' {unit}'})" if label else ""
-
-
-def _place(ax: Axes, bounds: tuple[float, float, float, float]) -> None:
-    left, bottom, width, height = (round(float(value), 6) for value in bounds)
-    ax.set_position((left, bottom, width, height), which="both")
-    ax.set_in_layout(True)  # which it is no more when it was placed by hand
-
-
-def _place_spaces(figure: Figure) -> None:
-    """Move each view in space to the middle of the room that it has, smaller if need be: the layout sees no part of it.
-
-    Other panels keep to the grid, whose columns the widest labels set; a space has labels of its own all around.
-    """
-    spaces = [ax for ax in figure.axes if ax.name == "3d"]
-    width = figure.bbox.width
-    for ax in spaces:
-        box = ax.get_tightbbox()
-        if box is None:
-            continue
-        middle = 0.5 * (box.x0 + box.x1)
-        beside = [other for one in figure.axes if _share_a_row(one, ax) and (other := one.get_tightbbox()) is not None]
-        left = max([other.x1 for other in beside if 0.5 * (other.x0 + other.x1) < middle], default=0.0)
-        right = min([other.x0 for other in beside if 0.5 * (other.x0 + other.x1) > middle], default=width)
-        air = 2.0 * _LEAST_AIR
-        scale = min(1.0, (right - left - 2.0 * air) / box.width)
-        old = ax.get_position()
-        shift = (0.5 * (left + right) - middle) / width
-        center = 0.5 * (old.x0 + old.x1) + shift, 0.5 * (old.y0 + old.y1)
-        size = scale * old.width, scale * old.height
-        corner = center[0] - 0.5 * size[0], center[1] - 0.5 * size[1]
-        _place(ax, (*corner, *size))
-    if spaces:
-        figure.draw_without_rendering()
-
-
-def _share_a_row(one: Axes, other: Axes) -> bool:
-    """Whether two panels, not the same, stand beside each other in the grid."""
-    first, second = one.get_subplotspec(), other.get_subplotspec()
-    if one is other or first is None or second is None:
-        return False
-    return first.rowspan.start < second.rowspan.stop and second.rowspan.start < first.rowspan.stop
-
-
-def _cut_off(figure: Figure) -> bool:
-    """Whether anything reaches over the edge of the paper, or up to it."""
-    paper = figure.bbox.padded(-_LEAST_AIR)
-    boxes = [box for ax in figure.axes if (box := ax.get_tightbbox()) is not None]
-    return any(bool(np.any(box.min < paper.min) or np.any(box.max > paper.max)) for box in boxes)
-
-
-def _thinned(figure: Figure) -> bool:
-    """Take fewer ticks where labels touch; tell whether any did."""
-    found = False
-    for ax in figure.axes:
-        for axis in (ax.xaxis, ax.yaxis) if ax.name != "3d" else ():
-            labels = _labels(axis)
-            if _touch(labels, 0 if axis is ax.xaxis else 1):
-                axis.set_major_locator(MaxNLocator(max(len(labels) - 2, 2), steps=[1, 2, 2.5, 5, 10]))
-                found = True
-    return found
-
-
-def _keep_ticks(figure: Figure) -> None:
-    """Keep the ticks as they are: others, at another width, ask for a room in which these come back."""
-    for axis in (axis for ax in figure.axes if ax.name != "3d" for axis in (ax.xaxis, ax.yaxis)):
-        if axis.get_scale() == "linear":
-            axis.set_major_locator(FixedLocator(axis.get_majorticklocs().tolist()))
-
-
-def _labels(axis: Any) -> list[Bbox]:
-    """Places of the tick labels that are drawn; none where the ticks are not to be changed."""
-    if axis.get_scale() != "linear" or isinstance(axis.get_major_locator(), FixedLocator):
-        return []
-    low, high = sorted(axis.get_view_interval())
-    labels = [tick.label1 for tick in axis.get_major_ticks() if low <= tick.get_loc() <= high]
-    return [label.get_window_extent() for label in labels if label.get_visible() and label.get_text()]
-
-
-def _touch(boxes: list[Bbox], along: int) -> bool:
-    """Whether neighbors lie closer to each other than half a digit's width along the axis, or at all up the axis."""
-    ends = sorted((box.min[along], box.max[along]) for box in boxes)
-    apart = 0.3 * _TEXT * DOTS_PER_INCH / 72.0 if along == 0 else 0.0
-    return len(ends) > 2 and any(after[0] - before[1] < apart for before, after in pairwise(ends))

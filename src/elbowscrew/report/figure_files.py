@@ -20,8 +20,10 @@ from PIL import Image
 from elbowscrew._process import has_spare_cores
 from elbowscrew.model import Analysis
 from elbowscrew.plots.figures import WIDTH_MM
+from elbowscrew.plots.layout import settle
 from elbowscrew.plots.registry import FIGURES
-from elbowscrew.plots.style import publication_style, settle
+from elbowscrew.plots.scale import draw_at_once
+from elbowscrew.plots.style import publication_style
 from elbowscrew.report.captions import caption_of
 from elbowscrew.results.trial_views import view_of
 from elbowscrew.view.figure_names import caption_file, has_figure
@@ -91,6 +93,7 @@ def files_of(
         for name, draw in drawings.items():
             figure = draw()
             settle(figure)
+            draw_at_once(figure)
             for kind in formats:
                 if kind == "png":
                     encode = partial(_png, _pixels(figure), figure.dpi)
@@ -118,7 +121,7 @@ def _tiff(figure: Figure) -> bytes:
     usual = figure.dpi
     figure.set_dpi(_TIFF_DOTS_PER_INCH)
     try:
-        image = Image.fromarray(_pixels(figure))
+        image = Image.fromarray(_pixels(figure)).convert("RGB")
     finally:
         figure.set_dpi(usual)
     stream = io.BytesIO()
@@ -128,31 +131,31 @@ def _tiff(figure: Figure) -> bytes:
 
 
 def _pixels(figure: Figure) -> NDArray[np.uint8]:
-    """Draw a figure, shape (height, width, 3)."""
+    """Draw a figure, shape (height, width, 4)."""
     canvas: Any = figure.canvas
     canvas.draw()
-    drawn = np.asarray(canvas.buffer_rgba(), dtype=np.uint8)
-    pixels = np.empty((*drawn.shape[:2], 3), dtype=np.uint8)
-    for channel in range(3):  # a third of the time that a copy of all at once takes
-        pixels[..., channel] = drawn[..., channel]
-    return pixels
+    return np.asarray(canvas.buffer_rgba(), dtype=np.uint8)
 
 
 def _png(pixels: NDArray[np.uint8], dots_per_inch: float) -> bytes:
-    """Write pixels (height, width, 3) as they are: line art compresses better so, and in a quarter of the time.
+    """Write pixels (height, width, 4), but not how opaque they are, without a filter.
+
+    Line art compresses better so, and in a quarter of the time.
 
     References
     ----------
     ISO/IEC 15948, Portable Network Graphics.
     """
     height, width, _ = pixels.shape
-    rows = np.zeros((height, 1 + 3 * width), dtype=np.uint8)  # each begins with its filter, which is none
-    rows[:, 1:] = pixels.reshape(height, -1)
+    rows = np.empty((height, 1 + 3 * width), dtype=np.uint8)
+    rows[:, 0] = 0  # each begins with its filter, which is none
+    for channel in range(3):  # a third of the time that a copy of all at once takes
+        rows[:, 1 + channel :: 3] = pixels[..., channel]
     per_meter = round(dots_per_inch / _INCH_M)
     parts = (
         (b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)),
         (b"pHYs", struct.pack(">IIB", per_meter, per_meter, 1)),
-        (b"IDAT", zlib.compress(rows.tobytes(), _COMPRESSION)),
+        (b"IDAT", zlib.compress(rows.data, _COMPRESSION)),
         (b"IEND", b""),
     )
     return _PNG + b"".join(
