@@ -136,7 +136,7 @@ def _cells(figure: Figure, room: Bbox, margins: dict[Axes, _Margins]) -> dict[Ax
         grid: Any = spec.get_gridspec()
         if grid not in parted:
             parent = getattr(grid, "_subplot_spec", None)
-            box = room if parent is None else cell(parent).inner
+            box = room if parent is None else cell(parent).outer
             rows, columns = grid.get_geometry()
             own = members[grid]
             left, right, top, bottom = np.zeros(columns), np.zeros(columns), np.zeros(rows), np.zeros(rows)

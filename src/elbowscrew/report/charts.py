@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Sequence
 from html import escape
+from math import isfinite
 from typing import Final
 
 import numpy as np
@@ -241,7 +242,7 @@ class Chart:
 
 def _numbers(values: Float) -> list[float | None]:
     """Values to seven digits, more than a chart shows; None where one is not known."""
-    return [float(f"{value:.7g}") if np.isfinite(value) else None for value in values.tolist()]
+    return [float(f"{value:.7g}") if isfinite(value) else None for value in values.tolist()]
 
 
 def keys_of(legend: Iterable[tuple[str, str]]) -> Markup:
