@@ -24,6 +24,7 @@ import threading
 import time
 from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
+from importlib.util import find_spec
 from pathlib import Path
 from typing import NamedTuple
 
@@ -34,6 +35,7 @@ from studies import WAYS, break_trial, command, contents
 
 FAST = ("--figure-format", "none")
 CHOSEN = list(WAYS)[:10]
+LOOP = "joblib" if find_spec("joblib") else "process pool"
 
 
 def main() -> None:
@@ -72,8 +74,10 @@ def measure(folder: Path, count: int) -> list[Row]:
                 os.link(path, some / path.name)
             found[workers, share_of] = timed(some, folder / f"out{workers}", workers)
     bare = timed(folder / "speed", folder / "bare", 2, *FAST)
+    loop = scripted(folder, count, 2)
     one, two = found[1, 1], found[2, 1]
-    stages = " ms, ".join(f"{name} {value:.0f}" for name, value in alone["stages_ms"].items())
+    stages = alone["stages_ms"]
+    told = " ms, ".join(f"{name} {stages[name]:.0f}" for name in ("read", "analyze", "write", "page"))
     return [
         Row(
             what=f"batch of {count} trials, 2 workers",
@@ -82,6 +86,12 @@ def measure(folder: Path, count: int) -> list[Row]:
             wanted=1.85,
             sense="at least",
             behind=f"{two.elapsed:.1f} against {one.elapsed:.1f} s",
+        ),
+        Row(
+            what=f"batch of {count} trials, 2 workers",
+            value=two.elapsed / loop,
+            unit=f"x the time of a {LOOP} loop over the pandas script, 2 workers",
+            behind=f"{two.elapsed:.1f} against {loop:.1f} s",
         ),
         Row(
             what="a trial with 1 worker",
@@ -97,6 +107,21 @@ def measure(folder: Path, count: int) -> list[Row]:
             wanted=1.1,
             behind=f"{1e3 * one.processor / count:.0f} against {1e3 * alone['processor'] / count:.0f} ms",
         ),
+        Row(what="a trial, all outputs", value=1e3 * alone["seconds"] / count, unit="ms", wanted=400.0),
+        Row(
+            what="a trial without figures",
+            value=stages["read"] + stages["analyze"] + stages["tables and page"],
+            unit="ms",
+            wanted=130.0,
+            behind=f"{told} ms, the page read back from the disk",
+        ),
+        Row(
+            what="analysis of 450 frames, with type and intervals",
+            value=stages["analyze"],
+            unit="ms",
+            wanted=100.0,
+        ),
+        Row(what="the usual figures of a trial, PNG", value=stages["figures"], unit="ms", wanted=260.0),
         Row(
             what="memory of a worker, 1 worker",
             value=one.memory / 1e6,
@@ -104,18 +129,37 @@ def measure(folder: Path, count: int) -> list[Row]:
             behind=f"{found[1, 4].memory / 1e6:.0f} MB with a quarter of the trials",
         ),
         Row(
+            what="memory of the parent, 1 worker",
+            value=one.parent / 1e6,
+            unit="MB at most",
+            behind=f"{found[1, 4].parent / 1e6:.0f} MB with a quarter of the trials",
+        ),
+        Row(
             what="batch without figures, 2 workers",
             value=count / bare.elapsed,
             unit="trials a second",
-            behind=f"one process: {stages} ms a trial; start-up and the study's page are in it",
+            behind="start-up and the study's page are in it",
         ),
     ]
+
+
+def scripted(folder: Path, count: int, workers: int) -> float:
+    """Seconds that the pandas script takes for the same trials, in a loop over as many processes."""
+    loop = Path(__file__).with_name("yardsticks") / "pandas_batch.py"
+    start = time.perf_counter()
+    out = folder / "scripted"
+    subprocess.run([sys.executable, loop, folder / "speed", out, str(workers)], check=True, stdout=subprocess.DEVNULL)
+    elapsed = time.perf_counter() - start
+    assert len(list(out.iterdir())) == count
+    shutil.rmtree(out)
+    return elapsed
 
 
 class Timing(NamedTuple):
     elapsed: float
     processor: float
     memory: int
+    parent: int
 
 
 def broken(folder: Path, trials: int | None) -> None:
@@ -198,18 +242,19 @@ def timed(data: Path, out: Path, workers: int, *options: str) -> Timing:
     shutil.rmtree(out, ignore_errors=True)
     before, start = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
     process = subprocess.Popen(command(data, "-q", "-o", out, "--workers", workers, *options))
-    most: list[int] = [0]
-    watcher = threading.Thread(target=watch, args=(process, most))
+    most, parent = [0], [0]
+    watcher = threading.Thread(target=watch, args=(process, most, parent))
     watcher.start()
     assert process.wait() == 0
     elapsed, after = time.perf_counter() - start, resource.getrusage(resource.RUSAGE_CHILDREN)
     watcher.join()
     processor = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-    return Timing(elapsed, processor, max(most))
+    return Timing(elapsed, processor, max(most), max(parent))
 
 
-def watch(process: subprocess.Popen[bytes], most: list[int]) -> None:
+def watch(process: subprocess.Popen[bytes], most: list[int], parent: list[int]) -> None:
     while process.poll() is None:
+        parent.append(high_water(process.pid))
         most.append(max([0, *(high_water(pid) for pid in children(process.pid))]))
         time.sleep(0.2)
 

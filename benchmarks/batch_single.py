@@ -1,7 +1,7 @@
 """The yardstick of ``batch.py``: the work on a folder in one process, ``batch_single.py DATA OUT``; JSON on the output.
 
 Reading, analyzing and writing, as ``elbowscrew analyze`` does them. Imports and the first trial, which fills caches,
-are not counted, but made up for by the mean of the others. Then the same without figures, stage by stage.
+are not counted, but made up for by the mean of the others. Then the same stage by stage.
 """
 
 from __future__ import annotations
@@ -17,9 +17,12 @@ from pathlib import Path
 from elbowscrew import Settings, analyze, read_recording, save_analysis
 from elbowscrew._process import collect_garbage, set_up_process
 from elbowscrew.report import write_trial_page
+from elbowscrew.report.figure_files import figure_files
 from elbowscrew.saving import analyze_file
+from elbowscrew.view.figure_names import USUAL_FIGURES
 
 STAGED = 50
+STAGES = ("read", "analyze", "write", "page", "figures", "tables and page")
 
 
 def main(data: Path, out: Path) -> None:
@@ -37,7 +40,7 @@ def main(data: Path, out: Path) -> None:
 
 
 def stages(paths: list[Path], out: Path) -> dict[str, float]:
-    """Milliseconds of a trial without figures, by what is done."""
+    """Milliseconds of a trial, by what is done: the median of several."""
     found: dict[str, list[float]] = defaultdict(list)
     for path in paths:
         folder = out / path.stem
@@ -51,7 +54,12 @@ def stages(paths: list[Path], out: Path) -> dict[str, float]:
         marks.append(time.perf_counter())
         write_trial_page(folder)
         marks.append(time.perf_counter())
-        for name, before, after in zip(("read", "analyze", "write", "page"), marks, marks[1:], strict=False):
+        figure_files(analysis, USUAL_FIGURES, ("png",))
+        marks.append(time.perf_counter())
+        save_analysis(analysis, folder, overwrite=True, figure_formats=())
+        marks.append(time.perf_counter())
+        collect_garbage()
+        for name, before, after in zip(STAGES, marks, marks[1:], strict=False):
             found[name].append(1e3 * (after - before))
     return {name: statistics.median(values) for name, values in found.items()}
 

@@ -1,7 +1,8 @@
 """All that is measured of the speed, beside what a user would take instead: ``python benchmarks/performance.py``.
 
 Half an hour on two cores, on a machine that does nothing else: times are taken in alternation with their yardsticks, so
-that the ratios hold where the times do not. Parts can be asked for by name; ``--quick`` takes smaller sizes.
+that the ratios hold where the times do not. Parts can be asked for by name; ``--quick`` takes five minutes, by fewer
+rounds and trials, and shorter series of the kernels and tables.
 ``--json FILE`` keeps the numbers, ``--docs FILE`` writes the page. ``--from FILE`` takes the numbers of an earlier run,
 but those of the parts that are asked for by name.
 """

@@ -100,7 +100,7 @@ def test_what_is_wrong_is_seen() -> None:
         ax.text(0.4, 0.4, "first")
         ax.text(0.41, 0.41, "second")
         assert "'first' over 'second'" in drawn(figure)
-        ax.text(0.8, 0.2, "a text that is too long ——————————")
+        ax.text(0.8, 0.2, "———————————————— a text that is too long")
         assert "is cut off" in drawn(figure)
         assert "ink at the right edge" in drawn(figure)
         ax.legend(loc="center")

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Collection, Iterator
-from io import StringIO, TextIOWrapper
-from itertools import islice
+from io import BytesIO, StringIO, TextIOWrapper
 from typing import Any, Final, TextIO
 
 import numpy as np
@@ -20,7 +19,7 @@ from elbowscrew.results.proof import ProvedFile
 from elbowscrew.results.summary_reading import LARGEST
 from elbowscrew.tables import Column, attributes
 
-_BLOCK_LINES: Final = 16_384
+_BLOCK_LETTERS: Final = 2**22
 _LARGEST_WHOLE: Final = 2.0**53 - 1.0
 _INTEGERS: Final = (Quantity.INTEGER, Quantity.MASKED_INTEGER, Quantity.FLAG)
 _AS_THEY_ARE: Final = (*_INTEGERS, Quantity.NUMBER, Quantity.LABEL)
@@ -97,13 +96,14 @@ def _read(
             quantities = [column.quantity for column in table]
             blocks: list[list[NDArray[Any]]] = [[] for _ in table]
             is_long = False
-            while lines := _whole_lines(stream):
-                if not lines[-1].endswith("\n"):
+            while text := _whole_lines(stream):
+                if not text.endswith("\n"):
                     msg = "its last line is cut"
                     raise ValueError(msg)
-                is_long = is_long or len(lines) >= _BLOCK_LINES
-                values = _numbers_at_once(lines, len(header), places, quantities) if is_long else None
+                is_long = is_long or len(text) >= _BLOCK_LETTERS
+                values = _numbers_at_once(text, len(header), places, quantities) if is_long else None
                 if values is None:
+                    lines = list(StringIO(text, newline=""))
                     values = _cell_by_cell(lines, len(header), places, quantities)
                 for block, one in zip(blocks, values, strict=True):
                     block.append(one)
@@ -151,25 +151,28 @@ def read_attributes(
     return attributes(_read(source, wanted, angle_unit, length_unit), wanted)
 
 
-def _whole_lines(stream: TextIO) -> list[str]:
+def _whole_lines(stream: TextIO) -> str:
     """Next lines of a table, and those that a label with a line break in it goes on in."""
-    lines = list(islice(stream, _BLOCK_LINES))
-    quotes = "".join(lines).count('"')
+    parts = [stream.read(_BLOCK_LETTERS), stream.readline()]
+    quotes = sum(part.count('"') for part in parts)
     while quotes % 2 and (more := stream.readline()):
-        lines.append(more)
+        parts.append(more)
         quotes += more.count('"')
-    return lines
+    return "".join(parts)
 
 
-def _numbers_at_once(
-    lines: list[str], width: int, places: list[int], quantities: list[Quantity]
-) -> list[NDArray[Any]] | None:
+def _numbers_at_once(text: str, width: int, places: list[int], quantities: list[Quantity]) -> list[NDArray[Any]] | None:
     """Columns of many lines by the parser of pandas, which takes longer to load than a short table to read.
 
     None where the lines have anything but as many numbers or empty cells as the header.
     """
-    text = "".join(lines)
-    if Quantity.LABEL in quantities or '"' in text or {line.count(",") for line in lines} != {width - 1}:
+    if Quantity.LABEL in quantities or '"' in text or "\r" in text:
+        return None
+    letters = text.encode()
+    codes = np.frombuffer(letters, dtype=np.uint8)
+    ends = np.flatnonzero(codes == ord("\n"))
+    commas = np.searchsorted(np.flatnonzero(codes == ord(",")), ends)
+    if (np.diff(commas, prepend=0) != width - 1).any():
         return None
     import pandas as pd
 
@@ -177,7 +180,7 @@ def _numbers_at_once(
     exact: dict[str, Any] = {} if _version(pd.__version__) >= (3, 1) else {"float_precision": "round_trip"}
     try:
         frame = pd.read_csv(
-            StringIO(text), header=None, usecols=places, dtype=np.float64, keep_default_na=False,
+            BytesIO(letters), header=None, usecols=places, dtype=np.float64, keep_default_na=False,
             na_values=[""], quoting=csv.QUOTE_NONE, **exact,
         )  # fmt: skip
         found = [
@@ -186,7 +189,7 @@ def _numbers_at_once(
         ]
     except ValueError:  # which the other way tells in words of its own
         return None
-    if len(frame) != len(lines):
+    if len(frame) != ends.size:
         return None
     for values, quantity in zip(found, quantities, strict=True):
         if quantity not in _INTEGERS:
