@@ -12,6 +12,7 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import RendererAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.markers import TICKDOWN, TICKLEFT
@@ -127,9 +128,11 @@ _BOXES: Final[dict[Any, tuple[float, float, float, float]]] = {}
 
 
 def _about(text: Any, word: str, renderer: Any) -> tuple[float, float, float, float]:
-    """Corners of a word about the point where a text puts it, pixels."""
+    """Corners of a word about the point where a text puts it, pixels; kept of what is drawn in pixels."""
+    if not isinstance(renderer, RendererAgg):
+        return _measured(text, word, renderer)
     look = hash(text.get_fontproperties()), text.get_rotation(), text.get_ha(), text.get_va(), text.get_rotation_mode()
-    return kept(_BOXES, (word, renderer.dpi, type(renderer), look), lambda: _measured(text, word, renderer))
+    return kept(_BOXES, (word, renderer.dpi, look), lambda: _measured(text, word, renderer))
 
 
 def _measured(text: Any, word: str, renderer: Any) -> tuple[float, float, float, float]:
