@@ -85,3 +85,14 @@ def test_a_figure_is_the_same_whatever_was_drawn_before() -> None:
     assert figure_files(trial, ["joint"], ["pdf", "svg", "png"]) | fresh == figure_files(
         trial, ["joint"], ["svg", "png", "pdf"]
     )
+
+
+def test_a_figure_of_spaces_alone_is_laid_out() -> None:
+    with publication_style():
+        figure = new_figure(85.0, 60.0)
+        spaces = [figure.add_subplot(1, 2, k, projection="3d") for k in (1, 2)]
+        settle(figure)
+        left, right = (cast(Bbox, ax.get_tightbbox()) for ax in spaces)
+    assert left.x0 >= 0.0
+    assert left.x1 <= right.x0
+    assert right.x1 <= figure.bbox.x1

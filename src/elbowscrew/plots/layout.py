@@ -24,7 +24,8 @@ _ROUNDS: Final = 12  # at most
 _AIR: Final = 3.0  # points about each panel with its words, and about a legend
 _MARKER: Final = 3.2  # points by which a keyframe at the edge of a panel stands out
 _LEAST_AIR: Final = 2.0  # pixels
-_LABELS: Final = 40.0  # points that the labels on both sides of a view in space take at least
+_LABELS: Final = 40.0  # points that the labels on both sides of a view in space take, or so
+_LITTLE: Final = 0.85
 _RAISED: Final = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _POWER: Final = re.compile(r"1e(.+)")
 _UNIT: Final = re.compile(r"(.*)\(([^()]*)\)", re.DOTALL)
@@ -52,7 +53,7 @@ def settle(figure: Figure) -> None:
     spaces = [ax for ax in figure.axes if ax.name == "3d" and ax.get_subplotspec() is not None]
     room = _room(figure, renderer)
     held: dict[Axes, _Margins] = {}
-    cells: dict[Axes, _Cell] = {}
+    cells = _cells(figure, room, dict.fromkeys([*flat, *spaces], _Margins()))
     for attempt in range(_ROUNDS):
         found = {}
         for ax in flat:
@@ -179,17 +180,21 @@ def _place_space(ax: Axes, cell: _Cell, renderer: Any) -> None:
     Its labels stand all around, and keep their size; and matplotlib draws it in a square that it leaves empty in part.
     """
     room = cell.outer.padded(-_LEAST_AIR)
+    kept = _LABELS * ax.figure.dpi / 72.0
     _place(ax, cell.inner)
-    box = ax.get_tightbbox(renderer)
-    if _multiplied(ax):
+    for _ in range(_ROUNDS):
         box = ax.get_tightbbox(renderer)
-    if box is not None:
-        kept = _LABELS * ax.figure.dpi / 72.0
+        if _multiplied(ax):
+            box = ax.get_tightbbox(renderer)
+        if box is None:
+            return
         scale = min(1.0, *((np.array(room.size) - kept) / (np.array(box.size) - kept)).tolist())
         old = ax.get_position(original=True).transformed(ax.figure.transFigure)
         moved = _middle(room) + scale * (_middle(old) - _middle(box))
         half = 0.5 * scale * np.array(old.size)
         _place(ax, Bbox([moved - half, moved + half]))
+        if scale > _LITTLE:  # the labels are as large as was thought, or it hardly matters
+            return
 
 
 def _middle(box: Bbox) -> Float:
