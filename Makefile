@@ -21,7 +21,8 @@ test-oldest:  ## all tests at the oldest versions allowed, in an environment of 
 	.venv-oldest/bin/pytest -q -n 2 --dist worksteal
 
 docs:  ## the documentation in build/site, everything in it run; open build/site/index.html
-	@$(BIN)/python -c "import myst_nb, sphinx_gallery" 2> /dev/null || $(BIN)/pip install --quiet -e ".[docs]"
+	@test -x $(BIN)/python || python3 -m venv $(BIN)/..
+	@$(BIN)/python -c "import myst_nb, sphinx_gallery, elbowscrew" 2> /dev/null || $(BIN)/pip install --quiet -e ".[docs]"
 	$(BIN)/python docs/make_settings.py
 	$(BIN)/python docs/make_schemas.py
 	$(BIN)/sphinx-build -W --keep-going --quiet docs build/site
