@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import hashlib
+import html
 import importlib
 import re
 import sys
@@ -13,10 +15,13 @@ import pytest
 
 import elbowscrew
 from elbowscrew import plug_ins
-from elbowscrew.errors import RecordingError, SettingError, UsageError
+from elbowscrew.cli import main
+from elbowscrew.errors import OutputError, RecordingError, SettingError, UsageError
 from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat
 from elbowscrew.reading import plugged
 from elbowscrew.reading.registry import recordings_in
+from elbowscrew.study.resume import standing_of
+from elbowscrew.study.task import TrialTask, analyze_trial, versions_here
 from elbowscrew.study.trials import find_trials
 
 
@@ -36,7 +41,7 @@ def install(root: Path, site: Path, number: int) -> Path:
 
 def look_anew() -> None:
     importlib.invalidate_caches()
-    for name in ("mylab_elbowscrew", "mylab_laws"):
+    for name in ("mylab_elbowscrew", "mylab_laws", "mylab_export"):
         sys.modules.pop(name, None)
     plug_ins.forget()
     plugged.readers.cache_clear()
@@ -149,3 +154,150 @@ def test_a_law_that_is_none_is_refused(law: Path) -> None:
 def test_without_plug_ins_a_law_is_asked_back() -> None:
     with pytest.raises(UsageError, match=r"expected cycloidal, .*found 'cyclodial'; did you mean 'cycloidal'"):
         elbowscrew.analyze(elbowscrew.simulate_trial(frames=80, inversion=40).recording, law="cyclodial")
+
+
+@pytest.fixture
+def exporter(root: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    """The exporter of the documentation."""
+    module = install(root, tmp_path / "site", 2)
+    monkeypatch.syspath_prepend(str(tmp_path / "site"))
+    look_anew()
+    yield module
+    look_anew()
+
+
+def short_trial() -> elbowscrew.Analysis:
+    return elbowscrew.analyze(
+        elbowscrew.simulate_trial(frames=80, inversion=40, seed=1).recording, export=["mylab-angle", "sto"]
+    )
+
+
+def test_the_exporter_of_the_documentation_writes_into_the_result(exporter: Path, tmp_path: Path) -> None:
+    analysis = short_trial()
+    folder = elbowscrew.save_analysis(analysis, tmp_path / "result", figure_formats=(), report=False)
+    placed = folder / "exports" / "mylab-angle"
+    assert sorted(path.name for path in placed.iterdir()) == ["angle.txt", "joint.txt"]
+    angle = np.loadtxt(placed / "angle.txt", skiprows=1)[:, 1]
+    np.testing.assert_allclose(angle, np.degrees(analysis.screw.angle), rtol=1e-9)
+    lines = (folder / "SHA256SUMS").read_text().splitlines()
+    assert hashlib.sha256((placed / "angle.txt").read_bytes()).hexdigest() in {line.split()[0] for line in lines}
+    assert {"exports/mylab-angle/angle.txt", "joint_angle.sto"} < {line.split()[1] for line in lines}
+    elbowscrew.save_analysis(analysis, folder, overwrite=True, figure_formats=(), report=False, exports=())
+    assert not (folder / "exports").exists()
+
+
+def test_a_result_is_read_where_its_plug_ins_are_not_installed(
+    exporter: Path, root: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    install(root, tmp_path / "site", 1)
+    look_anew()
+    recording = elbowscrew.simulate_trial(frames=80, inversion=40, seed=1).recording
+    folder = elbowscrew.save_analysis(
+        elbowscrew.analyze(recording, law="my-law", export=["mylab-angle"]), tmp_path / "result", figure_formats=()
+    )
+    monkeypatch.setattr(sys, "path", [one for one in sys.path if one != str(tmp_path / "site")])
+    look_anew()
+    again = elbowscrew.read_result(folder)
+    assert again.settings.export == ("mylab-angle",)
+    assert again.settings.law == "my-law"
+    assert again.plot.theta().lines
+    with pytest.raises(UsageError, match="export: expected parquet, mat, sto, found 'mylab-angle'"):
+        elbowscrew.Settings(export=("mylab-angle",))
+
+
+def test_an_exporter_takes_an_analysis_and_one_read_back(exporter: Path, tmp_path: Path) -> None:
+    write = importlib.import_module("mylab_export").write
+    analysis = short_trial()
+    again = elbowscrew.read_result(elbowscrew.save_analysis(analysis, tmp_path / "r", figure_formats=(), exports=()))
+    written: list[str] = []
+    for trial in (analysis, again):
+        (place := tmp_path / f"out{len(written)}").mkdir()
+        write(trial, place)
+        written.append((place / "joint.txt").read_text())
+    assert written[0] == written[1]
+
+
+@pytest.mark.parametrize(
+    ("line", "told"),
+    [
+        ("    1 / 0", "ZeroDivisionError division by zero"),
+        ("    (folder / 'deep').mkdir()", "it left 'deep': expected files alone"),
+        ("    (folder / 'a b').touch()", "it left 'a b': expected files alone"),
+        ("    [one.unlink() for one in folder.iterdir()]", "it wrote no file"),
+        ("    raise SystemExit('enough')", "SystemExit enough"),
+    ],
+)
+def test_an_exporter_that_fails_does_not_cost_the_result(
+    exporter: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], line: str, told: str
+) -> None:
+    exporter.write_text(f"{exporter.read_text()}\n{line}\n")
+    look_anew()
+    target = tmp_path / "result"
+    with pytest.raises(OutputError, match="the result is there, but the export 'mylab-angle'") as caught:
+        elbowscrew.save_analysis(short_trial(), target, figure_formats=())
+    assert told in str(caught.value)
+    assert "\n" not in str(caught.value)
+    assert not (target / "exports").exists()
+    again = elbowscrew.read_result(target)
+    assert [one["code"] for one in again.summary["warnings"]].count("export-failed") == 1
+    assert told in html.unescape((target / "report.html").read_text(encoding="utf-8"))
+
+
+def test_an_exporter_cannot_change_the_numbers(exporter: Path, tmp_path: Path) -> None:
+    analysis = short_trial()
+    known = elbowscrew.save_analysis(analysis, tmp_path / "known", figure_formats=("svg",), exports=("sto",))
+    lines = "trial.summary['warnings'].clear(); frame = trial.to_frame(); frame.loc[:, ['time_s', 'theta_deg']] = 0.0"
+    exporter.write_text(exporter.read_text().replace("    angle =", f"    {lines}\n    angle ="))
+    look_anew()
+    changed = elbowscrew.save_analysis(analysis, tmp_path / "changed", figure_formats=("svg",))
+    for name in ("screw.csv", "summary.json", "joint.json", "figures/theta.svg"):
+        assert (known / name).read_bytes() == (changed / name).read_bytes()
+
+
+def test_what_no_exporter_has_written_is_not_removed(exporter: Path, tmp_path: Path) -> None:
+    analysis = short_trial()
+    folder = elbowscrew.save_analysis(analysis, tmp_path / "result", figure_formats=(), report=False)
+    note = folder / "exports" / "mylab-angle" / "note.txt"
+    note.write_text("mine")
+    with pytest.raises(OutputError, match=r"'exports/mylab-angle/note.txt', which is not ours"):
+        elbowscrew.save_analysis(analysis, folder, overwrite=True, figure_formats=())
+    assert note.read_text() == "mine"
+
+
+def test_a_batch_makes_a_trial_again_whose_export_is_missing(exporter: Path, tmp_path: Path) -> None:
+    trial = elbowscrew.simulate_trial(frames=80, inversion=40, seed=1)
+    source, _ = elbowscrew.save_simulation(trial, tmp_path / "trial.csv")
+    settings = elbowscrew.Settings(export=("mylab-angle",), figure_format=("none",))
+    task = TrialTask(
+        path=source, label="trial", folder=tmp_path / "study" / "trial", settings=settings, landmarks=None,
+        versions=versions_here(),
+    )  # fmt: skip
+    (tmp_path / "study").mkdir()
+    good = exporter.read_text()
+    exporter.write_text(f"{good}\n    1 / 0\n")
+    look_anew()
+    assert analyze_trial(task) is None
+    assert not standing_of(task).current
+    exporter.write_text(good)
+    look_anew()
+    assert analyze_trial(task) is None
+    assert standing_of(task).current
+    (task.folder / "exports" / "mylab-angle" / "angle.txt").write_text("edited")
+    assert standing_of(task).changed == ("exports/mylab-angle/angle.txt",)
+
+
+def test_an_exporter_that_cannot_be_loaded_is_told_before_the_work(
+    exporter: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    exporter.write_text("write = 3")
+    look_anew()
+    monkeypatch.chdir(tmp_path)
+    elbowscrew.save_simulation(elbowscrew.simulate_trial(frames=80, inversion=40, seed=1), "trial.csv")
+    assert main(["analyze", "trial.csv", "--export", "mylab-angle"]) == UsageError.exit_code
+    assert "'mylab-angle' of the distribution 'mylab_export'" in capsys.readouterr().err
+    assert main(["analyze", "trial.csv", "--export", "mylab-angel"]) == UsageError.exit_code
+    assert "did you mean 'mylab-angle'?" in capsys.readouterr().err
+    exporter.write_text("def write(trial, folder): 1 / 0")
+    look_anew()
+    assert main(["analyze", "trial.csv", "--export", "mylab-angle", "--figure-format", "none"]) == OutputError.exit_code
+    assert "the result is there, but the export 'mylab-angle'" in capsys.readouterr().err

@@ -92,7 +92,7 @@ def test_the_former_names_are_the_bodies_own() -> None:
     settings = Settings(arm="A", forearm="B", arm_markers=("a",), forearm_markers=("b",))
     assert (settings.proximal, settings.distal, settings.arm, settings.forearm) == ("A", "B", "A", "B")
     assert (settings.proximal_markers, settings.distal_markers) == (("a",), ("b",))
-    with pytest.raises(ValueError, match="twice"):
+    with pytest.raises(UsageError, match="twice"):
         Settings(arm="A", proximal="B")
 
 

@@ -46,6 +46,7 @@ if TYPE_CHECKING:
     from elbowscrew.reading.plugged import Reader
     from elbowscrew.reading.registry import read_recording
     from elbowscrew.results.keyframe_table import read_keyframes
+    from elbowscrew.results.plugged import ExportedTrial
     from elbowscrew.results.summary import summary_from_analysis
     from elbowscrew.saving import save_analysis, save_comparison, save_motion, save_simulation
     from elbowscrew.settings import Settings
@@ -56,6 +57,7 @@ __all__ = [
     "Comparison",
     "ComparisonPlan",
     "ElbowscrewError",
+    "ExportedTrial",
     "KeyframeSet",
     "Landmark",
     "Landmarks",
@@ -96,6 +98,7 @@ _HOME = {
     "Comparison": "model",
     "ComparisonPlan": "motion.interpolation.keyframe_sources",
     "ElbowscrewError": "errors",
+    "ExportedTrial": "results.plugged",
     "KeyframeSet": "model",
     "Landmark": "model",
     "Landmarks": "model",

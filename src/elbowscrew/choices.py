@@ -107,6 +107,7 @@ JOINT_TYPE_WORDS: Final[dict[str, str]] = {
 }
 """What types of joint are called in a sentence."""
 FRAMES: Final[tuple[ExpressIn, ...]] = get_args(ExpressIn)
+EXPORT_NAMES: Final[tuple[ExportName, ...]] = get_args(ExportName)
 FIGURE_FORMATS: Final[tuple[FigureFormat, ...]] = get_args(FigureFormat)
 DRAWN_FORMATS: Final = tuple(kind for kind in FIGURE_FORMATS if kind != "none")
 

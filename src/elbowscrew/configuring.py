@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-import difflib
-import re
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Final
 
 from pydantic import ValidationError
 
 from elbowscrew.declaring import FORMER_NAMES, option_name
-from elbowscrew.errors import UsageError, asked_back, shown, why_unreadable
+from elbowscrew.errors import UsageError, why_unreadable
 from elbowscrew.opening import read_toml
+from elbowscrew.setting_faults import told_faults
+from elbowscrew.setting_values import BY_OPTIONS, READ_BACK
 from elbowscrew.settings import LISTS, SETTINGS, Settings
 
-_QUOTED: Final = re.compile(r"'([^']+)'")
 _FIELDS: Final = {one.option: one.field for one in SETTINGS}
 
 
@@ -57,15 +56,18 @@ def _read_toml(config: Path) -> dict[str, Any]:
     return {key: [value] if key in LISTS and isinstance(value, str) else value for key, value in table.items()}
 
 
-def settings_from_options(values: Mapping[str, Any]) -> Settings:
+def settings_from_options(values: Mapping[str, Any], *, read_back: bool = False) -> Settings:
     """Make settings of values by the names of their options, as ``summary.json`` has them.
+
+    Settings that are read back from a result may name what plug-ins bring that are not installed here.
 
     Raises
     ------
     pydantic.ValidationError
         If a name or a value is not a possible one.
     """
-    return Settings.model_validate({_FIELDS.get(name, name): value for name, value in values.items()})
+    named = {_FIELDS.get(name, name): value for name, value in values.items()}
+    return Settings.model_validate(named, context=READ_BACK if read_back else BY_OPTIONS)
 
 
 def settings_with(settings: Settings | None, fields: Mapping[str, Any]) -> Settings:
@@ -79,11 +81,7 @@ def settings_with(settings: Settings | None, fields: Mapping[str, Any]) -> Setti
     former = {name.replace("-", "_"): now.replace("-", "_") for name, now in FORMER_NAMES.items()}
     given = {} if settings is None else {name: getattr(settings, name) for name in settings.model_fields_set}
     changed = {former.get(name, name): value for name, value in fields.items()}
-    try:
-        return Settings.model_validate({**given, **changed})
-    except ValidationError as error:
-        known = list(Settings.model_fields)
-        raise UsageError("; ".join(_sentence("settings", fault, known, str) for fault in _faults(error))) from error
+    return Settings.model_validate({**given, **changed})
 
 
 def options_from_settings(settings: Settings) -> dict[str, Any]:
@@ -91,8 +89,8 @@ def options_from_settings(settings: Settings) -> dict[str, Any]:
     return {option_name(field): value for field, value in settings.model_dump(mode="json").items()}
 
 
-def checked_settings(values: Mapping[str, Any], location: str) -> Settings:
-    """Make settings of values by the names of their options.
+def checked_settings(values: Mapping[str, Any], location: str, *, read_back: bool = False) -> Settings:
+    """Make settings of values by the names of their options; see `settings_from_options`.
 
     Raises
     ------
@@ -100,26 +98,6 @@ def checked_settings(values: Mapping[str, Any], location: str) -> Settings:
         If a name or a value is not a possible one; it begins with the location and names the key.
     """
     try:
-        return settings_from_options(values)
+        return settings_from_options(values, read_back=read_back)
     except ValidationError as error:
-        raise UsageError("; ".join(_sentence(location, fault, list(_FIELDS)) for fault in _faults(error))) from error
-
-
-def _faults(error: ValidationError) -> list[Any]:
-    """Faults of values, without that of a list which is empty only because none of its values was taken."""
-    faults: list[Any] = error.errors()
-    parts = {fault["loc"][0] for fault in faults if len(fault["loc"]) > 1}
-    return [one for one in faults if one["type"] != "too_short" or one["loc"][0] not in parts]
-
-
-def _sentence(location: str, fault: Any, known: list[str], named: Callable[[str], str] = option_name) -> str:
-    key = named(str(fault["loc"][0])) if fault["loc"] else ""
-    if fault["type"] == "extra_forbidden":
-        close = difflib.get_close_matches(key, known, n=1)
-        hint = f"did you mean {close[0]!r}?" if close else f"possible keys: {', '.join(known)}"
-        return f"{location}: unknown key {shown(key)}; {hint}"
-    message = str(fault["msg"]).removeprefix("Value error, ").replace("Input should", "should")
-    if not key or fault["type"] == "value_error":  # our own checks say themselves what they found
-        return f"{location}: {key}: {message}" if key else f"{location}: {message}"
-    mean = asked_back(fault["input"], _QUOTED.findall(str(fault.get("ctx", {}).get("expected", ""))))
-    return f"{location}: {key}: {message}, found {shown(fault['input'])}{mean}"
+        raise UsageError(told_faults(error, location, list(_FIELDS))) from error

@@ -15,6 +15,9 @@ READERS: Final = "elbowscrew.readers"
 LAWS: Final = "elbowscrew.laws"
 """That of laws of motion: the name of the entry point is the name of the law."""
 
+EXPORTERS: Final = "elbowscrew.exporters"
+"""That of functions that write a trial for other programs: the name of the entry point is that of the export."""
+
 Kind = TypeVar("Kind")
 
 
@@ -58,7 +61,7 @@ def told(group: str, name: str) -> str:
     return f"the {group.rpartition('.')[2].removesuffix('s')} {name!r} of {owner} ({point.value})"
 
 
-def brief(error: Exception) -> str:
+def brief(error: BaseException) -> str:
     """Give an error of somebody else's in a line."""
     return " ".join(f"{type(error).__name__} {error}".split())
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from elbowscrew.choices import DRAWN_FORMATS
-from elbowscrew.errors import ElbowscrewError, UsageError
+from elbowscrew.errors import ElbowscrewError, OutputError, UsageError
 from elbowscrew.model import Analysis, Comparison, Landmarks, RebuiltMotion, TrialsComparison
 from elbowscrew.model.comparison_summary_types import ComparisonSummary, TrialsSummary
 from elbowscrew.model.mesh import Mesh
@@ -18,15 +18,16 @@ from elbowscrew.model.summary_types import Summary
 from elbowscrew.motion.analysis import analyze
 from elbowscrew.opening import write_new
 from elbowscrew.reading.registry import read_recording
-from elbowscrew.results.exporting import check_exports, write_exports
+from elbowscrew.results.exporting import EXPORTS, check_exports, write_exports
 from elbowscrew.results.joint_summary import joint_summary
 from elbowscrew.results.meshes_file import MESHES, meshes_file, placed_meshes
+from elbowscrew.results.plugged import FAILED, write_by_plug_ins
 from elbowscrew.results.result_files import COMPARISON
 from elbowscrew.results.staging import result_folder, write_files
 from elbowscrew.results.summary import summary_from_analysis
 from elbowscrew.results.summary_reading import JOINT, SUMMARY
 from elbowscrew.results.trial_views import view_of_analysis
-from elbowscrew.results.writing import table_bytes, write_table, write_tables
+from elbowscrew.results.writing import results_by_table, table_bytes, write_table, write_tables
 from elbowscrew.settings import Settings
 from elbowscrew.view.figure_names import caption_file, chosen_figures
 from elbowscrew.view.trial_view import TrialView
@@ -90,7 +91,7 @@ def save_analysis(
         Replace an earlier result.
     figure_formats : sequence of {"png", "svg", "pdf", "tiff", "eps"}, optional
         Those of the analysis' settings by default; may be empty.
-    exports : sequence of {"parquet", "mat", "sto"}, optional
+    exports : sequence of {"parquet", "mat", "sto"} or names of plug-ins, optional
         Formats of other programs to write the tables in, too; those of the analysis' settings by default.
     report : bool
         Write the page, and the methods as text.
@@ -105,7 +106,8 @@ def save_analysis(
     Raises
     ------
     OutputError
-        If a result is there already, or the disk does not take it.
+        If a result is there already, or the disk does not take it; or if an export of a plug-in was not written: then
+        all else is.
     UsageError
         If a format is not known, or its library is not installed, or a mesh is of no body of the trial.
 
@@ -118,10 +120,19 @@ def save_analysis(
     True
     """
     target = Path(folder)
-    write_result(
+    written = write_result(
         analysis, target, force=overwrite, figure_formats=figure_formats, exports=exports, report=report, meshes=meshes
     )
+    check_written(written, target)
     return target
+
+
+def check_written(summary: Summary, target: Path) -> None:
+    """Raise `OutputError` if an export of a plug-in was not written, as the summary of a result tells."""
+    failed = [one["message"] for one in summary["warnings"] if one["code"] == FAILED]
+    if failed:
+        msg = f"{target}: the result is there, but {'; '.join(failed)}"
+        raise OutputError(msg)
 
 
 def write_result(
@@ -134,7 +145,7 @@ def write_result(
     report: bool = True,
     meshes: Mapping[str, Mesh] | None = None,
 ) -> Summary:
-    """Do what `save_analysis` does, and give the summary that was written."""
+    """Do what `save_analysis` does, and give the summary that was written; see `check_written`."""
     formats = _known_formats(analysis.settings.figure_formats if figure_formats is None else tuple(figure_formats))
     others = analysis.settings.export if exports is None else tuple(exports)
     check_exports(others)
@@ -142,6 +153,9 @@ def write_result(
     with result_folder(target, force=force) as staged:
         write_tables(staged, analysis)
         _write_json(staged / JOINT, joint)
+        plugged = [name for name in dict.fromkeys(others) if name not in EXPORTS]
+        failed = write_by_plug_ins(staged, plugged, results_by_table(analysis), found, joint)
+        found["warnings"] = sorted([*found["warnings"], *failed], key=lambda one: one["severity"] == "note")
         figures = chosen_figures(analysis.settings.figures)
         view = view_of_analysis(analysis, found, joint, figures if formats else ())
         if meshes:

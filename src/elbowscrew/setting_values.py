@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import Final
+
+from pydantic import ValidationInfo
 
 from elbowscrew import plug_ins
-from elbowscrew.choices import FRAMES, LAW_NAMES, STATED_JOINTS
+from elbowscrew.choices import EXPORT_NAMES, FRAMES, LAW_NAMES, STATED_JOINTS
 from elbowscrew.errors import asked_back, shown
 
 
@@ -31,11 +34,31 @@ def joint_type(value: object) -> object:
     return name
 
 
-def law(value: object) -> object:
+BY_OPTIONS: Final = "by options"
+"""The context of settings that are given by the names of their options, and told so."""
+READ_BACK: Final = "read back"
+"""The context of settings that a finished result tells of: it was made where its plug-ins were installed."""
+
+
+def law(value: object, info: ValidationInfo) -> object:
     """Take our laws' names, and those of plug-ins, which are looked for where a name is none of ours."""
-    if value is None or value in LAW_NAMES or (isinstance(value, str) and value in plug_ins.names(plug_ins.LAWS)):
-        return value
-    known = (*LAW_NAMES, *plug_ins.names(plug_ins.LAWS))
+    if value is not None:
+        _check_known(value, LAW_NAMES, plug_ins.LAWS, info)
+    return value
+
+
+def exports(value: object, info: ValidationInfo) -> object:
+    """Take the names of our exports, and those of plug-ins."""
+    for one in value if isinstance(value, Sequence) and not isinstance(value, str) else ():
+        _check_known(one, EXPORT_NAMES, plug_ins.EXPORTERS, info)
+    return value
+
+
+def _check_known(value: object, ours: Sequence[str], group: str, info: ValidationInfo) -> None:
+    """Raise `ValueError` if a name is neither one of ours nor that of a plug-in."""
+    if value in ours or (isinstance(value, str) and (info.context == READ_BACK or value in plug_ins.names(group))):
+        return
+    known = (*ours, *plug_ins.names(group))
     msg = f"expected {', '.join(known)}, found {shown(value)}{asked_back(value, known)}"
     raise ValueError(msg)
 

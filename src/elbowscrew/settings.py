@@ -9,13 +9,21 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any, Final, Literal
 
-from pydantic import BaseModel, field_validator, model_validator
+from pydantic import (
+    BaseModel,
+    ModelWrapValidatorHandler,
+    ValidationError,
+    ValidationInfo,
+    field_validator,
+    model_validator,
+)
 
 from elbowscrew import setting_values as taken
 from elbowscrew.choices import (
+    EXPORT_NAMES,
     FRAMES,
     LAW_NAMES,
     STATED_JOINTS,
@@ -48,7 +56,8 @@ from elbowscrew.declaring import (
     declared,
     setting,
 )
-from elbowscrew.errors import SettingError
+from elbowscrew.errors import SettingError, UsageError
+from elbowscrew.setting_faults import in_keywords, told_faults
 
 STILL: Final = "none"
 """The value of ``proximal`` that says: the file has no such body, it stands still."""
@@ -58,7 +67,8 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
     """How a recording is analyzed.
 
     The names here carry their units; on the command line and in TOML the unit is left out (`option_name`).
-    An impossible value raises `UsageError` through `settings_from`, and pydantic's own error here.
+    An impossible value raises `UsageError`, which names the field. Settings do not change; keywords beside them, as of
+    `elbowscrew.analyze`, are stronger.
     """
 
     joint: JointName | None = setting(None, "Name of the joint.", BODIES, shown="by the bodies' names")
@@ -185,7 +195,10 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
     font: str | None = setting(
         None, "Font of the figures: the name of an installed family.", OUTPUT, metavar="NAME", shown="DejaVu Sans"
     )
-    export: tuple[ExportName, ...] = setting((), "Also write the tables in these formats.", OUTPUT, shown="none")
+    export: tuple[ExportName | str, ...] = setting(
+        (), f"Also write the tables in these formats: {', '.join(EXPORT_NAMES)}, or one of a plug-in.", OUTPUT,
+        metavar="FORMATS", shown="none",
+    )  # fmt: skip
     units: FileUnit | None = setting(None, "Unit of length, if the file states none.", BODIES)
     rotation: RotationType | None = setting(None, "Rotation type, if the file states none.", BODIES)
     rate_hz: float | None = setting(
@@ -257,6 +270,19 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
         """The law of motion, the default resolved."""
         return self.law or ("cycloidal" if self.tolerance_mm is None else "linear")
 
+    def __str__(self) -> str:
+        return repr(self)
+
+    def __repr_args__(self) -> Iterator[tuple[str, Any]]:
+        """Show what is not the default."""
+        return ((name, value) for name, value in self if value != type(self).model_fields[name].default)
+
+    def __setattr__(self, name: str, value: object) -> None:
+        """Say how other settings are made."""
+        hint = f"give {name} beside them, as in analyze(path, settings, {name}=…)"
+        msg = f"settings do not change: make new ones, or {hint}"
+        raise UsageError(msg)
+
     @model_validator(mode="before")
     @classmethod
     def _former_names(cls, values: object) -> object:
@@ -271,6 +297,7 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
         return named
 
     _law = field_validator("law", mode="before")(taken.law)
+    _export = field_validator("export", mode="before")(taken.exports)
     _frame = field_validator("express_in", mode="before")(taken.frame)
     _joint_type = field_validator("joint_type", mode="before")(taken.joint_type)
     _cutoff = field_validator("lowpass_hz", mode="before")(taken.cutoff)
@@ -338,9 +365,29 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
             raise ValueError(msg)
         return self
 
+    @model_validator(mode="wrap")
+    @classmethod
+    def _told_in_keywords(
+        cls, values: object, handler: ModelWrapValidatorHandler[Settings], info: ValidationInfo
+    ) -> Settings:
+        """Raise `UsageError` in the fields' names, of the checks above as well.
+
+        Where options are given, who gives them tells what is wrong.
+        """
+        if info.context is not None:
+            return handler(values)
+        try:
+            return handler(values)
+        except ValidationError as error:
+            message = told_faults(error, "settings", list(cls.model_fields), str)
+        raise UsageError(in_keywords(message, SETTING_KEYWORDS))
+
 
 SETTINGS: Final = tuple(declared(field, info) for field, info in Settings.model_fields.items())
 """Every setting."""
+
+SETTING_KEYWORDS: Final = {one.option: (one.field, one.choices) for one in SETTINGS}
+"""Field and choices by the names of options."""
 
 Settings.__doc__ = f"{(Settings.__doc__ or '').rstrip()}{attributes(SETTINGS)}"
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import pickle
 import re
 from pathlib import Path
 from typing import Any, Literal, get_args, get_origin, get_type_hints
@@ -64,6 +65,36 @@ def test_errors_name_keywords(samples: Path, given: dict[str, Any], told: str) -
     with pytest.raises(ElbowscrewError, match=re.escape(told)) as caught:
         elbowscrew.analyze(samples / "elbow_natural.csv", **given)
     assert "--" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("given", "told"),
+    [
+        ({"max_gap": 3}, "settings: unknown key 'max_gap'; did you mean 'max_gap_s'?"),
+        (
+            {"min_angle_deg": -1, "length_unit": "cm"},
+            "min_angle_deg: should be greater than 0, found -1; settings: length",
+        ),
+        ({"law": "linear", "law_peak": 0.4}, "law_peak: the law 'linear' has no highest velocity; leave law_peak out"),
+        ({"tolerance_mm": 2, "keyframes": (1, 2)}, "give either tolerance_mm or keyframes"),
+        ({"joint": "knee", "express_in": "forearm"}, 'no segment of joint="knee"'),
+        ({"export": ("parqet",)}, "did you mean 'parquet'?"),
+    ],
+)
+def test_settings_that_cannot_be_are_told_in_one_line_by_their_fields(given: dict[str, Any], told: str) -> None:
+    with pytest.raises(UsageError, match=re.escape(told)) as caught:
+        Settings(**given)
+    assert "--" not in str(caught.value)
+    assert "\n" not in str(caught.value)
+    assert caught.value.__cause__ is caught.value.__context__ is None
+
+
+def test_settings_show_what_was_chosen_and_do_not_change() -> None:
+    found = Settings(min_angle_deg=5, keyframes=(0, 3))
+    assert str(found) == repr(found) == "Settings(min_angle_deg=5.0, keyframes=(0, 3))"
+    with pytest.raises(UsageError, match="settings do not change: make new ones, or give law beside them"):
+        found.law = "linear"  # type: ignore[misc]
+    assert pickle.loads(pickle.dumps(found)) == found  # noqa: S301 - our own
 
 
 def test_an_existing_result_is_told_with_the_keyword_that_replaces_it(read_back: Analysis, elbow: Analysis) -> None:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from elbowscrew.choices import EXPORT_NAMES
 from elbowscrew.cli import completing, options
 from elbowscrew.errors import UsageError, shown
 
@@ -85,7 +86,8 @@ def _parameter(name: str, setting: Setting, defaults: Mapping[str, str]) -> insp
 def _completion(setting: Setting) -> Callable[..., list[str]] | None:
     if setting.option in ("proximal", "distal"):
         return completing.bodies
-    return completing.choices(setting.choices) if setting.several and setting.choices else None
+    choices = EXPORT_NAMES if setting.option == "export" else setting.choices  # plug-ins may bring more
+    return completing.choices(choices) if setting.several and choices else None
 
 
 def _value(setting: Setting, given: Any) -> Any:

@@ -60,7 +60,7 @@ def analyze(
     from elbowscrew.configuring import settings_from
     from elbowscrew.reading.landmarks import read_landmarks
     from elbowscrew.results.staging import check_result_folder
-    from elbowscrew.saving import analyze_file, check_output, write_result
+    from elbowscrew.saving import analyze_file, check_output, check_written, write_result
 
     settings = settings_from(config, given)
     target = output if output is not None else Path(f"{trial.stem}_elbowscrew")
@@ -80,3 +80,4 @@ def analyze(
         render.analysis_table(summary, target)
     if verbose:
         render.files(target)
+    check_written(summary, target)

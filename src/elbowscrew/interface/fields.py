@@ -78,7 +78,7 @@ class SettingsFields(TypedDict, total=False):
     figure_format: Sequence[FigureFormat]
     figures: Sequence[FigureChoice] | None
     font: str | None
-    export: Sequence[ExportName]
+    export: Sequence[ExportName | str]
     units: FileUnit | None
     rotation: RotationType | None
     rate_hz: float | None

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import functools
-import re
 from collections.abc import Callable
 from dataclasses import fields
 from typing import Final, ParamSpec, TypeVar
 
 from elbowscrew.errors import ElbowscrewError
+from elbowscrew.setting_faults import Keywords, in_keywords
 
-_OPTION: Final = re.compile(r"--([a-z][a-z-]*[a-z])(?:([ =])([\w.+-]+))?")
-_NUMBER: Final = re.compile(r"[+-]?\d+(\.\d+)?")
 _OTHERS: Final = {
     "force": "overwrite=True",
     "landmarks": "landmarks",
@@ -33,36 +31,20 @@ def in_python(message: str) -> str:
     >>> in_python("--signed yes or no decides")
     'signed="yes" or no decides'
     """
-    return _OPTION.sub(_keyword, message) if "--" in message else message
-
-
-def _keyword(found: re.Match[str]) -> str:
-    option, after, value = found[1], found[2] or "", found[3] or ""
-    name, choices = _names().get(option, ("", ()))
-    if option in _OTHERS:
-        return _OTHERS[option] + after + value
-    if not name:
-        return found[0]
-    is_list = found.string[found.end() :].startswith(",")
-    if value in choices and not is_list:
-        return f'{name}="{value}"'
-    if _NUMBER.fullmatch(value):
-        return f"{name}={value}"
-    return name + after + value
+    return in_keywords(message, _names(), _OTHERS) if "--" in message else message
 
 
 @functools.cache
-def _names() -> dict[str, tuple[str, tuple[str, ...]]]:
-    """Keyword and choices by the names of options."""
+def _names() -> Keywords:
     from elbowscrew.declaring import option_name
     from elbowscrew.motion.interpolation.keyframe_sources import ComparisonPlan
-    from elbowscrew.settings import SETTINGS
+    from elbowscrew.settings import SETTING_KEYWORDS
     from elbowscrew.simulate import Simulation
 
     named: dict[str, tuple[str, tuple[str, ...]]] = {
         option_name(field.name): (field.name, ()) for kind in (ComparisonPlan, Simulation) for field in fields(kind)
     }
-    return named | {one.option: (one.field, one.choices) for one in SETTINGS}
+    return named | SETTING_KEYWORDS
 
 
 def public(function: Callable[Given, Found]) -> Callable[Given, Found]:

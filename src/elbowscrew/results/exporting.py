@@ -20,6 +20,7 @@ from elbowscrew.model import Analysis
 from elbowscrew.model.summary_types import Summary
 from elbowscrew.opening import create, write_new
 from elbowscrew.quantities import angle_in
+from elbowscrew.results.plugged import exporter
 from elbowscrew.results.writing import results_by_table
 
 _Table = Mapping[str, NDArray[Any]]
@@ -28,11 +29,11 @@ _MAT_HEADER_BYTES: Final = 116
 
 
 def check_exports(formats: Sequence[str]) -> None:
-    """Raise `UsageError` if a format is not known, or its library is not installed."""
+    """Raise `UsageError` if a format is not known, or its library is not installed, or a plug-in cannot be loaded."""
     for name in formats:
         if name not in EXPORTS:
-            msg = f"export: expected one of {', '.join(EXPORTS)}, found {name!r}"
-            raise UsageError(msg)
+            exporter(name)
+            continue
         library = EXPORTS[name].library
         if library is not None and find_spec(library) is None:
             msg = f"--export {name} needs {library}; install it with: pip install {library}"
@@ -42,7 +43,8 @@ def check_exports(formats: Sequence[str]) -> None:
 def write_exports(folder: Path, analysis: Analysis, summary: Summary, formats: Sequence[str]) -> None:
     """Write the tables in the formats asked for; the summary goes along where a format has a place for it."""
     for name in dict.fromkeys(formats):
-        EXPORTS[name].write(folder, analysis, summary)
+        if name in EXPORTS:
+            EXPORTS[name].write(folder, analysis, summary)
 
 
 def _write_parquet(folder: Path, analysis: Analysis, summary: Summary) -> None:

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import hashlib
 import io
-import re
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -17,12 +16,11 @@ from typing import IO, TYPE_CHECKING, Final
 from elbowscrew._version import __version__
 from elbowscrew.errors import ResultError
 from elbowscrew.opening import open_bytes, sha256_of, write_new
-from elbowscrew.results.result_files import RESULT_FILES, SUMS, files_in, version_told
+from elbowscrew.results.result_files import RESULT_FILES, SUMS, files_in, is_of_result, sums_in, version_told
 
 if TYPE_CHECKING:
     from _typeshed import WriteableBuffer
 
-_LINE: Final = re.compile(r"([0-9a-f]{64}) [ *](\S+)")
 _READ_BYTES: Final = 1 << 20
 _DRAWN: Final = ("figures/", "report.html", "methods.txt")
 
@@ -36,8 +34,9 @@ def seal(folder: Path, names: Sequence[str] = RESULT_FILES) -> None:
     names : sequence of str
         What may be there, in the order of the lines.
     """
-    present = set(files_in(folder))
-    sums = {name: sha256_of(folder / name) for name in names if name in present and name != SUMS}
+    present = {name for name in files_in(folder) if is_of_result(name, names) and name != SUMS}
+    ordered = (*(name for name in names if name in present), *sorted(present.difference(names)))
+    sums = {name: sha256_of(folder / name) for name in ordered}
     write_new(folder / SUMS, _lines(sums))
 
 
@@ -108,7 +107,7 @@ class Proof:
             others = set(files_in(self.folder)) - set(self.sums) - {SUMS}
         except OSError:
             others = set()
-        return (*named, *sorted(others & set(RESULT_FILES)))
+        return (*named, *sorted(filter(is_of_result, others)))
 
     def check_numbers(self) -> None:
         """Raise `ResultError` if a table or a JSON file is not as it was written; what is drawn may be retouched."""
@@ -146,9 +145,8 @@ def proof_of(folder: Path) -> Proof:
     except OSError as error:
         msg = f"{path}: cannot be read: {error.strerror or error}; analyze the trial again"
         raise ResultError(msg) from error
-    lines = [_LINE.fullmatch(line) for line in text.splitlines()]
-    sums = {line[2]: line[1] for line in lines if line is not None}
-    if len(sums) != len(lines) or not text.endswith("\n") or not set(sums) <= set(RESULT_FILES):
+    sums = sums_in(text)
+    if sums is None or not all(map(is_of_result, sums)):
         msg = f"{path}: damaged: expected a line for each file, its SHA-256 and its name; analyze the trial again"
         raise ResultError(msg)
     return Proof(folder, sums)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterator
+import re
+from collections.abc import Collection, Iterator
 from pathlib import Path
 from typing import Final, NamedTuple
 
@@ -12,6 +13,7 @@ from elbowscrew.choices import DRAWN_FORMATS
 from elbowscrew.disk.temporary import is_temporary
 from elbowscrew.opening import read_text
 from elbowscrew.results.exporting import EXPORTS
+from elbowscrew.results.plugged import FOLDER, is_placed
 from elbowscrew.tables import TABLES
 from elbowscrew.view.figure_names import FIGURE_ENTRIES, caption_file
 
@@ -39,7 +41,7 @@ RESULT_FILES: Final = (
     *(f"figures/{file}" for name in FIGURE_ENTRIES for file in _figure_files(name)),
     SUMS,
 )
-"""All that a result folder may hold."""
+"""All that a result folder may hold, but for what exporters of plug-ins have put into ``exports``."""
 
 
 class ResultKind(NamedTuple):
@@ -54,6 +56,30 @@ COMPARISON: Final = ResultKind(
     ("compare.csv", "compare.json", *(f"figures/{file}" for file in _figure_files("compare")), SUMS), "compare.json"
 )
 
+_SUMS_LINE: Final = re.compile(r"([0-9a-f]{64}) [ *](\S+)")
+
+
+def sums_in(text: str) -> dict[str, str] | None:
+    """Read SHA-256 by name from lines as ``sha256sum`` writes them; None if a line is none."""
+    lines = [_SUMS_LINE.fullmatch(line) for line in text.splitlines()]
+    sums = {line[2]: line[1] for line in lines if line is not None}
+    return sums if len(sums) == len(lines) and text.endswith("\n") else None
+
+
+def is_of_result(name: str, files: Collection[str] = RESULT_FILES) -> bool:
+    """Whether a file of a result may have this name."""
+    return name in files or (files is RESULT_FILES and is_placed(name))
+
+
+def placed_by_exporters(folder: Path) -> frozenset[str]:
+    """Files of exporters that the digests in a result folder name, so that they are ours; none without digests."""
+    try:
+        sums = sums_in(read_text(folder / SUMS))
+    except (OSError, ValueError):
+        return frozenset()
+    return frozenset(filter(is_placed, sums or ()))
+
+
 _STRAYS: Final = frozenset({".ds_store", "thumbs.db", "desktop.ini"})
 _BEGINS: Final = '{\n  "elbowscrew": "'
 
@@ -64,7 +90,7 @@ def is_stray(name: str) -> bool:
 
 
 def files_in(folder: Path) -> Iterator[str]:
-    """Yield what is in a result folder and in its ``figures``, but strays and what a killed run has left.
+    """Yield what is in a result folder, its ``figures`` and ``exports``, but strays and what a killed run has left.
 
     The name of any other folder ends with a slash: it is none of ours, whatever it is called, and may hold anything.
     Names are asked for as they are taken: of a folder with a million files, which is none of ours, a few.
@@ -74,14 +100,23 @@ def files_in(folder: Path) -> Iterator[str]:
             if is_stray(one.name) or is_temporary(one.name):
                 continue
             if one.name == "figures" and one.is_dir(follow_symlinks=False):
-                with os.scandir(one.path) as inner:
-                    yield from (f"figures/{_told(figure)}" for figure in inner if not is_stray(figure.name))
+                yield from _inside(one, one.name)
+            elif one.name == FOLDER and one.is_dir(follow_symlinks=False):
+                with os.scandir(one.path) as exporters:
+                    for exporter in exporters:
+                        inside = f"{FOLDER}/{exporter.name}"
+                        yield from _inside(exporter, inside) if exporter.is_dir(follow_symlinks=False) else (inside,)
             else:
                 yield _told(one)
 
 
 def _told(entry: os.DirEntry[str]) -> str:
     return f"{entry.name}/" if entry.is_dir(follow_symlinks=False) else entry.name
+
+
+def _inside(folder: os.DirEntry[str], name: str) -> Iterator[str]:
+    with os.scandir(folder.path) as entries:
+        yield from (f"{name}/{_told(one)}" for one in entries if not is_stray(one.name))
 
 
 def is_summary(path: Path) -> bool:

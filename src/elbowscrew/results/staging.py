@@ -19,6 +19,7 @@ from elbowscrew.results.result_files import (
     ResultKind,
     files_in,
     is_or_was_summary,
+    placed_by_exporters,
 )
 
 
@@ -109,7 +110,7 @@ def _check_content(target: Path, folder: Path, force: bool, kind: ResultKind) ->
 
 def _check_names(target: Path, folder: Path, kind: ResultKind) -> int:
     """Count what is in a result folder; raise `OutputError` if anything has another name."""
-    known, count = set(kind.files), 0
+    known, count = placed_by_exporters(folder).union(kind.files), 0
     for name in files_in(folder):
         count += 1
         if name not in known:

@@ -72,7 +72,7 @@ def settings_in(summary: Summary, folder: Path) -> Settings:
         If one of them is not a possible one; it names the key.
     """
     try:
-        return checked_settings(summary["settings"], f"{folder / SUMMARY}: settings")
+        return checked_settings(summary["settings"], f"{folder / SUMMARY}: settings", read_back=True)
     except UsageError as error:
         msg = f"{error}; analyze the trial again"
         raise ResultError(msg) from error

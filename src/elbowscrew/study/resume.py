@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from typing import Any, NamedTuple
 
 from elbowscrew._version import __version__
@@ -10,6 +11,8 @@ from elbowscrew.errors import OutputError, ResultError
 from elbowscrew.joints import ends_called, joints_of
 from elbowscrew.model.summary_types import Summary
 from elbowscrew.opening import sha256_of
+from elbowscrew.results.exporting import EXPORTS
+from elbowscrew.results.plugged import missing
 from elbowscrew.results.proof import proof_of
 from elbowscrew.results.staging import settle
 from elbowscrew.results.summary import landmarks_summary, library_versions, settings_summary
@@ -28,7 +31,7 @@ def standing_of(task: TrialTask) -> Standing:
     """Tell by the result's own summary and digests.
 
     The same are: program and libraries, every setting, the landmarks, name and SHA-256 of the recording; and the result
-    is whole: each file is there as it was written.
+    is whole: each file is there as it was written, and each export that a plug-in was to write.
     """
     if task.folder.is_symlink():  # it may lead out of the folder that is held
         return Standing(False)
@@ -36,12 +39,12 @@ def standing_of(task: TrialTask) -> Standing:
         settle(task.folder)
         proof = proof_of(task.folder)
         changed = proof.changed()
-        return Standing(not changed and _is_of(task, read_summary(proof)), changed)
+        return Standing(not changed and _is_of(task, read_summary(proof), proof.sums), changed)
     except (ResultError, OutputError):  # the trial's own failure, when it is analyzed
         return Standing(False)
 
 
-def _is_of(task: TrialTask, summary: Summary) -> bool:
+def _is_of(task: TrialTask, summary: Summary, files: Collection[str]) -> bool:
     try:
         return (
             summary["elbowscrew"] == __version__
@@ -49,6 +52,7 @@ def _is_of(task: TrialTask, summary: Summary) -> bool:
             and summary["settings"] == _settings(task, summary)
             and summary["landmarks"] == landmarks_summary(task.landmarks)
             and summary["source"]["sha256"] == sha256_of(task.path)
+            and not missing([name for name in task.settings.export if name not in EXPORTS], files)
             and _distal_digest(summary) == (None if task.distal_path is None else sha256_of(task.distal_path))
         )
     except OSError:

@@ -14,7 +14,7 @@ from elbowscrew._version import __version__
 from elbowscrew.errors import ElbowscrewError, OutputError, UsageError, shortened
 from elbowscrew.model import Landmarks
 from elbowscrew.results.summary import library_versions
-from elbowscrew.saving import analyze_file, save_analysis
+from elbowscrew.saving import analyze_file, write_result
 from elbowscrew.settings import Settings
 from elbowscrew.study.folder import at_work
 from elbowscrew.study.outcome import DEFECT, Failure
@@ -78,7 +78,7 @@ def analyze_trial(task: TrialTask) -> Failure | None:
                 msg = f"{task.folder}: is a link; a batch writes into its own folder alone: remove it"
                 raise OutputError(msg)
             analysis = analyze_file(task.path, task.settings, distal_path=task.distal_path, landmarks=task.landmarks)
-            save_analysis(analysis, task.folder, overwrite=True)
+            write_result(analysis, task.folder, force=True)
             del analysis
             collect_garbage()
     except ElbowscrewError as error:

@@ -191,10 +191,10 @@ def test_a_folder_without_any_good_recording_says_why(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("plan", "says"),
     [
-        ({"methods": ("slerp",)}, "--methods: expected some of dlb, sclerp"),
-        ({"laws": ()}, "--laws: .* found none"),
-        ({"counts": (1,)}, "--counts: expected whole numbers from 2 to 20, found 1"),
-        ({"decimation": (0,)}, "--decimation"),
+        ({"methods": ("slerp",)}, "^methods: expected some of dlb, sclerp"),
+        ({"laws": ()}, "^laws: .* found none"),
+        ({"counts": (1,)}, "^counts: expected whole numbers from 2 to 20, found 1"),
+        ({"decimation": (0,)}, "^decimation:"),
         ({"data": ("filtered",)}, "--data"),
     ],
 )

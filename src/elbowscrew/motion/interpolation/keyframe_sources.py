@@ -65,7 +65,7 @@ class ComparisonPlan:
         Raises
         ------
         UsageError
-            Naming the option.
+            Naming the field, which is the option of ``compare``.
         """
         choices: dict[str, tuple[str, ...]] = {
             "methods": METHOD_NAMES,
@@ -79,13 +79,13 @@ class ComparisonPlan:
             strange = [one for one in given if one not in allowed]
             if strange or not given:
                 found = f"{', '.join(strange) or 'none'}{asked_back(','.join(strange), allowed)}"
-                msg = f"--{name}: expected some of {', '.join(allowed)}, found {found}"
+                msg = f"{name}: expected some of {', '.join(allowed)}, found {found}"
                 raise UsageError(msg)
         for name, low, high in (("counts", 2, _MOST_PER_PHASE), ("decimation", 2, 1000)):
             numbers = getattr(self, name)
             if not numbers or not all(low <= number <= high for number in numbers):
                 found = ", ".join(map(str, numbers)) or "none"
-                msg = f"--{name}: expected whole numbers from {low} to {high}, found {found}"
+                msg = f"{name}: expected whole numbers from {low} to {high}, found {found}"
                 raise UsageError(msg)
 
 
