@@ -25,6 +25,7 @@ docs:  ## the documentation in build/site, everything in it run; open build/site
 	@$(BIN)/python -c "import myst_nb, sphinx_gallery, elbowscrew" 2> /dev/null || $(BIN)/pip install --quiet -e ".[docs]"
 	$(BIN)/python docs/make_settings.py
 	$(BIN)/python docs/make_schemas.py
+	$(BIN)/python docs/make_man.py
 	$(BIN)/sphinx-build -W --keep-going --quiet docs build/site
 
 bench:  ## every stage beside what one would use instead

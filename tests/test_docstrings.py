@@ -62,6 +62,8 @@ def fields(kind: type) -> set[str]:
         return {field.name for field in dataclasses.fields(kind)}
     if issubclass(kind, Exception):
         return {"exit_code"}
+    if getattr(kind, "_is_protocol", False):
+        return {name for name, value in vars(kind).items() if isinstance(value, property)}
     return set(kind._fields)  # type: ignore[attr-defined]
 
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import re
 import runpy
+import shutil
+import subprocess
 import tarfile
 import tomllib
 import zipfile
@@ -17,6 +19,8 @@ from hatchling.builders.sdist import SdistBuilder
 from hatchling.builders.wheel import WheelBuilder
 
 from elbowscrew import __version__
+from elbowscrew.cli.examples import EXAMPLES
+from elbowscrew.settings import SETTINGS
 
 RELATIVE = re.compile(r"\]\((?!https?:|#)")
 
@@ -46,6 +50,7 @@ def test_the_wheel_holds_the_package_and_nothing_else(root: Path, wheel: zipfile
         for path in (root / "src" / "elbowscrew").rglob("*")
         if path.is_file() and "__pycache__" not in path.parts
     }
+    inside -= {name for name in inside if name.endswith(".data/data/share/man/man1/elbowscrew.1")}
     samples = {f"elbowscrew/{path.relative_to(root).as_posix()}" for path in (root / "sample_data").rglob("*.*")}
     assert inside == there | samples
     assert {"elbowscrew/py.typed", "elbowscrew/matplotlibrc", "elbowscrew/report/templates/trial.html"} <= inside
@@ -104,6 +109,28 @@ def test_the_recipe_asks_for_what_the_project_asks_for(root: Path, project: dict
     assert f'version: "{__version__}"' in text
     assert project["requires-python"] == ">=3.11"
     assert project["scripts"]["elbowscrew"] in text
+
+
+def test_the_man_page_is_that_of_the_program(root: Path, wheel: zipfile.ZipFile) -> None:
+    made = runpy.run_path(str(root / "docs" / "make_man.py"))["page"]()
+    assert (root / "packaging" / "elbowscrew.1").read_text(encoding="utf-8") == made, "run python docs/make_man.py"
+    place = f"elbowscrew-{__version__}.data/data/share/man/man1/elbowscrew.1"
+    assert wheel.read(place).decode("utf-8") == made
+    told = {word for line in made.splitlines() for word in re.findall(r"\\fB(.+?)\\fR", line)}
+    assert {f"--{one.option}".replace("-", r"\-") for one in SETTINGS} <= told
+    for name in EXAMPLES:
+        assert f"\n.SH {name.upper()}\n" in made
+
+
+@pytest.mark.skipif(shutil.which("groff") is None, reason="no groff here")
+def test_the_man_page_is_set_without_a_warning(root: Path) -> None:
+    page = root / "packaging" / "elbowscrew.1"
+    found = subprocess.run(
+        ["groff", "-man", "-ww", "-Tutf8", "-Kutf8", str(page)], capture_output=True, text=True, encoding="utf-8"
+    )
+    assert not found.stderr
+    assert "ELBOWSCREW(1)" in found.stdout
+    assert "elbowscrew samples --copy elbowscrew_samples" in found.stdout
 
 
 def test_the_image_takes_extras_that_there_are(root: Path, project: dict[str, Any]) -> None:

@@ -1,46 +1,15 @@
-"""The commands as the program declares them: ``command`` shows one with its arguments, options and examples."""
+"""The directive ``command`` shows a command with its arguments, options and examples."""
 
 from __future__ import annotations
 
-from typing import Any, Literal, get_args, get_origin
-
-import typer
+from declared import commands, examples, panels, paragraphs, usage
 from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
-_BRACES = str.maketrans("", "", "{}")
-
-
-def commands() -> dict[str, Any]:
-    """Give every command by its name, with all its options."""
-    from elbowscrew.cli.app import app
-
-    group: Any = typer.main.get_command(app)
-    context = group.context_class(group, info_name="elbowscrew")
-    return {name: group.resolve_command(context, [name])[1] for name in group.commands}
-
 
 def _cell(text: str) -> str:
     return " ".join(text.split()).replace("|", "\\|").replace("<", "\\<").replace("*", "\\*")
-
-
-def _takes(parameter: Any) -> str:
-    if getattr(parameter, "is_flag", False):
-        return ""
-    kind = parameter.type_descriptor.annotation
-    if get_origin(kind) is Literal:
-        choices = get_args(kind)
-    else:
-        choices = (parameter.metavar or kind.__name__.upper()).strip("<>").split("|")
-    return ", ".join(f"`{one}`" for one in choices)
-
-
-def _default(parameter: Any) -> str:
-    shown = parameter.show_default
-    if isinstance(shown, str):
-        return shown
-    return "" if parameter.default in (None, False) or not shown else str(parameter.default)
 
 
 class Command(SphinxDirective):
@@ -54,30 +23,17 @@ class Command(SphinxDirective):
 
     def _lines(self, name: str) -> list[str]:
         command = commands()[name]
-        context = command.context_class(command, info_name=f"elbowscrew {name}")
-        usage = " ".join(["elbowscrew", name, *command.collect_usage_pieces(context)]).translate(_BRACES)
-        usage = usage.replace("[[", "[").replace("]]", "]")
-        paragraphs = (" ".join(part.split()) for part in (command.help or "").split("\n\n"))
-        lines = ["```text", usage, "```", ""]
-        for paragraph in filter(None, paragraphs):
+        lines = ["```text", usage(name, command), "```", ""]
+        for paragraph in paragraphs(command):
             lines += [paragraph, ""]
-        told = (line.strip() for line in (command.epilog or "").splitlines())
-        examples = [line for line in told if line.startswith("elbowscrew ")]
-        if examples:
-            lines += ["```sh", *examples, "```", ""]
-        panels: dict[str, list[Any]] = {}
-        for parameter in command.params:
-            if parameter.param_type_name == "argument":
-                panels.setdefault("Arguments", []).append(parameter)
-            elif not parameter.hidden:
-                panels.setdefault(getattr(parameter, "rich_help_panel", None) or "Options", []).append(parameter)
-        for title, parameters in panels.items():
+        if examples(command):
+            lines += ["```sh", *examples(command), "```", ""]
+        for title, parameters in panels(command).items():
             lines += [f"**{title}**", "", "| | takes | what it is | default |", "| --- | --- | --- | --- |"]
             for one in parameters:
-                words = [one.metavar.strip("[]")] if title == "Arguments" else [*one.opts, *one.secondary_opts]
-                called = ", ".join(f"`{word}`" for word in words)
-                takes = "a path" if title == "Arguments" else _takes(one)
-                lines.append(f"| {called} | {takes} | {_cell(one.help or '')} | {_cell(_default(one))} |")
+                called = ", ".join(f"`{word}`" for word in one.names)
+                takes = "a path" if title == "Arguments" else ", ".join(f"`{word}`" for word in one.takes)
+                lines.append(f"| {called} | {takes} | {_cell(one.text)} | {_cell(one.default)} |")
             lines.append("")
         return lines
 

@@ -31,19 +31,23 @@ class ExportedTrial(Protocol):
     """What an exporter is given of a trial; `elbowscrew.Analysis` has the same, one read back as well.
 
     An exporter may change all of it: it has copies.
+
+    Attributes
+    ----------
+    tables : collection of str
+        Names of the tables that this trial has, as ``screw``.
+    summary, joint_summary : dict
+        What stands in ``summary.json`` and ``joint.json``.
     """
 
     @property
-    def tables(self) -> Collection[str]:
-        """Names of the tables that this trial has, as ``screw``."""
+    def tables(self) -> Collection[str]: ...  # noqa: D102 - above
 
     @property
-    def summary(self) -> Summary:
-        """What stands in ``summary.json``."""
+    def summary(self) -> Summary: ...  # noqa: D102
 
     @property
-    def joint_summary(self) -> JointSummary:
-        """What stands in ``joint.json``."""
+    def joint_summary(self) -> JointSummary: ...  # noqa: D102
 
     def to_frame(
         self, table: Any = "screw", angle_unit: AngleUnit = "deg", length_unit: LengthUnit = "mm"
