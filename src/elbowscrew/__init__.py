@@ -148,8 +148,20 @@ def __getattr__(name: str) -> object:
 
         globals()[name] = public(getattr(import_module(f"elbowscrew.{_FUNCTIONS[name]}"), name))
         return globals()[name]
-    msg = f"module 'elbowscrew' has no attribute {name!r}"
+    hint = "" if name.startswith("_") else _hint(name)
+    msg = f"module 'elbowscrew' has no attribute {name!r}{hint}"
     raise AttributeError(msg)
+
+
+def _hint(name: str) -> str:
+    import os
+
+    place = os.path.join(os.path.dirname(__file__), name)  # noqa: PTH118, PTH120 - pathlib is not loaded for this
+    if os.path.exists(place) or os.path.exists(f"{place}.py"):  # noqa: PTH110 - a module that is about to be imported
+        return ""
+    from elbowscrew.errors import did_you_mean
+
+    return did_you_mean(name, __dir__())
 
 
 def __dir__() -> list[str]:

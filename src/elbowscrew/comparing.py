@@ -29,39 +29,12 @@ def compare_trials(
     *,
     report: Callable[[int, int], None] = lambda _done, _total: None,
 ) -> TrialsComparison:
-    """Compare models over several recordings.
-
-    Parameters
-    ----------
-    paths : iterable of path-like
-        Recordings, each compared by itself as `elbowscrew.compare` does.
-    settings : Settings, optional
-    plan : ComparisonPlan, optional
-    report : callable
-        Told after each recording how many are done, and of how many.
-
-    Returns
-    -------
-    TrialsComparison
-        Filtered keyframes count as one choice, whatever cut-off each trial has. A model that fails in a trial counts
-        over the others.
+    """Compare models over several recordings; see `elbowscrew.compare_trials`.
 
     Raises
     ------
     AnalysisError
         If no recording can be compared; it says why of the first.
-
-    Examples
-    --------
-    >>> import elbowscrew, tempfile
-    >>> plan = ComparisonPlan(laws=("linear",), counts=(2,), data=("raw",))
-    >>> with tempfile.TemporaryDirectory() as folder:
-    ...     paths = [Path(folder, f"{seed}.csv") for seed in range(2)]
-    ...     for seed, path in enumerate(paths):
-    ...         trial = elbowscrew.simulate_trial(frames=60, inversion=30, seed=seed)
-    ...         _ = elbowscrew.save_simulation(trial, path)
-    ...     set(compare_trials(paths, plan=plan).models.trials.tolist())
-    {2}
     """
     wanted = settings or Settings()
     found: list[Comparison] = []

@@ -286,7 +286,7 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
     @model_validator(mode="before")
     @classmethod
     def _former_names(cls, values: object) -> object:
-        """Take what an elbow's two bodies were called before for proximal and distal."""
+        """Take what an elbow's two bodies were called before for proximal and distal, and one name for a list of it."""
         if not isinstance(values, Mapping):
             return values
         former = {name.replace("-", "_"): now.replace("-", "_") for name, now in FORMER_NAMES.items()}
@@ -294,7 +294,7 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
         if len(named) < len(values):
             msg = f"one setting is given twice, under two names; keep one of {', '.join(map(str, values))}"
             raise ValueError(msg)
-        return named
+        return {name: (one,) if isinstance(one, str) and name in LIST_FIELDS else one for name, one in named.items()}
 
     _law = field_validator("law", mode="before")(taken.law)
     _export = field_validator("export", mode="before")(taken.exports)
@@ -393,6 +393,9 @@ Settings.__doc__ = f"{(Settings.__doc__ or '').rstrip()}{attributes(SETTINGS)}"
 
 LISTS: Final = tuple(one.option for one in SETTINGS if one.several)
 """Options of settings of which there may be several."""
+
+LIST_FIELDS: Final = frozenset(one.field for one in SETTINGS if one.several)
+"""Their fields."""
 
 FILES: Final = tuple(one.option for one in SETTINGS if one.metavar.startswith("FILE"))
 """Options whose value is the name of a file."""

@@ -206,32 +206,12 @@ class SimulatedTrial:
 
 
 def simulate_trial(simulation: Simulation | None = None, **settings: Any) -> SimulatedTrial:
-    """Simulate a joint of a known type.
-
-    Parameters
-    ----------
-    simulation : Simulation, optional
-        An elbow's plain flexion and extension by default, about one line along which it slides.
-    **settings
-        Fields of `Simulation` to change.
-
-    Returns
-    -------
-    SimulatedTrial
-        With bodies named as the joint's segments, such as Upper Arm and Forearm.
+    """Simulate a joint of a known type; see `elbowscrew.simulate_trial`.
 
     Raises
     ------
     UsageError
         If a value is not a possible one.
-
-    Examples
-    --------
-    >>> trial = simulate_trial(top_deg=142, seed=3)
-    >>> [body.name for body in trial.recording.bodies], trial.recording.frame.size
-    (['Upper Arm', 'Forearm'], 450)
-    >>> simulate_trial(joint_type="two-axes").truth["two_axes"]["angle_between_deg"] > 70
-    True
     """
     for former, name in (("arm", "proximal"), ("axis_drift_deg", "wander_deg")):  # what they were called before
         if former in settings:

@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+import dataclasses
 import inspect
 import pickle
 import re
 from pathlib import Path
 from typing import Any, Literal, get_args, get_origin, get_type_hints
 
+import numpy as np
 import pytest
 
 import elbowscrew
 from elbowscrew import Analysis, Settings, Simulation
 from elbowscrew.configuring import settings_with
 from elbowscrew.errors import ElbowscrewError, OutputError, UsageError
-from elbowscrew.interface.fields import SettingsFields, SimulationFields
+from elbowscrew.interface.fields import ComparisonFields, SettingsFields, SimulationFields
 from elbowscrew.interface.python_words import in_python
 from elbowscrew.settings import SETTINGS
 from elbowscrew.simulate import simulate_trial
@@ -108,6 +110,43 @@ def test_a_trial_that_cannot_be_simulated_is_told_by_its_keywords() -> None:
         elbowscrew.simulate_trial(top_deg=-1)
     with pytest.raises(UsageError, match=r"--top"):
         simulate_trial(top_deg=-1)
+
+
+def test_a_comparison_takes_its_plan_as_keywords(elbow: Analysis) -> None:
+    own = set(get_type_hints(ComparisonFields)) - set(get_type_hints(SettingsFields))
+    assert own == {field.name for field in dataclasses.fields(elbowscrew.ComparisonPlan)} - {"knots"}
+    plan = elbowscrew.ComparisonPlan(laws=("linear",), data=("raw",))
+    found = elbowscrew.compare(elbow.recording, plan=plan, methods="sclerp", counts=2, laws=["harmonic"])
+    assert set(found.models.law) == {"harmonic"}
+    assert set(found.models.method) == {"sclerp"}
+    assert set(found.models.data) == {"raw"}
+    with pytest.raises(UsageError, match=r"laws: expected some of .*did you mean 'linear'"):
+        elbowscrew.compare(elbow.recording, laws=["linaer"])  # type: ignore[list-item]
+
+
+def test_what_is_no_recording_is_told(elbow: Analysis) -> None:
+    with pytest.raises(UsageError, match=r"found DataFrame; arrays become one by RigidBody\.from_quaternions"):
+        elbowscrew.analyze(elbow.to_frame())  # type: ignore[arg-type]
+    trial = simulate_trial(frames=60, inversion=30)
+    np.testing.assert_array_equal(
+        elbowscrew.analyze(trial).screw.angle, elbowscrew.analyze(trial.recording).screw.angle
+    )
+
+
+def test_one_name_stands_for_a_list_of_it() -> None:
+    assert Settings(figure_format="none", figures="theta", export="mat") == Settings(  # type: ignore[arg-type]
+        figure_format=("none",), figures=("theta",), export=("mat",)
+    )
+
+
+def test_attributes_that_are_nearly_right_are_asked_back(elbow: Analysis) -> None:
+    with pytest.raises(AttributeError, match="did you mean 'analyze'"):
+        elbowscrew.analyse  # noqa: B018
+    with pytest.raises(AttributeError, match="did you mean 'joint_axis'"):
+        elbow.joint_axes  # noqa: B018
+    with pytest.raises(AttributeError, match=r"'theta'; numbers stand in to_frame\(\)"):
+        elbow.theta  # noqa: B018
+    assert not hasattr(elbow, "_ipython_display_")
 
 
 def test_keywords_are_stronger_than_settings() -> None:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Final, Literal, get_args
 
 from elbowscrew._version import __version__
 from elbowscrew.choices import AngleUnit, LengthUnit
-from elbowscrew.errors import NotKeptError, UsageError
+from elbowscrew.errors import NotKeptError, UsageError, did_you_mean
 from elbowscrew.interface.listed import joint_estimates, listed_warnings
 from elbowscrew.interface.python_words import in_python
 from elbowscrew.model import Analysis as Findings
@@ -42,6 +42,7 @@ TableName = Literal[
 """Tables of a result: those that are files, of their names, and the joint's estimates and the warnings."""
 
 _OF_FRAMES: Final = ("interpolation", "instantaneous", "joint_angles", "anatomy")
+_WHERE: Final = "; numbers stand in to_frame(), summary and joint_summary, and elbowscrew.save_analysis writes them"
 _PARTS: Final = tuple(field.name for field in fields(Findings))
 
 
@@ -95,7 +96,9 @@ class Analysis(Findings, Viewed):  # noqa: D101 - it has one
                     "summary and joint_summary; analyze the recording for it"
                 )
                 raise NotKeptError(msg)
-            msg = f"{type(self).__name__!r} object has no attribute {name!r}"
+            near = did_you_mean(name, [one for one in dir(self) if one[0] != "_"]) or _WHERE
+            hint = "" if name.startswith("_") else near
+            msg = f"{type(self).__name__!r} object has no attribute {name!r}{hint}"
             raise AttributeError(msg)
 
     @cached_property
@@ -135,7 +138,8 @@ class Analysis(Findings, Viewed):  # noqa: D101 - it has one
             return listed_warnings([{**one, "message": in_python(one["message"])} for one in self.summary["warnings"]])
         if name not in self.tables:
             whose = "this trial" if name in get_args(TableName) else "a result"
-            msg = f"{whose} has no table {name!r}; there are {', '.join((*self.tables, 'joint', 'warnings'))}"
+            known = (*self.tables, "joint", "warnings")
+            msg = f"{whose} has no table {name!r}{did_you_mean(name, known)}; there are {', '.join(known)}"
             raise UsageError(msg)
         return self.tables[name]
 

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Unpack
+from typing import TYPE_CHECKING, Any, Unpack
 
 from elbowscrew import comparing, simulate
 from elbowscrew.configuring import settings_with
-from elbowscrew.errors import ElbowscrewError
+from elbowscrew.errors import ElbowscrewError, UsageError
 from elbowscrew.interface.analysis import Analysis
-from elbowscrew.interface.fields import SettingsFields, SimulationFields
+from elbowscrew.interface.fields import ComparisonFields, SettingsFields, SimulationFields
 from elbowscrew.model import Analysis as Findings
 from elbowscrew.model import Comparison, KeyframeSet, Landmarks, RebuiltMotion, Recording, TrialsComparison
 from elbowscrew.motion import analysis as analyzing
@@ -31,7 +32,7 @@ StrPath = str | os.PathLike[str]
 
 
 def analyze(
-    recording: Recording | StrPath,
+    recording: Recording | SimulatedTrial | StrPath,
     settings: Settings | None = None,
     *,
     landmarks: Landmarks | StrPath | None = None,
@@ -41,8 +42,8 @@ def analyze(
 
     Parameters
     ----------
-    recording : Recording or path-like
-        A file, or what `elbowscrew.read_recording` gives, or a recording built from bodies.
+    recording : Recording, SimulatedTrial or path-like
+        A file, or what `elbowscrew.read_recording` gives, or a recording built from bodies, or a synthetic trial.
     settings : Settings, optional
         The paper's choices by default.
     landmarks : Landmarks or path-like, optional
@@ -80,10 +81,23 @@ def analyze(
     [0, 211, 449]
     """
     wanted = settings_with(settings, fields)
+    recording = _recording_or_path(recording)
     known = read_landmarks(landmarks) if isinstance(landmarks, str | os.PathLike) else landmarks
     if isinstance(recording, Recording):
         return Analysis.of(analyzing.analyze(recording, wanted, landmarks=known))
     return Analysis.of(analyze_file(Path(recording), wanted, landmarks=known))
+
+
+def _recording_or_path(given: Recording | SimulatedTrial | StrPath) -> Recording | StrPath:
+    if isinstance(given, SimulatedTrial):
+        return given.recording
+    if not isinstance(given, Recording | str | os.PathLike):
+        msg = (
+            f"expected a recording or the path of one, found {type(given).__name__}; arrays become one by "
+            "RigidBody.from_quaternions or RigidBody.from_matrices, and Recording.from_bodies"
+        )
+        raise UsageError(msg)
+    return given
 
 
 def read_result(folder: StrPath) -> Analysis:
@@ -118,33 +132,35 @@ def read_result(folder: StrPath) -> Analysis:
 
 
 def compare(
-    recording: Recording | StrPath,
+    recording: Recording | SimulatedTrial | StrPath,
     settings: Settings | None = None,
     plan: ComparisonPlan | None = None,
     *,
     report: Callable[[int, int], None] = lambda _done, _total: None,
-    **fields: Unpack[SettingsFields],
+    **fields: Unpack[ComparisonFields],
 ) -> Comparison:
     """Compare models of one motion: methods, laws of motion and numbers of keyframes, the best first.
 
     Each model's keyframes stand evenly in time in each phase of the motion. The difference is that from the measured
     motion, unfiltered and at its own rate, whatever the keyframes were taken from, so that all models have the same
-    yardstick.
+    yardstick. Combinations that are the same model by definition are there once: between two poses DLB is sDLB, and
+    DIB and Catmull-Rom are ScLERP; with the law's knots ScLERP, sDLB and the joint's angles do not know of the blend.
 
     Parameters
     ----------
-    recording : Recording or path-like
-        A file, or what `elbowscrew.read_recording` gives.
+    recording : Recording, SimulatedTrial or path-like
+        A file, or what `elbowscrew.read_recording` gives, or a synthetic trial.
     settings : Settings, optional
         What does not belong to the plan: bodies, phases, points, and so on. Its tolerance is that of the selection,
         2 mm by default (2 deg of orientations alone), and its low-pass that of the filtered keyframes, found by
         residual analysis by default.
     plan : ComparisonPlan, optional
-        Which models.
+        Which models; all by default.
     report : callable
         Told after each step how many are done, and of how many: a step a model, and the fewest keyframes as the last.
     **fields
-        Fields of `elbowscrew.Settings`, stronger than `settings`.
+        Fields of `elbowscrew.Settings` and of `elbowscrew.ComparisonPlan`, stronger than `settings` and `plan`; of the
+        latter not ``knots``, which is a field of both.
 
     Returns
     -------
@@ -159,11 +175,13 @@ def compare(
     --------
     >>> import elbowscrew
     >>> recording = elbowscrew.simulate_trial(marker_noise_mm=0).recording
-    >>> plan = elbowscrew.ComparisonPlan(laws=("linear", "polynomial-345"), counts=(2,), data=("raw",))
-    >>> str(elbowscrew.compare(recording, plan=plan).models.law[0])
+    >>> compared = elbowscrew.compare(recording, laws=["linear", "polynomial-345"], counts=[2], data=["raw"])
+    >>> str(compared.models.law[0])
     'polynomial-345'
     """
-    wanted = settings_with(settings, fields)
+    plan, others = _planned(plan, fields)
+    wanted = settings_with(settings, others)
+    recording = _recording_or_path(recording)
     if isinstance(recording, Recording):
         return comparison.compare(recording, wanted, plan, report=report)
     read = read_recording(recording, markers=wanted.markers, **wanted.statements)
@@ -180,7 +198,7 @@ def compare_trials(
     plan: ComparisonPlan | None = None,
     *,
     report: Callable[[int, int], None] = lambda _done, _total: None,
-    **fields: Unpack[SettingsFields],
+    **fields: Unpack[ComparisonFields],
 ) -> TrialsComparison:
     """Compare models over several recordings: mean and standard deviation of their errors.
 
@@ -193,7 +211,8 @@ def compare_trials(
     report : callable
         Told after each recording how many are done, and of how many.
     **fields
-        Fields of `elbowscrew.Settings`, stronger than `settings`.
+        Fields of `elbowscrew.Settings` and of `elbowscrew.ComparisonPlan`, stronger than `settings` and `plan`; of the
+        latter not ``knots``, which is a field of both.
 
     Returns
     -------
@@ -220,7 +239,20 @@ def compare_trials(
     ...     set(elbowscrew.compare_trials(paths, plan=plan).models.trials.tolist())
     {2}
     """
-    return comparing.compare_trials(paths, settings_with(settings, fields), plan, report=report)
+    plan, others = _planned(plan, fields)
+    return comparing.compare_trials(paths, settings_with(settings, others), plan, report=report)
+
+
+def _planned(plan: ComparisonPlan | None, fields: ComparisonFields) -> tuple[ComparisonPlan | None, dict[str, Any]]:
+    """Take the fields of a plan out of keywords."""
+    own = set(ComparisonFields.__annotations__) - set(SettingsFields.__annotations__)
+    others = {name: value for name, value in fields.items() if name not in own}
+    asked = {name: _several(value) for name, value in fields.items() if name in own}
+    return (replace(plan or ComparisonPlan(), **asked) if asked else plan), others
+
+
+def _several(value: Any) -> tuple[Any, ...]:
+    return (value,) if isinstance(value, str | int) else tuple(value)
 
 
 def batch(
@@ -360,5 +392,7 @@ def simulate_trial(simulation: Simulation | None = None, **fields: Unpack[Simula
     >>> trial = elbowscrew.simulate_trial(top_deg=142, seed=3)
     >>> [body.name for body in trial.recording.bodies], trial.recording.frame.size
     (['Upper Arm', 'Forearm'], 450)
+    >>> elbowscrew.simulate_trial(joint_type="two-axes").truth["two_axes"]["angle_between_deg"] > 70
+    True
     """
     return simulate.simulate_trial(simulation, **fields)

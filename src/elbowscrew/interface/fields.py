@@ -14,6 +14,7 @@ from elbowscrew.choices import (
     FigureFormat,
     FileUnit,
     JointName,
+    KeyframeSource,
     KnotName,
     LawName,
     LengthUnit,
@@ -83,6 +84,17 @@ class SettingsFields(TypedDict, total=False):
     rotation: RotationType | None
     rate_hz: float | None
     columns: ColumnFile | str | os.PathLike[str] | None
+
+
+class ComparisonFields(SettingsFields, total=False):
+    """Fields of `elbowscrew.Settings`, and those of `elbowscrew.ComparisonPlan` but ``knots``, which both have."""
+
+    methods: Sequence[MethodName]
+    laws: Sequence[LawName]
+    blends: Sequence[BlendName]
+    counts: Sequence[int]
+    data: Sequence[KeyframeSource]
+    decimation: Sequence[int]
 
 
 class SimulationFields(TypedDict, total=False):

@@ -3,20 +3,26 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import IntEnum
 from fnmatch import fnmatchcase
-from typing import Final, Literal
+from pathlib import Path
+from typing import TYPE_CHECKING, Final, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from elbowscrew.choices import LengthUnit
 from elbowscrew.column_file import ColumnFile
 from elbowscrew.geometry import dual_quaternion, nonrigid_coordinates, quaternion
 from elbowscrew.geometry._blocks import evenly_thinned
 from elbowscrew.geometry.arrays import Bool, Float, Index
 from elbowscrew.model.array_record import ArrayRecord
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
 
 # Exports print six decimals, so that a norm is off by 1e-6; a digit or a cell gone wrong shows above this.
 _NORM_TOLERANCE: Final = 5e-3
@@ -172,6 +178,30 @@ class RigidBody(ArrayRecord):
     def __repr__(self) -> str:
         tracked = int(self.tracked.sum())
         return f"RigidBody({self.name!r}; tracked in {tracked} of {self.loss.size} frames)"
+
+    def _shown_fields(self) -> list[tuple[str, str]]:
+        return [("name", self.name), *([("identifier", self.identifier)] if self.identifier else []), *self._told()]
+
+    def _told(self) -> Iterator[tuple[str, str]]:
+        lost = ", ".join(f"{count} {reason}" for reason, count in self.loss_counts().items())
+        yield "tracked", f"{int(self.tracked.sum())} of {self.loss.size} frames" + (f"; lost: {lost}" if lost else "")
+        if not self.located:
+            yield "positions", "not measured: orientations alone"
+        if self.marker_offsets is not None:
+            yield "markers", f"{len(self.marker_offsets)}"
+        if self.marker_residual is not None and np.isfinite(self.marker_residual).any():
+            misfit = 1e3 * np.nanmedian(self.marker_residual)
+            yield "misfit", f"{misfit:.2g} mm, the median of the RMS over its markers"
+
+    def to_frame(self, length_unit: LengthUnit = "mm") -> pd.DataFrame:
+        """Return the poses as a pandas data frame, a row a frame.
+
+        ``e0`` to ``e3`` are the Euler parameters, body to laboratory, ``x_mm``, ``y_mm`` and ``z_mm`` the origin's
+        place, if positions were measured; ``lost`` says why there is no pose.
+        """
+        from elbowscrew.model.recording_tables import frame_of_body
+
+        return frame_of_body(self, length_unit)
 
     @classmethod
     def from_quaternions(
@@ -338,6 +368,41 @@ class Recording(ArrayRecord):
     def __repr__(self) -> str:
         named = ", ".join(repr(body.name) for body in self.bodies)
         return f"Recording({self.frame.size} frames at {self.rate_hz:g} Hz; bodies {named})"
+
+    def _shown_fields(self) -> list[tuple[str, str]]:
+        frames, source = self.frame.size, self.source
+        told = f"{frames} at {self.rate_hz:g} Hz" + (
+            f", numbered {self.frame[0]} to {self.frame[-1]}" if frames else ""
+        )
+        origin = "in memory" if source is None else f"{Path(source.path).name} ({source.layout})"
+        bodies = [
+            (f"body {body.name}", "; ".join(f"{name}: {text}" for name, text in body._told())) for body in self.bodies
+        ]
+        markers = [("markers", ", ".join(one.name for one in self.markers))] if self.markers else []
+        warned = [(one.severity, f"{one.message} ({one.code})") for one in self.warnings]
+        return [("source", origin), ("frames", told), *bodies, *markers, *warned]
+
+    def to_frame(self, length_unit: LengthUnit = "mm") -> pd.DataFrame:
+        """Return clock, poses and markers as a pandas data frame, a row a frame.
+
+        It is a plain table: what its ``to_csv(path, index=False)`` writes can be analyzed again.
+        Lost frames are NaN; of a body without positions there are the Euler parameters alone.
+        """
+        from elbowscrew.model.recording_tables import frame_of_recording
+
+        return frame_of_recording(self, length_unit)
+
+    def to_xarray(self, length_unit: LengthUnit = "mm") -> xr.Dataset:
+        """Return poses and markers as an xarray Dataset along ``frame``, ``body`` and ``marker``, with ``time``.
+
+        Raises
+        ------
+        UsageError
+            If xarray is not installed.
+        """
+        from elbowscrew.model.recording_tables import dataset_of_recording
+
+        return dataset_of_recording(self, length_unit)
 
     @classmethod
     def from_bodies(cls, bodies: Sequence[RigidBody], *, rate_hz: float) -> Recording:

@@ -45,41 +45,12 @@ from elbowscrew.settings import Settings
 
 
 def analyze(recording: Recording, settings: Settings | None = None, *, landmarks: Landmarks | None = None) -> Analysis:
-    """Analyze one recording: screw motion, model from keyframes, and their difference.
-
-    Parameters
-    ----------
-    recording : Recording
-        From `elbowscrew.read_recording`, or built from bodies.
-    settings : Settings, optional
-        The paper's choices by default.
-    landmarks : Landmarks, optional
-        For the anatomical angles; read the recording with their markers.
-
-    Returns
-    -------
-    Analysis
-        In SI units and radians; NaN where something is not defined or not known.
+    """Analyze a recording; see `elbowscrew.analyze`.
 
     Raises
     ------
-    SettingError
-        If a setting does not fit the recording.
-    AnalysisError
-        If there is too little tracking or rotation.
-    RecordingError
-        If the recording has no usable clock.
-
-    References
-    ----------
-    P 33-36.
-
-    Examples
-    --------
-    >>> import elbowscrew
-    >>> analysis = elbowscrew.analyze(elbowscrew.simulate_trial(marker_noise_mm=0).recording)
-    >>> int(analysis.keyframes.frame[1])
-    211
+    SettingError, AnalysisError, RecordingError
+        If a setting does not fit the recording, there is too little to analyze, or no usable clock.
     """
     wanted = settings or Settings()
     measured = measure(recording, wanted)

@@ -52,41 +52,12 @@ def compare(
     *,
     report: Callable[[int, int], None] = lambda _done, _total: None,
 ) -> Comparison:
-    """Compare models of one motion.
-
-    Each model's keyframes stand evenly in time in each phase of the motion. The difference is that from the measured
-    motion, unfiltered and at its own rate, whatever the keyframes were taken from, so that all models have the same
-    yardstick. Combinations that are the same model by definition are there once: between two poses DLB is sDLB, and
-    DIB and Catmull-Rom are ScLERP; with the law's knots ScLERP, sDLB and the joint's angles do not know of the blend.
-
-    Parameters
-    ----------
-    recording : Recording
-    settings : Settings, optional
-        What does not belong to the plan: bodies, phases, points, and so on. Its tolerance is that of the selection,
-        2 mm by default (2 deg of orientations alone), and its low-pass that of the filtered keyframes, found by
-        residual analysis by default.
-    plan : ComparisonPlan, optional
-        Which models.
-    report : callable
-        Told after each step how many are done, and of how many: a step a model, and the fewest keyframes as the last.
-
-    Returns
-    -------
-    Comparison
+    """Compare models of one motion; see `elbowscrew.compare`.
 
     Raises
     ------
     SettingError, AnalysisError, RecordingError
-        As `elbowscrew.analyze`.
-
-    Examples
-    --------
-    >>> import elbowscrew
-    >>> recording = elbowscrew.simulate_trial(marker_noise_mm=0).recording
-    >>> found = compare(recording, plan=ComparisonPlan(laws=("linear", "polynomial-345"), counts=(2,), data=("raw",)))
-    >>> str(found.models.law[0])
-    'polynomial-345'
+        As `elbowscrew.motion.analysis.analyze`.
     """
     wanted, plan = settings or Settings(), plan or ComparisonPlan()
     raw = wanted.model_copy(update={"lowpass_hz": None, "resample_hz": None, "keyframes": None, "tolerance_mm": None})

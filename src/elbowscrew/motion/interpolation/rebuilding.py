@@ -75,36 +75,12 @@ def keyframes_of(analysis: Analysis) -> KeyframeSet:
 
 
 def interpolate(keyframes: KeyframeSet, frames: int) -> RebuiltMotion:
-    """Rebuild the motion between keyframes, frames evenly in time from the first to the last.
-
-    Parameters
-    ----------
-    keyframes : KeyframeSet
-        From `keyframes_of`, or read by `elbowscrew.read_keyframes`.
-    frames : int
-        Two at least.
-
-    Returns
-    -------
-    RebuiltMotion
-        The angle has the sense that it has at the keyframes.
+    """Rebuild the motion between keyframes; see `elbowscrew.interpolate`.
 
     Raises
     ------
     SettingError
         If a law is not known in closed form, or the poses cannot be blended so.
-
-    References
-    ----------
-    P 30-36.
-
-    Examples
-    --------
-    >>> import elbowscrew
-    >>> analysis = elbowscrew.analyze(elbowscrew.simulate_trial(marker_noise_mm=0).recording)
-    >>> motion = interpolate(keyframes_of(analysis), 450)
-    >>> bool(np.abs(motion.angle - analysis.interpolated.angle).max() < 1e-9)
-    True
     """
     laws = [named_law(law.name, law.peak).position for law in keyframes.law]
     wanted = np.linspace(keyframes.time_s[0], keyframes.time_s[-1], frames)
