@@ -15,7 +15,7 @@ import pytest
 import elbowscrew
 from elbowscrew import Analysis, Settings, Simulation
 from elbowscrew.configuring import settings_with
-from elbowscrew.errors import ElbowscrewError, OutputError, UsageError
+from elbowscrew.errors import ElbowscrewError, OutputError, ResultError, UsageError
 from elbowscrew.interface.fields import ComparisonFields, SettingsFields, SimulationFields
 from elbowscrew.interface.python_words import in_python
 from elbowscrew.settings import SETTINGS
@@ -131,6 +131,12 @@ def test_what_is_no_recording_is_told(elbow: Analysis) -> None:
     np.testing.assert_array_equal(
         elbowscrew.analyze(trial).screw.angle, elbowscrew.analyze(trial.recording).screw.angle
     )
+
+
+def test_a_file_of_a_result_is_not_its_folder(read_back: Analysis) -> None:
+    assert read_back.folder is not None
+    with pytest.raises(ResultError, match=f"give the folder of the result, as {re.escape(str(read_back.folder))}"):
+        elbowscrew.read_result(read_back.folder / "summary.json")
 
 
 def test_one_name_stands_for_a_list_of_it() -> None:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Unpack
 
 from elbowscrew import comparing, simulate
 from elbowscrew.configuring import settings_with
-from elbowscrew.errors import ElbowscrewError, UsageError
+from elbowscrew.errors import ElbowscrewError, ResultError, UsageError
 from elbowscrew.interface.analysis import Analysis
 from elbowscrew.interface.fields import ComparisonFields, SettingsFields, SimulationFields
 from elbowscrew.model import Analysis as Findings
@@ -128,7 +128,11 @@ def read_result(folder: StrPath) -> Analysis:
     ...     bool((elbowscrew.read_result(folder).screw.valid == analysis.screw.valid).all())
     True
     """
-    return Analysis.read(Path(folder))
+    place = Path(folder)
+    if place.is_file():
+        msg = f"{place}: is a file; give the folder of the result, as {place.parent}"
+        raise ResultError(msg)
+    return Analysis.read(place)
 
 
 def compare(
@@ -332,7 +336,8 @@ def interpolate(keyframes: KeyframeSet | Findings | StrPath, frames: int) -> Reb
     Parameters
     ----------
     keyframes : KeyframeSet, Analysis or path-like
-        From `elbowscrew.keyframes_of` or `elbowscrew.read_keyframes`, the analysis that has them, or a file.
+        From `elbowscrew.keyframes_of` or `elbowscrew.read_keyframes`, the analysis that has them, or its folder, or a
+        file.
     frames : int
         Two at least.
 
@@ -362,8 +367,10 @@ def interpolate(keyframes: KeyframeSet | Findings | StrPath, frames: int) -> Reb
     """
     if isinstance(keyframes, Findings):
         return rebuilding.interpolate(rebuilding.keyframes_of(keyframes), frames)
-    found = keyframes if isinstance(keyframes, KeyframeSet) else read_keyframes(keyframes)
-    return rebuilding.interpolate(found, frames)
+    if isinstance(keyframes, KeyframeSet):
+        return rebuilding.interpolate(keyframes, frames)
+    place = Path(keyframes)
+    return rebuilding.interpolate(read_keyframes(place / "keyframes.csv" if place.is_dir() else place), frames)
 
 
 def simulate_trial(simulation: Simulation | None = None, **fields: Unpack[SimulationFields]) -> SimulatedTrial:
