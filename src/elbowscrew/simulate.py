@@ -183,7 +183,7 @@ class Simulation:
         return self.repetitions * (self.frames - 1 + hold) + 1 + before + after
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class SimulatedTrial:
     """A synthetic recording, its markers as seen, and the truth about it.
 
@@ -203,6 +203,10 @@ class SimulatedTrial:
     markers: Mapping[str, Float]
     truth: dict[str, Any]
     landmarks: Landmarks | None = None
+
+    def __repr__(self) -> str:
+        markers = ", ".join(f"{one.shape[1]} of {name!r}" for name, one in self.markers.items())
+        return f"SimulatedTrial({self.recording!r}; markers {markers}; truth {', '.join(self.truth)})"
 
 
 def simulate_trial(simulation: Simulation | None = None, **settings: Any) -> SimulatedTrial:

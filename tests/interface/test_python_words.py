@@ -152,7 +152,17 @@ def test_attributes_that_are_nearly_right_are_asked_back(elbow: Analysis) -> Non
         elbow.joint_axes  # noqa: B018
     with pytest.raises(AttributeError, match=r"'theta'; numbers stand in to_frame\(\)"):
         elbow.theta  # noqa: B018
+    with pytest.raises(AttributeError, match="no plot is called 'thta'; did you mean 'theta'"):
+        elbow.plot.thta  # noqa: B018
+    with pytest.raises(AttributeError, match="no plot is called 'trace'; there are theta, euler_parameters"):
+        elbow.plot.trace  # noqa: B018
     assert not hasattr(elbow, "_ipython_display_")
+
+
+def test_a_synthetic_trial_shows_itself_in_a_line() -> None:
+    told = repr(simulate_trial(frames=60, inversion=30))
+    assert told.startswith("SimulatedTrial(Recording(60 frames at 100 Hz; bodies 'Upper Arm', 'Forearm'); markers 4 of")
+    assert len(told) < 400
 
 
 def test_keywords_are_stronger_than_settings() -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, Final, cast
+from typing import TYPE_CHECKING, Any, Final, cast
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -13,7 +13,7 @@ from matplotlib.lines import Line2D
 from mpl_toolkits.mplot3d.axes3d import Axes3D
 
 from elbowscrew.choices import FigureName
-from elbowscrew.errors import UsageError
+from elbowscrew.errors import UsageError, did_you_mean
 from elbowscrew.plots import layout, style
 from elbowscrew.plots.panels import Panel, panels_of
 from elbowscrew.plots.registry import FIGURES
@@ -140,6 +140,15 @@ class Plots:
             style.legend(figure, *axes)
             layout.settle(figure)
         return tuple(axes)
+
+    if not TYPE_CHECKING:  # a type checker would take any attribute for one of these
+
+        def __getattr__(self, name: str) -> Any:
+            """Ask back."""
+            names = tuple(FIGURE_ENTRIES)
+            hint = "" if name.startswith("_") else did_you_mean(name, names) or f"; there are {', '.join(names)}"
+            msg = f"no plot is called {name!r}{hint}"
+            raise AttributeError(msg)
 
     def __repr__(self) -> str:
         return f"<plots: call it for an overview, or one of {', '.join(self.available)}>"
