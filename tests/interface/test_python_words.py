@@ -116,7 +116,7 @@ def test_a_comparison_takes_its_plan_as_keywords(elbow: Analysis) -> None:
     own = set(get_type_hints(ComparisonFields)) - set(get_type_hints(SettingsFields))
     assert own == {field.name for field in dataclasses.fields(elbowscrew.ComparisonPlan)} - {"knots"}
     plan = elbowscrew.ComparisonPlan(laws=("linear",), data=("raw",))
-    found = elbowscrew.compare(elbow.recording, plan=plan, methods="sclerp", counts=2, laws=["harmonic"])
+    found = elbowscrew.compare(elbow.recording, plan=plan, methods=["sclerp"], counts=[2], laws=["harmonic"])
     assert set(found.models.law) == {"harmonic"}
     assert set(found.models.method) == {"sclerp"}
     assert set(found.models.data) == {"raw"}
@@ -149,13 +149,13 @@ def test_attributes_that_are_nearly_right_are_asked_back(elbow: Analysis) -> Non
     with pytest.raises(AttributeError, match="did you mean 'analyze'"):
         elbowscrew.analyse  # noqa: B018
     with pytest.raises(AttributeError, match="did you mean 'joint_axis'"):
-        elbow.joint_axes  # noqa: B018
+        elbow.joint_axes  # type: ignore[attr-defined] # noqa: B018
     with pytest.raises(AttributeError, match=r"'theta'; numbers stand in to_frame\(\)"):
-        elbow.theta  # noqa: B018
+        elbow.theta  # type: ignore[attr-defined] # noqa: B018
     with pytest.raises(AttributeError, match="no plot is called 'thta'; did you mean 'theta'"):
-        elbow.plot.thta  # noqa: B018
+        elbow.plot.thta  # type: ignore[attr-defined] # noqa: B018
     with pytest.raises(AttributeError, match="no plot is called 'trace'; there are theta, euler_parameters"):
-        elbow.plot.trace  # noqa: B018
+        elbow.plot.trace  # type: ignore[attr-defined] # noqa: B018
     assert not hasattr(elbow, "_ipython_display_")
 
 
