@@ -10,8 +10,8 @@ from typing import get_args
 
 import pytest
 
-from elbowscrew import Settings, plots
-from elbowscrew.choices import FigureName
+from elbowscrew import plots
+from elbowscrew.choices import ExportName, FigureName
 from elbowscrew.errors import OutputError
 from elbowscrew.plots.registry import FIGURES
 from elbowscrew.results.exporting import EXPORTS
@@ -175,7 +175,7 @@ def test_a_result_may_hold_every_saved_figure_and_export() -> None:
     assert drawn == {f"{name}.{kind}" for name in plots.FIGURES for kind in kinds}
     assert set(FIGURE_ENTRIES) == set(get_args(FigureName))
     assert {"screw.csv", "screw.parquet", "trial.mat", "joint_angle.sto"} <= set(RESULT_FILES)
-    assert set(EXPORTS) == set(get_args(get_args(Settings.model_fields["export"].annotation)[0]))
+    assert set(EXPORTS) == set(get_args(ExportName))
 
 
 @pytest.mark.parametrize("name", FIGURE_ENTRIES)
