@@ -113,7 +113,6 @@ def test_the_recipe_asks_for_what_the_project_asks_for(root: Path, project: dict
 
 def test_the_man_page_is_that_of_the_program(root: Path, wheel: zipfile.ZipFile) -> None:
     made = runpy.run_path(str(root / "docs" / "make_man.py"))["page"]()
-    assert (root / "packaging" / "elbowscrew.1").read_text(encoding="utf-8") == made, "run python docs/make_man.py"
     place = f"elbowscrew-{__version__}.data/data/share/man/man1/elbowscrew.1"
     assert wheel.read(place).decode("utf-8") == made
     told = {word for line in made.splitlines() for word in re.findall(r"\\fB(.+?)\\fR", line)}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import runpy
 import shlex
 from collections.abc import Iterator
 from functools import cache
@@ -54,6 +55,11 @@ def test_the_python_interface_is_documented_whole(root: Path) -> None:
 def test_every_command_is_documented(root: Path) -> None:
     text = (root / "docs" / "reference" / "cli.md").read_text(encoding="utf-8")
     assert re.findall(r"^```\{command\} (\w+)$", text, re.M) == list(group().commands)
+
+
+def test_the_man_page_is_made_from_the_commands(root: Path) -> None:
+    made = runpy.run_path(str(root / "docs" / "make_man.py"))["page"]()
+    assert (root / "packaging" / "elbowscrew.1").read_text(encoding="utf-8") == made, "run python docs/make_man.py"
 
 
 def test_every_figure_is_explained(root: Path) -> None:
