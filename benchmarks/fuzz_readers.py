@@ -42,8 +42,9 @@ with atheris.instrument_imports(include=["elbowscrew"]):
     from elbowscrew.errors import ElbowscrewError, MissingStatementError, NoBodiesError
     from elbowscrew.model import Recording
     from elbowscrew.reading import c3d, c3d_worker
+    from elbowscrew.reading.c3d_checks import check_sizes
     from elbowscrew.reading.c3d_mending import mended
-    from elbowscrew.reading.c3d_parameters import check_sizes, read_statements
+    from elbowscrew.reading.c3d_parameters import read_statements
     from elbowscrew.settings import Settings
 
 SCRATCH = Path(tempfile.mkdtemp(prefix="elbowscrew-fuzz-"))

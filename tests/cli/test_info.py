@@ -151,3 +151,16 @@ def test_patterns_that_fit_nothing_name_the_markers(tmp_path: Path, capsys: Capt
         assert "Elbow, Wrist, Hand" in err
         assert ("did you mean 'Wrist'" in err) == ("Rist" in given)
     assert main(["info", str(path), "--markers", "elb*"]) == 0
+
+
+def test_what_analyze_refuses_is_told_before_its_line(tmp_path: Path, capsys: Capture) -> None:
+    path = tmp_path / "t.sto"
+    rows = [f"{k / 100}\t1,0,0,0\t1,0,0,0" for k in range(9)]
+    path.write_text("\n".join(["DataType=Quaternion", "endheader", "time\tone\tother", *rows]) + "\n")
+    out = told(capsys, str(path))
+    assert "analyze refuses it: tracked in less than 50 % of the frames: one, other." in " ".join(out.split())
+    words = next_words(out)
+    assert main([*words, "--figure-format", "none", "-q", "-o", str(tmp_path / "r")]) == 5
+    capsys.readouterr()
+    sound = table(tmp_path / "t.csv", ("arm", "forearm"))
+    assert "analyze refuses it" not in told(capsys, str(sound))

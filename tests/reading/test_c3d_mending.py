@@ -14,13 +14,16 @@ import pytest
 from elbowscrew import read_recording
 from elbowscrew.errors import RecordingError
 from elbowscrew.geometry.arrays import Float
-from elbowscrew.reading.c3d_parameters import Statements, check_sizes
+from elbowscrew.reading.c3d_checks import check_sizes
+from elbowscrew.reading.c3d_parameters import Statements
 
 PLACES: Float = np.random.default_rng(5).uniform(-900.0, 900.0, (3, 4, 30)).astype(np.float32).astype(np.float64)
 FRAMES_AT, ANALOG_AT, DATA_AT = 8, 4, 16
 
 
-def sound(path: Path, *, analog: bool = False, rotations: bool = False, flagged: bool = False) -> bytes:
+def sound(
+    path: Path, *, analog: bool = False, rotations: bool = False, flagged: bool = False, samples: int = 2
+) -> bytes:
     content = ezc3d.c3d()
     content["parameters"]["POINT"]["RATE"]["value"] = [100.0]
     content["parameters"]["POINT"]["UNITS"]["value"] = ["mm"]
@@ -31,12 +34,12 @@ def sound(path: Path, *, analog: bool = False, rotations: bool = False, flagged:
     if flagged:
         content["data"]["meta_points"]["residuals"] = np.full((1, 4, 30), -1.0)
     if analog:
-        content["parameters"]["ANALOG"]["RATE"]["value"] = [200.0]
+        content["parameters"]["ANALOG"]["RATE"]["value"] = [100.0 * samples]
         content["parameters"]["ANALOG"]["LABELS"]["value"] = ("V1", "V2")
         content["parameters"]["ANALOG"]["UNITS"]["value"] = ("V", "V")
         content["parameters"]["ANALOG"]["SCALE"]["value"] = [1.0, 1.0]
         content["parameters"]["ANALOG"]["OFFSET"]["value"] = [0, 0]
-        content["data"]["analogs"] = np.arange(120.0).reshape(1, 2, 60)
+        content["data"]["analogs"] = np.arange(60.0 * samples).reshape(1, 2, 30 * samples)
     if rotations:
         content["data"]["rotations"] = np.tile(np.eye(4)[:, :, None, None], (1, 1, 2, 30))
         content.add_parameter("ROTATION", "RATE", [100.0])
@@ -97,6 +100,64 @@ def test_a_header_that_is_wrong_beside_right_parameters(tmp_path: Path) -> None:
     path = tmp_path / "t.c3d"
     path.write_bytes(header(sound(path, analog=True), ANALOG_AT, 0))
     assert positions(path) == pytest.approx(PLACES, rel=1e-6)
+
+
+def test_rates_whose_ratio_is_not_whole_in_their_last_digit(tmp_path: Path) -> None:
+    """In single precision 119.88 / 23.976 is 4.9999999: the library makes 4 samples of it."""
+    path = tmp_path / "t.c3d"
+    data = bytearray(sound(path, analog=True, samples=5))
+    points, analog, *_ = (one.values_at for one in c3d_files.parameters(bytes(data)) if one.name == "RATE")
+    for at, rate in ((points, 23.976), (analog, 119.88)):
+        struct.pack_into("<f", data, at, rate)
+    path.write_bytes(data)
+    assert not np.allclose(ezc3d.c3d(str(path))["data"]["points"][:3], PLACES, rtol=1e-6)
+    assert positions(path) == pytest.approx(PLACES, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("name", "number", "kind", "value", "reason"),
+    [
+        ("FRAMES", 0, "H", 255, "30 and 255 frames .* is not certain"),
+        ("FRAMES", 0, "H", 65535, "30 and 65535 frames .* is not certain"),
+        ("RATE", 1, "f", 100.0, "4 analog words a frame, the parameters of 4 and 2"),
+        ("RATE", 1, "f", 0.0, "4 analog words a frame, the parameters of 4 and 0"),
+        ("RATE", 1, "f", 1e9, "no possible rates together"),
+        ("RATE", 1, "f", float("nan"), "no possible rates together"),
+        ("SCALE", 0, "f", 0.1, "its header tells of floats, but POINT:SCALE is 0.1"),
+        ("SCALE", 0, "f", 0.0, "its header tells of floats, but POINT:SCALE is 0"),
+        ("RATIO", 0, "H", 0xFF01, "it is cut"),
+        ("RATIO", 0, "H", 0, "ROTATION:RATIO is 0, no possible one"),
+        ("DATA_START", 1, "H", 300, "it is cut"),
+    ],
+)
+def test_what_the_parameters_cannot_mean_is_refused_before_the_file_is_opened(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, number: int, kind: str, value: float, reason: str
+) -> None:
+    monkeypatch.setattr("elbowscrew.reading.c3d._worker_output", None)
+    path = tmp_path / "t.c3d"
+    data = bytearray(sound(path, analog=True, rotations=True))
+    at = [one.values_at for one in c3d_files.parameters(bytes(data)) if one.name == name][number]
+    struct.pack_into(f"<{kind}", data, at, value)
+    path.write_bytes(data)
+    with pytest.raises(RecordingError, match=reason):
+        read_recording(path, markers="*")
+
+
+@pytest.mark.parametrize("start", [0, 2, 5, 6])
+def test_points_that_the_header_has_begin_elsewhere(tmp_path: Path, start: int) -> None:
+    path = tmp_path / "t.c3d"
+    path.write_bytes(header(sound(path), DATA_AT, start))
+    with pytest.raises(RecordingError, match="where a position stands is not certain"):
+        read_recording(path, markers="*")
+
+
+@pytest.mark.parametrize("rotations", [False, True])
+def test_a_file_that_is_cut_is_not_taken_for_a_shorter_one(tmp_path: Path, rotations: bool) -> None:
+    path = tmp_path / "t.c3d"
+    data = sound(path, rotations=rotations)
+    path.write_bytes(data[: len(data) - 700])
+    with pytest.raises(RecordingError, match="it is cut: it states 30 frames"):
+        read_recording(path, markers="*")
 
 
 def test_points_that_are_all_flagged(tmp_path: Path) -> None:

@@ -125,3 +125,14 @@ def test_the_cases(real_data: Path) -> None:
         assert not one.located
         assert not other.located
         assert one.dual_quat_lab_body == pytest.approx(other.dual_quat_lab_body, abs=2e-8)
+
+
+@pytest.mark.parametrize("first", ["Coordinates", "name grf.mot", "results of a run"])
+def test_angles_and_forces_are_refused_as_what_they_are(tmp_path: Path, first: str) -> None:
+    rows = [first, "version=1", "nColumns=2", "inDegrees=yes", "endheader", "time\telbow_flexion", "0.0\t10", "0.1\t11"]
+    with pytest.raises(RecordingError, match=r"joint angles and forces \(\.mot\) are no poses of two bodies; give the"):
+        read(tmp_path / "t.mot", rows)
+
+
+def test_orientations_may_stand_under_a_name(tmp_path: Path) -> None:
+    assert len(read(tmp_path / "t.sto", lines(("orientations of a take", *HEADER))).bodies) == 2

@@ -29,7 +29,7 @@ def info(
     Layout, clock, bodies and their tracking, bones and markers, what the file does not say, and the next command.
     """
     from elbowscrew.cli import render, render_file
-    from elbowscrew.cli.next_command import next_command
+    from elbowscrew.cli.next_command import next_command, too_seldom_tracked
     from elbowscrew.configuring import settings_from
     from elbowscrew.reading.options import check_patterns
     from elbowscrew.reading.unstated import read_what_is_stated
@@ -50,4 +50,6 @@ def info(
         render.json_object({**summary, "next": command})
     else:
         render_file.info_table(summary, everything=everything)
-        render_file.next_line(command, guessed=guessed)
+        least = settings.min_tracked_percent
+        seldom = too_seldom_tracked(summary, least)
+        render_file.next_line(command, guessed=guessed, seldom=seldom, least_percent=least)

@@ -40,6 +40,22 @@ def next_command(files: list[Path], given: Mapping[str, Any], summary: FileSumma
     return shlex.join([*words, *bodies]), guessed
 
 
+def too_seldom_tracked(summary: FileSummary, least_percent: float) -> list[str]:
+    """Names of the joint's bodies, as far as they are known, that are tracked in too few frames to be analyzed.
+
+    Parameters
+    ----------
+    summary : FileSummary
+    least_percent : float
+        The least share of tracked frames.
+    """
+    shares = {body["name"]: body["tracked_share"] for body in summary["trial"]["bodies"]}
+    roles = summary["roles"]
+    meant = [roles["proximal"], roles["distal"]] if roles["distal"] is not None else list(shares)
+    seldom = [name for name in meant if name in shares and 100.0 * shares[name] < least_percent]
+    return seldom if roles["distal"] is not None or len(shares) - len(seldom) < min(2, len(shares)) else []
+
+
 def _bodies(summary: FileSummary, missing: list[str]) -> tuple[list[str], bool]:
     rigid = [body["name"] for body in summary["trial"]["bodies"] if body["name"] not in summary["bones"]]
     roles = summary["roles"]

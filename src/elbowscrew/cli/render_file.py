@@ -49,9 +49,16 @@ def info_table(summary: FileSummary, *, everything: bool) -> None:
         print_parts(Text("Notes", style="bold"), *map(Text, told))
 
 
-def next_line(command: str, *, guessed: bool) -> None:
-    """Write the command that analyzes the file, in one line of its own, as it is to be typed."""
+def next_line(command: str, *, guessed: bool, seldom: Sequence[str], least_percent: float) -> None:
+    """Write the command that analyzes the file, in one line of its own, as it is to be typed.
+
+    Of bodies that are tracked too seldom it is told that they are refused.
+    """
     which = ", if the first of the two is the proximal one" if guessed else ""
+    if seldom:
+        names = ", ".join(map(printable, seldom))
+        emit(f"As it is, analyze refuses it: tracked in less than {least_percent:g} % of the frames: {names}.\n")
+        which += ", once that is mended"
     emit(f"To analyze it{which}:\n{printable(command)}\n")
 
 

@@ -24,8 +24,9 @@ from elbowscrew.opening import sha256_of
 from elbowscrew.quantities import METERS
 from elbowscrew.reading import c3d_worker
 from elbowscrew.reading.builders import BodyBuilder, MarkerBuilder
+from elbowscrew.reading.c3d_checks import check_sizes
 from elbowscrew.reading.c3d_mending import mended
-from elbowscrew.reading.c3d_parameters import check_sizes, read_statements
+from elbowscrew.reading.c3d_parameters import read_statements
 from elbowscrew.reading.clock import is_rate
 from elbowscrew.reading.options import ReadOptions, nothing_wanted, stated_unit
 

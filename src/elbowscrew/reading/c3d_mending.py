@@ -1,4 +1,7 @@
-"""C3D files that the library does not take, rewritten so that it does: numbers of SGI machines, offsets of floats."""
+"""C3D files that the library does not take, rewritten so that it does.
+
+Numbers of SGI machines, offsets of floats, and an analog rate whose last digit makes a sample fewer.
+"""
 
 from __future__ import annotations
 
@@ -9,10 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowscrew.opening import open_bytes
+from elbowscrew.reading.c3d_checks import samples_a_frame
 from elbowscrew.reading.c3d_parameters import BIG_ENDIAN, Parameter, Statements
 
 _INTEL: Final = 84
 _LONGEST_DESCRIPTION: Final = 255
+_MOST_SAMPLES: Final = 1 << 16
 _HEADER_WORDS: Final = (2, 4, 6, 8, 10, 16, 18)
 _HEADER_FLOATS: Final = (12, 20)
 
@@ -27,7 +32,8 @@ def mended(path: Path, stated: Statements) -> bytes | None:
     """
     entries = list(stated.entries())
     offsets = [one for one, _ in entries if one is not None and _is_float_offset(one)]
-    if stated.processor != BIG_ENDIAN and not offsets:
+    rate = _rate_beside_a_whole_multiple(stated)
+    if stated.processor != BIG_ENDIAN and not offsets and rate is None:
         return None
     with open_bytes(path) as stream:
         data = np.frombuffer(stream.read(), dtype=np.uint8).copy()
@@ -44,11 +50,25 @@ def mended(path: Path, stated: Statements) -> bytes | None:
         data[at + 3] = _INTEL
     for one in offsets:
         _make_whole(data, stated, one)
+    if rate is not None:
+        at = stated.parameters_at + rate.values_at
+        data[at : at + 4].view("<f4")[:] = _rates(stated)[0] * samples_a_frame(stated) * (1.0 + 1e-6)
     return data.tobytes()
 
 
 def _is_float_offset(one: Parameter) -> bool:
     return (one.group, one.name, one.kind) == ("ANALOG", "OFFSET", 4)
+
+
+def _rate_beside_a_whole_multiple(stated: Statements) -> Parameter | None:
+    """ANALOG:RATE, where the library would find one sample fewer in a frame than there are; None where it does not."""
+    points, analog = _rates(stated)
+    less = analog > 0.0 < points and int(analog / points) < samples_a_frame(stated) < _MOST_SAMPLES
+    return stated.find("ANALOG", "RATE") if less else None
+
+
+def _rates(stated: Statements) -> tuple[float, float]:
+    return stated.number("POINT", "RATE") or stated.rate_hz, stated.number("ANALOG", "RATE") or 0.0
 
 
 def _swap(data: NDArray[np.uint8], at: int, width: int, count: int) -> None:

@@ -1,20 +1,20 @@
-"""What a C3D file says of itself, looked at before a library believes it."""
+"""What a C3D file says of itself in its header and its parameters."""
 
 from __future__ import annotations
 
 import math
+import struct
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final, Literal
 
-from elbowscrew.errors import RecordingError, shown
 from elbowscrew.opening import open_bytes
 
 BLOCK: Final = 512
 BIG_ENDIAN: Final = 86
 """Processor of the file in the fourth byte of its parameters: Intel is 84, DEC 85, MIPS (SGI) 86."""
-_DEC: Final = 85
+DEC: Final = 85
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,8 +69,12 @@ class Statements:
     @property
     def word_bytes(self) -> int:
         """Bytes of a coordinate: 4 where the scale factor is negative, which says that they are floats."""
-        sign_at = {BIG_ENDIAN: 12, _DEC: 13}.get(self.processor, 15)
-        return 4 if self.header[sign_at] & 0x80 else 2
+        return 4 if self._float(self.header[12:16]) < 0.0 else 2
+
+    @property
+    def rate_hz(self) -> float:
+        """Frames a second, by the header."""
+        return self._float(self.header[20:24])
 
     def word(self, number: int) -> int:
         """Whole number of the header, counted from 0."""
@@ -119,12 +123,30 @@ class Statements:
             at = link_at + step
         return at >= len(self.blocks) or self.blocks[at] != 0
 
+    def find(self, group: str, name: str) -> Parameter | None:
+        """Give the first parameter of that name that has numbers of two or four bytes, if there is one."""
+        wanted = ((group, name, 2), (group, name, 4))
+        found = (one for one, _ in self.entries() if one is not None and (one.group, one.name, one.kind) in wanted)
+        return next((one for one in found if one.count), None)
+
+    def number(self, group: str, name: str) -> float | None:
+        """First value of a parameter, whole numbers without a sign; None if there is none."""
+        one = self.find(group, name)
+        if one is None:
+            return None
+        data = self.blocks[one.values_at : one.values_at + one.kind]
+        return float(int.from_bytes(data, self.order)) if one.kind == 2 else self._float(data)
+
     def whole_number(self, group: str, name: str) -> int:
         """First value of a parameter of whole numbers; 0 if there is none."""
-        for one, _ in self.entries():
-            if one is not None and (one.group, one.name, one.kind) == (group, name, 2) and one.count:
-                return int.from_bytes(self.blocks[one.values_at : one.values_at + 2], self.order)
-        return 0
+        one = self.find(group, name)
+        return int(self.number(group, name) or 0) if one is not None and one.kind == 2 else 0
+
+    def _float(self, data: bytes) -> float:
+        data = data.ljust(4, b"\0")
+        if self.processor == DEC:  # the words of a VAX float stand in the other order, and its exponent is 2 more
+            return float(struct.unpack("<f", data[2:] + data[:2])[0]) / 4.0
+        return float(struct.unpack(">f" if self.processor == BIG_ENDIAN else "<f", data)[0])
 
 
 def read_statements(path: Path) -> Statements | None:
@@ -144,57 +166,6 @@ def read_statements(path: Path) -> Statements | None:
             return None
         blocks = head + stream.read(BLOCK * max(head[2], 1))
     return Statements(header, at, blocks, path.stat().st_size)
-
-
-def check_sizes(path: Path, stated: Statements) -> None:
-    """Refuse a file that cannot hold what its parameters state, or whose points' places are not certain.
-
-    It ends among them, or they have more values than it has bytes. Nothing else is judged here: what cannot be followed
-    is left to the reader.
-
-    Raises
-    ------
-    RecordingError
-        If it is so.
-    """
-    if stated.are_cut:  # the library would go on for seconds
-        msg = f"{path}: not a C3D file that can be read: it ends among its parameters; copy or export the take again"
-        raise RecordingError(msg)
-    values = 0
-    for one, _ in stated.entries():
-        values += 0 if one is None else one.count
-        if one is not None and values > stated.size:
-            msg = (
-                f"{path}: not a C3D file that can be read: its parameters up to {shown(one.name)} state "
-                f"{values} values, where the whole file has {stated.size} bytes; export the take again"
-            )
-            raise RecordingError(msg)
-    _check_frame_size(path, stated)
-
-
-def _check_frame_size(path: Path, stated: Statements) -> None:
-    """Refuse where the parameters, by which points are found, contradict the header and do not fit the file's length.
-
-    Points and analog samples of a frame stand together: of one that is not told, all positions behind it are shifted.
-    """
-    points, analog = stated.word(1), stated.word(2)
-    told_points = stated.whole_number("POINT", "USED")
-    told_analog = stated.whole_number("ANALOG", "USED") * max(stated.word(9), 1)
-    if (points, analog) == (told_points, told_analog):
-        return
-    frames = stated.word(4) - stated.word(3) + 1
-    needed = frames * (4 * told_points + told_analog) * stated.word_bytes
-    end = stated.size
-    if stated.whole_number("ROTATION", "USED"):
-        rotations_at = BLOCK * (stated.whole_number("ROTATION", "DATA_START") - 1)
-        end = rotations_at if stated.data_at < rotations_at < end else end
-    if not 0 <= end - stated.data_at - needed < BLOCK:
-        msg = (
-            f"{path}: the header tells of {points} points and {analog} analog words a frame, the parameters of "
-            f"{told_points} and {told_analog}, and the file's length does not fit the latter: where a position stands "
-            "is not certain; export the take again"
-        )
-        raise RecordingError(msg)
 
 
 def _signed(byte: int) -> int:

@@ -252,9 +252,11 @@ def _read(file: Path, options: ReadOptions) -> Recording:
             _check_options(file, entry.name, options, entry.accepts)
             return _told(source, entry.read(source, options))
     found = _read_by_plug_in(file, options)
-    if found is None:
-        raise RecordingError(_refusal(source, cells))
-    return found
+    if found is not None:
+        return found
+    if storage.has_header(source):
+        return _told(source, storage.read(source, options))
+    raise RecordingError(_refusal(source, cells))
 
 
 def _told(source: TextSource, recording: Recording) -> Recording:

@@ -33,6 +33,11 @@ def recognizes(cells: list[str]) -> bool:
     return bool(equals) and key.strip() in _KEYS
 
 
+def has_header(source: TextSource) -> bool:
+    """Tell by the line that ends a storage's header; what stands before it may begin with any name."""
+    return any(line.strip().casefold() == END_OF_STORAGE_HEADER for line in islice(source.lines(), _HEADER_LINES))
+
+
 def read(source: TextSource, _options: ReadOptions) -> Recording:
     """Read a storage of orientations; see `elbowscrew.reading.registry.read_recording`."""
     stated, titles, line = _header(source)
@@ -126,8 +131,10 @@ def _segments(source: TextSource, stated: dict[str, str], titles: list[str], lin
     if kind.casefold() != "quaternion":
         found = f"DataType={kind}" if kind else "no DataType"
         msg = (
-            f"{source.path}: expected orientations (DataType=Quaternion) in a storage of OpenSim, found {found}; joint "
-            "angles and forces tell no motion of two bodies"
+            f"{source.path}: expected orientations (DataType=Quaternion) in a storage of OpenSim, found {found}: joint "
+            "angles and forces (.mot) are no poses of two bodies; give the markers (.trc, .c3d) or orientations (.sto) "
+            "that they were computed from, or say by --columns FILE.toml which columns are bodies' poses "
+            "(docs/reference/plain-table.md)"
         )
         raise RecordingError(msg)
     clock, *names = titles
