@@ -76,12 +76,13 @@ def test_option_names_leave_the_unit_out() -> None:
     assert option_name("express_in") == "express-in"
 
 
-def test_a_users_script_is_typed_without_a_plugin(root: Path, tmp_path: Path) -> None:
+def test_a_users_script_is_typed_without_a_plugin(root: Path, tmp_path: Path, request: pytest.FixtureRequest) -> None:
     api = pytest.importorskip("mypy.api")
     nothing = tmp_path / "mypy.ini"
     nothing.write_text("[mypy]\nignore_missing_imports = True\n")
     script = root / "tests" / "typing" / "notebook.py"
-    cache = f"--cache-dir={tmp_path / 'cache'}"
+    kept = request.config.cache  # mypy looks itself at what has changed since
+    cache = f"--cache-dir={tmp_path / 'cache' if kept is None else kept.mkdir('mypy')}"
     told, faults, code = api.run(
         ["--strict", f"--config-file={nothing}", "--follow-imports=silent", cache, str(script)]
     )

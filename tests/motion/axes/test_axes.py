@@ -11,12 +11,14 @@ from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry import line_through
 from elbowscrew.model import HelicalSteps
 from elbowscrew.motion.axes.instantaneous import instantaneous_motion, twists
+from elbowscrew.motion.axes.measured import measured_steps
+from elbowscrew.motion.screws.measurement import measure
 
 
 def steps_of(step_deg: float, *, noise_mm: float = 0.0, seed: int = 0) -> HelicalSteps:
     trial = simulate_trial(marker_noise_mm=noise_mm, proximal="moving", seed=seed)
     settings = Settings(step_deg=step_deg, express_in="proximal", marker_noise_mm=0.2)
-    steps = analyze(trial.recording, settings).steps
+    steps = measured_steps(measure(trial.recording, settings), settings)  # what `analyze` has, and nothing beside it
     assert steps is not None
     return steps
 

@@ -39,7 +39,8 @@ def test_maximum_likelihood_attains_the_bound(top_deg: int) -> None:
 
 
 def test_outliers_hurt_a_robust_fit_little() -> None:
-    errors = hinge_errors(90, 40, seed=1, robust_too=True)
+    # The ratios are about 1.10, 1.03 and 65; of twenty trials, 999 times in a thousand below 1.34 and 1.17, above 42.
+    errors = hinge_errors(90, 20, seed=1, robust_too=True)
     assert rms(errors["robust, 10 % outliers"]) < 1.5 * rms(errors["maximum likelihood"])
     assert rms(errors["robust, clean"]) < 1.2 * rms(errors["maximum likelihood"])
     assert rms(errors["least squares, 10 % outliers"]) > 5.0 * rms(errors["maximum likelihood"])

@@ -13,6 +13,7 @@ from elbowscrew.configuring import settings_from
 from elbowscrew.errors import SettingError, UsageError
 from elbowscrew.geometry import dual_quat_from_screw
 from elbowscrew.geometry import dual_quaternion as dq
+from elbowscrew.motion.screws.measurement import measure
 
 TRIAL = simulate_trial(seed=9, proximal="moving", gaps=3, gap_frames=4, sign_flips=True)
 TRUTH = np.radians(TRIAL.truth["theta_deg"])
@@ -38,7 +39,7 @@ def test_intervals_hold_after_a_filter() -> None:
     inside = []
     for seed in range(30):
         trial = simulate_trial(seed=seed, proximal="moving")
-        screw = analyze(trial.recording, Settings(marker_noise_mm=0.2, lowpass_hz=8.0)).screw
+        screw = measure(trial.recording, Settings(marker_noise_mm=0.2, lowpass_hz=8.0)).screw  # that of `analyze`
         error = screw.angle - np.radians(trial.truth["theta_deg"])
         inside.append(np.abs(error[100:350:50]) <= 1.96 * screw.angle_sd[100:350:50])
     # All frames of a trial share its reference, so that a trial counts hardly more than once.

@@ -17,6 +17,7 @@ from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry import quaternion as qn
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import TrackingLoss
+from elbowscrew.motion.screws.measurement import measure
 from elbowscrew.motion.smoothing.gaps import fill_gaps
 from elbowscrew.motion.tracking.clock import elapsed_time
 from elbowscrew.motion.tracking.lost_poses import check_tracking
@@ -131,9 +132,9 @@ def test_a_flip_behind_a_gap_is_told_and_the_gap_is_not_filled() -> None:
     for gap in range(1, 16):
         pose = flipped(series(400), slice(200 + gap, 400))
         pose[200 : 200 + gap] = np.nan
-        analysis = analyze(Recording.from_bodies([body(pose)], rate_hz=100))
-        assert "leap-unresolved" in [warning.code for warning in analysis.warnings]
-        assert not analysis.screw.filled.any()
+        measured = measure(Recording.from_bodies([body(pose)], rate_hz=100), Settings())
+        assert "leap-unresolved" in [warning.code for warning in measured.warnings]
+        assert not measured.screw.filled.any()
 
 
 def test_a_clock_that_jitters_makes_no_leaps() -> None:
