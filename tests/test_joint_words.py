@@ -90,7 +90,7 @@ def test_no_word_of_another_joint_beside_the_trials_page(
     run("simulate", "simulate", "s.csv", "--joint", case, "--frames", "20", "--inversion", "9")
     run("info", "info", "in/t1.csv")
     run("info as JSON", "info", "in/t1.csv", "--json")
-    run("batch", "batch", "in", "-o", "out", "--figure-format", "svg", "--export", "sto")
+    run("batch", "batch", "in", "-o", "out", "--figure-format", "none", "--export", "sto")
     folders = sorted(path.parent for path in (tmp_path / "out").glob("*/summary.json"))
     assert len(folders) == 2
     names = ",".join(name for name, entry in FIGURE_ENTRIES.items() if not entry.needs)
@@ -105,7 +105,9 @@ def test_no_word_of_another_joint_beside_the_trials_page(
     written = [path for path in tmp_path.rglob("*") if path.suffix in kinds and path.parent.name != "in"]
     told |= {str(path.relative_to(tmp_path)): path.read_text(encoding="utf-8") for path in written}
     assert {path.suffix for path in written} == kinds
-    assert sum(path.suffix == ".svg" for path in written) >= len(FIGURE_ENTRIES)
+    drawn = {path.relative_to(tmp_path).parts[0] for path in written if path.suffix == ".svg"}
+    assert drawn == {"figures", "overlay", "compared", "compared trials"}
+    assert {path.stem for path in (tmp_path / "figures").glob("*.svg")} == set(names.split(","))
     for name, text in told.items():
         found = {word.lower() for word in ANY.findall(_OPTIONS.sub("", text))}
         assert found <= words | {case}, (name, found - words)
