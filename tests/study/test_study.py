@@ -6,6 +6,7 @@ import csv
 import json
 import os
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -22,17 +23,18 @@ from elbowscrew.cli import main
 from elbowscrew.study.folder import batch_folder
 from elbowscrew.study_columns import study_header
 
-SOUND, BROKEN = 48, list(WAYS)
+SOUND, BROKEN = 24, list(WAYS)
+MANY = 30
 LEADS_BACK = ' · <a href="../index.html">all trials of the study</a>'.encode()
 
 
 @pytest.fixture(scope="module")
 def study(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Sixty trials in two folders, twelve of them broken, and what is none among them."""
+    """Thirty-six trials in two folders, twelve of them broken, and what is none among them."""
     folder = tmp_path_factory.mktemp("study")
     first = write_trials(folder / "data", (SOUND + len(BROKEN)) // 2)
     second = write_trials(folder / "data" / "P02", (SOUND + len(BROKEN)) // 2)
-    for path, way in zip((first + second)[::5], BROKEN, strict=True):
+    for path, way in zip((first + second)[::3], BROKEN, strict=True):
         break_trial(path, way)
         path.rename(path.with_name(f"{way}.csv"))
     (folder / "data" / "people.csv").write_text("subject,age\nA,31\n")
@@ -42,7 +44,7 @@ def study(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def undisturbed(study: Path) -> Path:
     done = batch("data", "--recursive", *FAST, "--workers", 2, "-o", "out", folder=study, code=7)
-    assert "60 of 60 trials done, 12 failed" in done.stderr
+    assert "36 of 36 trials done, 12 failed" in done.stderr
     return study / "out"
 
 
@@ -76,7 +78,7 @@ def test_every_good_trial_is_there_and_right(undisturbed: Path) -> None:
 
 
 def test_a_result_is_what_analyze_makes(undisturbed: Path, study: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    for row in rows(undisturbed / "summary.csv")[::17]:
+    for row in rows(undisturbed / "summary.csv")[::8]:
         alone = study / "alone" / row["trial"]
         assert main(["analyze", str(study / "data" / row["path"]), "-q", "-o", str(alone), *FAST]) == 0
         one, other = contents(alone), contents(undisturbed / row["trial"])
@@ -121,7 +123,7 @@ def test_units_change_names_and_values_together(study: Path, undisturbed: Path) 
 def test_json_is_one_object(study: Path, undisturbed: Path) -> None:
     done = batch("data", "--recursive", *FAST, "--json", "-o", "out", folder=study, code=7)
     told = json.loads(done.stdout)
-    assert (told["trials"], told["up_to_date"], told["analyzed"], told["failed"]) == (60, 48, 0, 12)
+    assert (told["trials"], told["up_to_date"], told["analyzed"], told["failed"]) == (36, 24, 0, 12)
     assert told["skipped"] == [{"path": "people.csv", "reason": "a table, but not of a recording"}]
     assert len(told["failures"]) == 12
 
@@ -193,7 +195,7 @@ if __name__ == "__main__":
 @pytest.mark.parametrize(("size", "figures"), [(0, "none"), (2_000, "none"), (15_000, "none"), (60_000, "png")])
 def test_a_full_disk_is_one_line_and_leaves_nothing(tmp_path: Path, size: int, figures: str) -> None:
     """Files cannot grow beyond the limit, in the workers neither."""
-    write_trials(tmp_path / "in", 6)
+    write_trials(tmp_path / "in", 4)
     (tmp_path / "limited.py").write_text(LIMITED)
     arguments = ["limited.py", str(size), "batch", "in", "-q", "-o", "out", "--figure-format", figures]
     done = subprocess.run([sys.executable, *arguments], cwd=tmp_path, capture_output=True, text=True, check=False)
@@ -219,9 +221,17 @@ def test_a_scheduler_that_is_not_there_is_wrong_usage(tmp_path: Path) -> None:
     assert done.stderr.splitlines()[-1].startswith("elbowscrew: error: ")
 
 
+@pytest.fixture(scope="module")
+def many(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Trials enough that a batch of them is still running when its first result is there."""
+    folder = tmp_path_factory.mktemp("many")
+    write_trials(folder, MANY)
+    return folder
+
+
 @pytest.fixture
-def running(tmp_path: Path) -> Iterator[subprocess.Popen[str]]:
-    write_trials(tmp_path / "in", 40, frames=120)
+def running(tmp_path: Path, many: Path) -> Iterator[subprocess.Popen[str]]:
+    shutil.copytree(many, tmp_path / "in")
     process = subprocess.Popen(
         command("in", *FAST, "--workers", 2, "-o", "out"), cwd=tmp_path, stdout=subprocess.PIPE,
         stderr=subprocess.PIPE, text=True, start_new_session=True,
@@ -267,7 +277,7 @@ def test_killed_workers_cost_no_trial(tmp_path: Path, running: subprocess.Popen[
                     time.sleep(0.005)
     _, error = running.communicate(timeout=120)
     assert running.returncode == 0, error
-    assert len(rows(tmp_path / "out" / "summary.csv")) == 40
+    assert len(rows(tmp_path / "out" / "summary.csv")) == MANY
     assert not list((tmp_path / "out").glob(".elbowscrew-*.partial"))
 
 
