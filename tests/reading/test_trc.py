@@ -181,3 +181,14 @@ def test_cases_are_read_as_the_control(real_data: Path, name: str) -> None:
         seen = np.isfinite(one.position).all(axis=1)
         assert seen.mean() == (29 / 44 if (name, one.name) == ("zero_marker", "F2") else 1.0)
         assert one.position[seen] == pytest.approx(other.position[seen], abs=2e-6)
+
+
+@pytest.mark.parametrize(("factor", "doubted"), [(1.0, False), (0.001, True), (1000.0, True)])
+def test_a_stated_unit_that_the_numbers_contradict_is_told(tmp_path: Path, factor: float, doubted: bool) -> None:
+    path = tmp_path / "t.trc"
+    rows = ["PathFileType\t4\t(X/Y/Z)\tt.trc", "DataRate\tUnits", "100\tmm", "Frame#\tTime\tA\t\t", "\t\tX1\tY1\tZ1"]
+    rows += [f"{k + 1}\t{k / 100}\t{factor * (300 + k)}\t{factor * 40}\t{factor * 50}" for k in range(9)]
+    path.write_text("\n".join(rows) + "\n")
+    found = {one.code: one.message for one in read_recording(path, markers="*").warnings}
+    assert ("units-doubtful" in found) is doubted
+    assert not doubted or "the unit that is stated, mm, puts" in found["units-doubtful"]

@@ -210,7 +210,7 @@ def read_recording(
     recording = _read(Path(path), options)
     if distal_path is not None:
         recording = joined(recording, _read(Path(distal_path), options))
-    return recording if units is None else with_scale_checked(recording, units)
+    return with_scale_checked(recording, units)
 
 
 def all_endings() -> tuple[str, ...]:

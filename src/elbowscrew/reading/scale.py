@@ -1,4 +1,4 @@
-"""Whether a unit of length that somebody has given can be the file's."""
+"""Whether a unit of length that somebody has given, or the file states, can be the file's."""
 
 from __future__ import annotations
 
@@ -17,16 +17,22 @@ DOUBTFUL: Final = "units-doubtful"
 _FARTHEST_M: Final = 100.0
 _FAR_M: Final = 15.0
 _NEAR_M: Final = 0.005
+# Formats whose unit is a word that another program may have written beside numbers of its own.
+_OFTEN_WRONG: Final = ("TRC", "C3D", "named columns")
 
 
-def with_scale_checked(recording: Recording, units: str) -> Recording:
-    """Warn where bodies or markers stand where a unit that was given hardly puts them.
+def with_scale_checked(recording: Recording, given: str | None) -> Recording:
+    """Warn where bodies or markers stand where the unit that was given, or is stated, hardly puts them.
 
     Raises
     ------
     SettingError
-        If it puts them where they cannot be, and which units would not.
+        If the one that was given puts them where they cannot be, and which units would not.
     """
+    source = recording.source
+    units = given or (source.length_unit if source is not None and source.layout in _OFTEN_WRONG else "")
+    if units not in METERS:
+        return recording
     places = [pose_from_dual_quat(body.dual_quat_lab_body)[1] for body in recording.bodies if body.located]
     places += [marker.position for marker in recording.markers]
     distances = [np.linalg.norm(place[np.isfinite(place).all(axis=1)], axis=1) for place in places]
@@ -35,10 +41,11 @@ def with_scale_checked(recording: Recording, units: str) -> Recording:
     if distance == 0.0 or _NEAR_M <= distance <= _FAR_M:
         return recording
     fitting = [unit for unit, meters in METERS.items() if _NEAR_M <= distance * meters / METERS[units] <= _FAR_M]
-    message = f"--units {units} puts what is in the file {distance:.3g} m from the origin: " + (
+    what = f"--units {units}" if given else f"the unit that is stated, {units},"
+    message = f"{what} puts what is in the file {distance:.3g} m from the origin: " + (
         f"is its unit {' or '.join(fitting)}?" if fitting else "is its unit another one?"
     )
-    if distance > _FARTHEST_M:
+    if given and distance > _FARTHEST_M:
         raise SettingError(message)
     warning = QualityWarning(code=DOUBTFUL, message=message)
     return replace(recording, warnings=(warning, *recording.warnings))
