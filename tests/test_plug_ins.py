@@ -225,6 +225,13 @@ def test_an_exporter_takes_an_analysis_and_one_read_back(exporter: Path, tmp_pat
         ("    (folder / 'a b').touch()", "it left 'a b': expected files alone"),
         ("    [one.unlink() for one in folder.iterdir()]", "it wrote no file"),
         ("    raise SystemExit('enough')", "SystemExit enough"),
+        ("    import shutil; shutil.rmtree(folder)", "it wrote outside its folder, or removed it"),
+        ("    import shutil; shutil.rmtree(folder); folder.symlink_to('.')", "it wrote outside its folder"),
+        ("    (folder.parent / 'beside.txt').touch()", "it wrote outside its folder"),
+        ("    (folder.parent.parent / 'screw.csv').write_text('frame')", "it wrote outside its folder"),
+        ("    (folder / 'con.txt').touch()", "'con.txt', which is no name of a file on Windows"),
+        ("    (folder / 'Angle.txt').touch()", "twice but for the case of letters"),
+        ("    raise type('E', (Exception,), {'__str__': lambda _: 1 / 0})", "was not written: E"),
     ],
 )
 def test_an_exporter_that_fails_does_not_cost_the_result(
@@ -241,6 +248,42 @@ def test_an_exporter_that_fails_does_not_cost_the_result(
     again = elbowscrew.read_result(target)
     assert [one["code"] for one in again.summary["warnings"]].count("export-failed") == 1
     assert told in html.unescape((target / "report.html").read_text(encoding="utf-8"))
+
+
+def test_an_exporter_may_go_to_another_folder(exporter: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    exporter.write_text(f"{exporter.read_text()}\n    import os; os.chdir(folder)\n")
+    look_anew()
+    monkeypatch.chdir(tmp_path)
+    elbowscrew.save_analysis(short_trial(), "result", figure_formats=(), report=False)
+    assert Path.cwd() == tmp_path
+    assert (tmp_path / "result" / "exports" / "mylab-angle" / "angle.txt").exists()
+
+
+def test_two_plug_ins_of_one_name_are_told_not_chosen_from(exporter: Path, root: Path, tmp_path: Path) -> None:
+    other = tmp_path / "site" / "other-1.0.dist-info"
+    other.mkdir()
+    (other / "METADATA").write_text("Metadata-Version: 2.1\nName: other\nVersion: 1.0\n")
+    (other / "entry_points.txt").write_text("[elbowscrew.exporters]\nmylab-angle = other:write\nnul = other:write\n")
+    look_anew()
+    with pytest.raises(UsageError, match=r"'mylab_export' .* and .*'other' .* have one name; uninstall all but one"):
+        elbowscrew.save_analysis(short_trial(), tmp_path / "result", figure_formats=())
+    with pytest.raises(UsageError, match=r"its name is that of a folder: .*no device of Windows"):
+        elbowscrew.save_analysis(short_trial(), tmp_path / "result", figure_formats=(), exports=["nul"])
+    assert not (tmp_path / "result").exists()
+
+
+def test_a_reader_that_exits_or_gives_no_answer_is_told(installed: Path) -> None:
+    module = installed.parent.parent / "site" / "mylab_elbowscrew.py"
+    good = module.read_text()
+    for wrong in ("raise SystemExit(3)", "return np.zeros(3)"):
+        module.write_text(good.replace("    table = ", f"    {wrong}\n    table = ", 1))
+        look_anew()
+        with pytest.raises(RecordingError, match='the reader "My lab\'s poses"'):
+            elbowscrew.read_recording(installed)
+    module.write_text(good.replace('head.startswith(b"MYLAB")', "np.zeros(3)"))
+    look_anew()
+    with pytest.raises(RecordingError, match="a plug-in, failed: ValueError"):
+        elbowscrew.read_recording(installed)
 
 
 def test_an_exporter_cannot_change_the_numbers(exporter: Path, tmp_path: Path) -> None:

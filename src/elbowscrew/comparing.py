@@ -23,7 +23,7 @@ _ANGLE: Final = _VALUES.index("rms_angle_error")
 
 
 def compare_trials(
-    paths: Iterable[str | os.PathLike[str]],
+    paths: Iterable[str | os.PathLike[str]] | str | os.PathLike[str],
     settings: Settings | None = None,
     plan: ComparisonPlan | None = None,
     *,
@@ -39,7 +39,7 @@ def compare_trials(
     wanted = settings or Settings()
     found: list[Comparison] = []
     failures: list[tuple[str, ElbowscrewError]] = []
-    given = list(paths)
+    given = [paths] if isinstance(paths, str | os.PathLike) else list(paths)
     for number, path in enumerate(given, start=1):
         try:
             recording = read_recording(path, markers=wanted.markers, **wanted.statements)

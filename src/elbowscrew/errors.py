@@ -46,8 +46,10 @@ def shortened(message: str) -> str:
     return f"{message[: _LONGEST_MESSAGE * 3 // 4]} … {message[-_LONGEST_MESSAGE // 4 :]}"
 
 
-def did_you_mean(wanted: str, names: Sequence[str]) -> str:
+def did_you_mean(wanted: object, names: Sequence[str]) -> str:
     """Ask back by the names that are nearly the one wanted, in any case of letters; empty if there is none."""
+    if not isinstance(wanted, str):
+        return ""
     known = {name.casefold(): name for name in names}
     near = [known[name] for name in difflib.get_close_matches(wanted.casefold(), known, n=3)]
     return f"; did you mean {' or '.join(map(repr, near))}?" if near else ""

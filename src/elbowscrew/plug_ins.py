@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cache
 from typing import TYPE_CHECKING, Any, Final, TypeVar
 
-from elbowscrew.errors import UsageError
+from elbowscrew.errors import UsageError, shortened
 
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
@@ -28,10 +28,13 @@ def names(group: str) -> tuple[str, ...]:
 
 
 @cache
-def _points(group: str) -> dict[str, EntryPoint]:
+def _points(group: str) -> dict[str, tuple[EntryPoint, ...]]:
     from importlib.metadata import entry_points
 
-    return {one.name: one for one in entry_points(group=group)}
+    found: dict[str, tuple[EntryPoint, ...]] = {}
+    for one in entry_points(group=group):
+        found[one.name] = (*found.get(one.name, ()), one)
+    return found
 
 
 def loaded(group: str, name: str, kind: type[Kind]) -> Kind:
@@ -40,12 +43,15 @@ def loaded(group: str, name: str, kind: type[Kind]) -> Kind:
     Raises
     ------
     UsageError
-        If it cannot be loaded, or is not of the kind.
+        If it cannot be loaded, or is not of the kind, or two distributions bring one of the name.
     """
-    point = _points(group)[name]
+    point, *others = _points(group)[name]
+    if others:
+        msg = f"{' and '.join(_told(group, one) for one in (point, *others))} have one name; uninstall all but one"
+        raise UsageError(msg)
     try:
         found: Any = point.load()
-    except Exception as error:  # whatever a module may do when it is imported
+    except (Exception, SystemExit) as error:  # whatever a module may do when it is imported
         msg = f"{told(group, name)} cannot be loaded: {brief(error)}; mend or uninstall it"
         raise UsageError(msg) from error
     if not isinstance(found, kind):
@@ -56,14 +62,22 @@ def loaded(group: str, name: str, kind: type[Kind]) -> Kind:
 
 def told(group: str, name: str) -> str:
     """Say whose an entry point is."""
-    point = _points(group)[name]
+    return _told(group, _points(group)[name][0])
+
+
+def _told(group: str, point: EntryPoint) -> str:
     owner = "an unknown distribution" if point.dist is None else f"the distribution {point.dist.name!r}"
-    return f"the {group.rpartition('.')[2].removesuffix('s')} {name!r} of {owner} ({point.value})"
+    return f"the {group.rpartition('.')[2].removesuffix('s')} {point.name!r} of {owner} ({point.value})"
 
 
 def brief(error: BaseException) -> str:
-    """Give an error of somebody else's in a line."""
-    return " ".join(f"{type(error).__name__} {error}".split())
+    """Give an error of somebody else's in a line, as far as it can be shown."""
+    try:
+        said = str(error)
+    except Exception:  # its own words may fail, too
+        said = ""
+    words = " ".join(f"{type(error).__name__} {said}".split())
+    return shortened("".join(letter if letter.isprintable() else "\N{REPLACEMENT CHARACTER}" for letter in words))
 
 
 def forget() -> None:

@@ -54,10 +54,14 @@ def path(name: str = "") -> Path:
     """
     inside = _HERE / "sample_data"
     folder = inside if inside.is_dir() else _HERE.parent.parent / "sample_data"
-    found = folder / name
-    if name in SAMPLES and not found.is_dir():
-        found = folder / f"{name}.csv"
-    if not found.resolve().is_relative_to(folder.resolve()) or not found.exists():
+    try:
+        found = folder / name
+        if name in SAMPLES and not found.is_dir():
+            found = folder / f"{name}.csv"
+        is_there = found.resolve().is_relative_to(folder.resolve()) and found.exists()
+    except (TypeError, ValueError):  # no name at all, or one that no file can have
+        is_there = False
+    if not is_there:
         hint = did_you_mean(name, tuple(SAMPLES)) or f"; there are {', '.join(SAMPLES)}"
         msg = f"samples: there is no {shown(name)}{hint}"
         raise UsageError(msg)

@@ -133,6 +133,50 @@ def test_what_is_no_recording_is_told(elbow: Analysis) -> None:
     )
 
 
+@pytest.mark.parametrize("given", [5, None, [[0.0]], np.zeros(3), "a\0b", "\ud800"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "read_recording", "read_result", "read_landmarks", "read_mesh", "read_keyframes", "keyframes_of",
+        "save_simulation", "save_comparison", "save_motion", "save_analysis", "summary_from_analysis",
+    ],
+)  # fmt: skip
+def test_what_is_of_another_type_is_told_in_a_line(name: str, given: object, tmp_path: Path) -> None:
+    others = [tmp_path / "out"] if name.startswith("save") else []
+    with pytest.raises(ElbowscrewError) as caught:
+        getattr(elbowscrew, name)(given, *others)
+    assert "\n" not in str(caught.value)
+    assert not list(tmp_path.iterdir())
+
+
+def test_the_argument_that_does_not_fit_is_named(elbow: Analysis) -> None:
+    with pytest.raises(UsageError, match="interpolate: frames: expected int, found str 'many'"):
+        elbowscrew.interpolate(elbow, "many")  # type: ignore[arg-type]
+    with pytest.raises(UsageError, match=r"simulate_trial: seed: expected int, found float 1\.5"):
+        elbowscrew.simulate_trial(seed=1.5)  # type: ignore[arg-type]
+    with pytest.raises(UsageError, match="save_analysis: folder: expected path, found None"):
+        elbowscrew.save_analysis(elbow, None)  # type: ignore[arg-type]
+    with pytest.raises(UsageError, match="expected the name of a table, found ndarray"):
+        elbow.to_frame(np.zeros(3))  # type: ignore[arg-type]
+    for name in (None, "a\0b", "\ud800"):
+        with pytest.raises(UsageError, match="samples: there is no"):
+            elbowscrew.samples.path(name)  # type: ignore[arg-type]
+
+
+def test_a_fault_that_is_not_the_callers_stays_what_it_is(elbow: Analysis) -> None:
+    def failing(_done: int, _total: int) -> None:
+        msg = "of the caller's own function"
+        raise ValueError(msg)
+
+    with pytest.raises(ValueError, match="of the caller's own function"):
+        elbowscrew.compare(elbow.recording, laws=["linear"], counts=[2], data=["raw"], report=failing)
+
+
+def test_one_path_is_a_list_of_it(samples: Path) -> None:
+    with pytest.raises(ElbowscrewError, match=r"none of the 1 recordings .*nothing\.csv"):
+        elbowscrew.compare_trials(str(samples / "nothing.csv"))
+
+
 def test_a_file_of_a_result_is_not_its_folder(read_back: Analysis) -> None:
     assert read_back.folder is not None
     with pytest.raises(ResultError, match=f"give the folder of the result, as {re.escape(str(read_back.folder))}"):

@@ -132,6 +132,9 @@ class Analysis(Findings, Viewed):  # noqa: D101 - it has one
         UsageError
             If there is none of that name, or this trial has nothing for it.
         """
+        if not isinstance(name, str):
+            msg = f"expected the name of a table, found {type(name).__name__}; there are {', '.join(self.tables)}"
+            raise UsageError(msg)
         if name == "joint":
             return joint_estimates(self.joint_summary)
         if name == "warnings":

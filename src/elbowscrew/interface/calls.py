@@ -197,7 +197,7 @@ def compare(
 
 
 def compare_trials(
-    paths: Iterable[StrPath],
+    paths: Iterable[StrPath] | StrPath,
     settings: Settings | None = None,
     plan: ComparisonPlan | None = None,
     *,
@@ -208,7 +208,7 @@ def compare_trials(
 
     Parameters
     ----------
-    paths : iterable of path-like
+    paths : iterable of path-like, or path-like
         Recordings, each compared by itself as `elbowscrew.compare` does.
     settings : Settings, optional
     plan : ComparisonPlan, optional

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import fields
 from typing import Final, ParamSpec, TypeVar
 
-from elbowscrew.errors import ElbowscrewError
+from elbowscrew.errors import ElbowscrewError, UsageError
 from elbowscrew.setting_faults import Keywords, in_keywords
 
 _OTHERS: Final = {
@@ -57,6 +57,13 @@ def public(function: Callable[Given, Found]) -> Callable[Given, Found]:
         except ElbowscrewError as error:
             error.args = (in_python(str(error)), *error.args[1:])
             raise
+        except (TypeError, AttributeError, ValueError) as error:
+            from elbowscrew.interface.given import wrong_type
+
+            fault = wrong_type(function, args, kwargs)
+            if fault is None:
+                raise
+            raise UsageError(fault) from error
 
     spoken.__module__ = "elbowscrew"
     return spoken

@@ -64,8 +64,8 @@ def reader_of(file: Path) -> Reader | None:
         return None
     for reader in readers():
         try:
-            fits = reader.recognizes(head)
-        except Exception as error:
+            fits = bool(reader.recognizes(head))
+        except (Exception, SystemExit) as error:
             raise _failed(file, reader, error) from error
         if fits:
             return reader
@@ -84,7 +84,7 @@ def read_by(reader: Reader, file: Path, options: ReadOptions) -> Recording:
         found: object = reader.read(file, options)
     except ElbowscrewError:
         raise
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         raise _failed(file, reader, error) from error
     if not isinstance(found, Recording):
         msg = f"{file}: the reader {reader.name!r}: expected a Recording, found {type(found).__name__}"
@@ -94,5 +94,5 @@ def read_by(reader: Reader, file: Path, options: ReadOptions) -> Recording:
     return replace(found, source=Source(path=str(file), sha256=sha256_of(file), layout=reader.name))
 
 
-def _failed(file: Path, reader: Reader, error: Exception) -> RecordingError:
+def _failed(file: Path, reader: Reader, error: BaseException) -> RecordingError:
     return RecordingError(f"{file}: the reader {reader.name!r}, a plug-in, failed: {plug_ins.brief(error)}")

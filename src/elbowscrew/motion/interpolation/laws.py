@@ -221,7 +221,7 @@ def _plugged(name: str) -> Law:
     try:
         t = np.asarray(law(tau), dtype=np.float64)
         derivatives = [np.asarray(function(tau), dtype=np.float64) for function in law[1:]]
-    except Exception as error:  # it is not ours
+    except (Exception, SystemExit) as error:  # it is not ours
         msg = f"{plug_ins.told(plug_ins.LAWS, name)} failed: {plug_ins.brief(error)}"
         raise UsageError(msg) from error
     fits = all(part.shape == tau.shape and np.isfinite(part).all() for part in (t, *derivatives))
