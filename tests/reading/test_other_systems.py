@@ -384,7 +384,7 @@ def test_text_of_windows_is_read_and_told(tmp_path: Path) -> None:
     """A path with an umlaut in the first line, as an exporting program writes it, is no wall."""
     text = (
         "PathFileType\t4\t(X/Y/Z)\tC:\\Users\\J\u00f6rg\\t.trc\nDataRate\tUnits\n100\tmm\n"
-        "Frame#\tTime\tArm l\u00e4ngs\t\t\n\t\tX1\tY1\tZ1\n\n1\t0\t1\t2\t3\n2\t0.01\t1\t2\t4\n"
+        "Frame#\tTime\tArm l\u00e4ngs\t\t\n\t\tX1\tY1\tZ1\n\n1\t0\t100\t2\t3\n2\t0.01\t100\t2\t4\n"
     )
     paths = [tmp_path / "windows.trc", tmp_path / "utf8.trc"]
     for path, encoding in zip(paths, ("cp1252", "utf-8"), strict=True):
