@@ -12,6 +12,8 @@ from elbowscrew.choices import AngleUnit, LengthUnit
 
 METERS: Final[dict[str, float]] = {"m": 1.0, "cm": 0.01, "mm": 0.001}
 """Meters in one unit of length."""
+_LONG: Final = 6  # digits before the point, from which on a number is written with a power of ten
+_RAISED: Final = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 class Quantity(Enum):
@@ -36,6 +38,32 @@ def angle_in(radians: NDArray[np.float64], unit: AngleUnit) -> NDArray[np.float6
 def length_in(meters: NDArray[np.float64], unit: LengthUnit) -> NDArray[np.float64]:
     """Lengths in the unit asked for."""
     return meters * 1000.0 if unit == "mm" else meters
+
+
+def power_of_ten(power: int) -> str:
+    """Write a power of ten as a figure or a sentence has it.
+
+    Examples
+    --------
+    >>> power_of_ten(-5)
+    '10⁻⁵'
+    """
+    return f"10{str(power).translate(_RAISED)}"
+
+
+def rounded(value: float, digits: int) -> str:
+    """Write a number to so many digits that count, a very small or large one with a power of ten.
+
+    Examples
+    --------
+    >>> rounded(0.123, 2), rounded(123.0, 2), rounded(5.5e-5, 2)
+    ('0.12', '120', '5.5·10⁻⁵')
+    """
+    mantissa, _, power = f"{value:.{digits}g}".partition("e")
+    if not power:
+        return mantissa
+    exponent = int(power)
+    return f"{float(f'{mantissa}e{power}'):.0f}" if 0 < exponent < _LONG else f"{mantissa}·{power_of_ten(exponent)}"
 
 
 def unit_suffixes(angle_unit: AngleUnit, length_unit: LengthUnit) -> dict[Quantity, str]:

@@ -20,6 +20,7 @@ from elbowscrew import Analysis, Settings, analyze, plots, simulate_trial
 from elbowscrew.choices import METHOD_LABELS, METHOD_NAMES
 from elbowscrew.model import Selection
 from elbowscrew.plots import comparison, style
+from elbowscrew.plots.joint import confidence_text
 from elbowscrew.results.trial_views import view_of
 
 
@@ -196,3 +197,8 @@ def test_every_axes_of_every_figure_has_labels_with_units(name: str, express_in:
 
 def test_every_method_has_its_label_and_its_kind_between_two_poses() -> None:
     assert set(METHOD_LABELS) == set(METHOD_NAMES) == set(comparison._BETWEEN_TWO)
+
+
+def test_small_lengths_are_written_with_a_power_of_ten(analysis: Analysis) -> None:
+    told = confidence_text(replace(view_of(analysis), confidence95=(7e-4, 5.5e-5)))
+    assert told.endswith("95 % confidence: 0.0007 rad, 5.5·10⁻⁵ m")

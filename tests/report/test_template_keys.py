@@ -23,6 +23,7 @@ from elbowscrew.model.summary_types import (
     TrialSummary,
     WarningSummary,
 )
+from elbowscrew.report.checklist import Entry
 from elbowscrew.report.measures import Measure
 from elbowscrew.report.study import Failure
 from elbowscrew.report.study_differences import DifferenceRow, Differences
@@ -55,7 +56,8 @@ STUDY_TYPES: dict[str, Any] = {
 SPACE_TYPES: dict[str, Any] = {"joint": JointSummary, "motion": MotionSummary}
 """What the view in space calls them, on the page and alone."""
 TEMPLATES = {
-    "trial.html": TYPES, "study.html": STUDY_TYPES, "base.html": {}, "viewer.html": SPACE_TYPES, "space.html": {}
+    "trial.html": TYPES, "study.html": STUDY_TYPES, "base.html": {}, "viewer.html": SPACE_TYPES, "space.html": {},
+    "checklist.html": {"entry": Entry},
 }  # fmt: skip
 METHODS = {"items", "lower", "startswith"}
 

@@ -13,8 +13,9 @@ from elbowscrew.geometry.arrays import Bool, Float
 PERCENT: Final[Float] = np.linspace(0.0, 100.0, 101)
 LEAST_FOR_BAND: Final = 6
 """Subjects from which on there is a band."""
-_RESAMPLES: Final = 2000
-_SEED: Final = 2010
+RESAMPLES: Final = 2000
+SEED: Final = 2010
+"""Resamples of the bootstrap over subjects, and the seed that they are drawn with."""
 _LEVEL: Final = 0.95
 
 
@@ -98,7 +99,7 @@ def group_curve(curves: Mapping[str, Sequence[Float]], *, independent: bool = Tr
 def _half_width(stack: Float, mean: Float) -> Float:
     """Half the width of the band: standard error times the quantile of the resamples' own ratios to theirs."""
     count = len(stack)
-    times = np.random.default_rng(_SEED).multinomial(count, np.full(count, 1.0 / count), size=_RESAMPLES)
+    times = np.random.default_rng(SEED).multinomial(count, np.full(count, 1.0 / count), size=RESAMPLES)
     off = stack - mean
     moved = times @ off / count
     variance = np.maximum(times @ off**2 / count - moved**2, 0.0) / (count - 1)

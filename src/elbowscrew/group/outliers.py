@@ -26,10 +26,14 @@ Sides = NDArray[np.int64]
 
 
 class Outliers(NamedTuple):
-    """What stands out in one number, shape (N,) each: trials among those of their subject, subjects among subjects."""
+    """What stands out in one number, shape (N,) each: trials among those of their subject, subjects among subjects.
+
+    `tests` is how many tests could be done: of none, nothing is known of outliers.
+    """
 
     trial: Sides
     subject: Sides
+    tests: int
 
 
 class _Test(NamedTuple):
@@ -60,7 +64,6 @@ def outliers_of_study(
     subjects : sequence of str
         Of each trial; those whose subject is not known ("") are compared with each other.
     """
-    found = {name: Outliers(*np.zeros((2, len(subjects)), dtype=np.int64)) for name in numbers}
     tests = [
         test
         for name, values in numbers.items()
@@ -68,10 +71,19 @@ def outliers_of_study(
         for test in _tests(name, values, [row for row in rows if np.isfinite(values[row])], subjects)
         if _freedom(test.groups) >= _LEAST_FREEDOM
     ]
+    found = {
+        name: Outliers(
+            np.zeros(len(subjects), dtype=np.int64),
+            np.zeros(len(subjects), dtype=np.int64),
+            sum(test.number == name for test in tests),
+        )
+        for name in numbers
+    }
     for test in tests:
+        of = found[test.number]
         sides = outliers(test.values, test.groups, test.weights, FALSE_ALARMS / len(tests))
         for rows, side in zip(test.rows, sides.tolist(), strict=True):
-            found[test.number][int(test.of_subjects)][rows] = side
+            (of.subject if test.of_subjects else of.trial)[rows] = side
     return found
 
 

@@ -15,7 +15,7 @@ from elbowscrew.choices import METHOD_LABELS
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import ComparedModels, ComparedOverTrials, Comparison, Selection, TrialsComparison
 from elbowscrew.plots import style
-from elbowscrew.quantities import angle_in, length_in
+from elbowscrew.quantities import angle_in, length_in, rounded
 from elbowscrew.settings import Settings
 from elbowscrew.view.comparisons import has_displacements
 
@@ -199,7 +199,7 @@ def plot_selections(ax: Axes, trials: Sequence[dict[str, Selection]], settings: 
         tolerance = float(told(np.array(next(iter(trials[0].values())).tolerance)))
         ax.axhline(tolerance, **style.LEVEL)
         ax.annotate(
-            f"tolerance {tolerance:.3g} {unit}",
+            f"tolerance {rounded(tolerance, 3)} {unit}",
             (0.0, tolerance),
             xycoords=ax.get_yaxis_transform(),
             xytext=(3.0, 2.0),

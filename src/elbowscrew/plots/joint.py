@@ -15,7 +15,7 @@ from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import Analysis
 from elbowscrew.plots import style
 from elbowscrew.plots.axis import IN_FRONT, color_scale, equal_aspect, label_space, plot_cone, plot_path
-from elbowscrew.quantities import angle_in, length_in
+from elbowscrew.quantities import angle_in, length_in, rounded
 from elbowscrew.results.trial_views import view_of
 from elbowscrew.view.scene import Bundle, Region, bodies_in_space, directions_across, joint_bundle
 from elbowscrew.view.trial_view import TrialView
@@ -103,7 +103,9 @@ def confidence_text(view: TrialView) -> str:
         return f"{model}; its confidence is not known"
     angle = angle_in(np.array(cone), view.settings.angle_unit)
     radius = length_in(np.array(circle), view.settings.length_unit)
-    return f"{model}; 95 % confidence: {angle:.2g} {view.settings.angle_unit}, {radius:.2g} {view.settings.length_unit}"
+    units = view.settings.angle_unit, view.settings.length_unit
+    known = [f"{rounded(float(value), 2)} {unit}" for value, unit in zip((angle, radius), units, strict=True)]
+    return f"{model}; 95 % confidence: {', '.join(known)}"
 
 
 def _bundle(view: TrialView) -> Bundle:

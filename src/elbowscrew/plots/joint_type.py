@@ -17,7 +17,7 @@ from elbowscrew.model import Analysis
 from elbowscrew.plots import style
 from elbowscrew.plots.axis import IN_FRONT, equal_aspect, label_space, plot_body, plot_cone
 from elbowscrew.plots.figures import NARROW_MM, WIDTH_MM
-from elbowscrew.quantities import angle_in, length_in
+from elbowscrew.quantities import angle_in, length_in, rounded
 from elbowscrew.results.trial_views import view_of
 from elbowscrew.view.joint_space import AxisInBody, JointInBody, joint_in_body
 from elbowscrew.view.trial_view import TrialView
@@ -66,10 +66,10 @@ def joint_text(analysis: Analysis | TrialView) -> str:
     unit, length = view.settings.angle_unit, view.settings.length_unit
     if two["distance_mm"] is None:
         far = 0.001 * (two["parallel_offset_mm"] or 0.0)
-        return f"{told}, parallel, {float(length_in(np.array(far), length)):.3g} {length} apart"
+        return f"{told}, parallel, {rounded(float(length_in(np.array(far), length)), 3)} {length} apart"
     angle = float(angle_in(np.radians(two["angle_between_deg"]), unit))
     distance = float(length_in(np.array(0.001 * abs(two["distance_mm"])), length))
-    return f"{told}, {angle:.3g} {unit} and {distance:.3g} {length} apart"
+    return f"{told}, {rounded(angle, 3)} {unit} and {rounded(distance, 3)} {length} apart"
 
 
 def plot_joint_in_body(ax: Axes3D, analysis: Analysis | TrialView, body: JointInBody) -> Axes3D:
@@ -137,8 +137,8 @@ def plot_axis_known(ax: Axes, analysis: Analysis | TrialView, body: JointInBody,
         ax.fill_between(length_in(along, unit), -reach, reach, label=_KNOWN, **style.BAND)
         ax.set_ylim(*(1.7 * float(reach.max()) * np.array([-1.0, 1.0])))
         text = (
-            f"95 %: {float(angle_in(np.array(axis.known.angle), angle_unit)):.2g} {angle_unit}, "
-            f"{float(length_in(np.array(axis.known.radius), unit)):.2g} {unit}"
+            f"95 %: {rounded(float(angle_in(np.array(axis.known.angle), angle_unit)), 2)} {angle_unit}, "
+            f"{rounded(float(length_in(np.array(axis.known.radius), unit)), 2)} {unit}"
         )
     ax.text(0.5, 0.97, text, transform=ax.transAxes, ha="center", va="top")
     ax.set_xlim(*length_in(along[[0, -1]], unit))

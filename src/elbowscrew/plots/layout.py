@@ -19,6 +19,7 @@ from matplotlib.transforms import Bbox
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.plots.scale import Scale, scales_of
 from elbowscrew.plots.style import TEXT
+from elbowscrew.quantities import power_of_ten
 
 _ROUNDS: Final = 12  # at most
 _AIR: Final = 3.0  # points about each panel with its words, and about a legend
@@ -26,7 +27,6 @@ _MARKER: Final = 3.2  # points by which a keyframe at the edge of a panel stands
 _LEAST_AIR: Final = 2.0  # pixels
 _LABELS: Final = 40.0  # points that the labels on both sides of a view in space take, or so
 _LITTLE: Final = 0.85
-_RAISED: Final = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _POWER: Final = re.compile(r"1e(.+)")
 _UNIT: Final = re.compile(r"(.*)\(([^()]*)\)", re.DOTALL)
 
@@ -214,7 +214,7 @@ def _multiplied(ax: Axes) -> bool:
             power = int(told[1].replace("\N{MINUS SIGN}", "-"))
             formatter.set_powerlimits((power, power))
             axis.get_offset_text().set_visible(False)
-            axis.set_label_text(_multiplied_label(axis.get_label_text(), f"10{str(power).translate(_RAISED)}"))
+            axis.set_label_text(_multiplied_label(axis.get_label_text(), power_of_ten(power)))
             found = True
     return found
 

@@ -15,7 +15,7 @@ from elbowscrew.geometry.sensitivity import NORMAL_95
 from elbowscrew.model import Analysis
 from elbowscrew.motion.movements.phases import runs_of
 from elbowscrew.plots import style
-from elbowscrew.quantities import angle_in, length_in
+from elbowscrew.quantities import angle_in, length_in, rounded
 from elbowscrew.results.trial_views import view_of
 from elbowscrew.view.bands import is_seen
 from elbowscrew.view.decimation import drawn_band, drawn_rows
@@ -184,7 +184,7 @@ def _plot_error(ax: Axes, view: TrialView, values: Float, name: str, unit: str) 
     if np.isfinite(values).any():
         level = float(np.sqrt(np.nanmean(values**2)))
         ax.axhline(level, **style.LEVEL)
-        ax.set_title(f"RMS {level:.3g} {unit}", loc="right", fontweight="normal")
+        ax.set_title(f"RMS {rounded(level, 3)} {unit}", loc="right", fontweight="normal")
     if stretch_of(view) is None:
         mark_keyframes(ax, view, values)
     mark_tracking(ax, view)

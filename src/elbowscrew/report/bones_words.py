@@ -7,9 +7,10 @@ from typing import Final, NamedTuple
 
 from elbowscrew.choices import FUNCTIONAL_AXIS_WORDS
 from elbowscrew.joints import Joint
-from elbowscrew.model.anatomy import LANDMARKS, BonyJoint
+from elbowscrew.model.anatomy import LANDMARKS, LANDMARKS_OF, BonyJoint
 from elbowscrew.model.joint_summary_types import AnatomySummary, AxisAgainstBones
 from elbowscrew.model.summary_types import AngleRange, LandmarksSummary
+from elbowscrew.report.facts import Facts
 from elbowscrew.report.pages import number, vector
 from elbowscrew.view.trial_view import TrialView
 
@@ -57,10 +58,10 @@ BONE_WORDS: Final[Mapping[BonyJoint, BoneWords]] = {
 }
 
 
-def bone_words(view: TrialView) -> BoneWords | None:
+def bone_words(view: Facts) -> BoneWords | None:
     """How the bones are told of; None without landmarks."""
-    found = view.joint_summary["anatomy"]
-    return None if found is None else BONE_WORDS[found["joint"]]
+    marks = view.summary["landmarks"]
+    return next((BONE_WORDS[joint] for joint, names in LANDMARKS_OF.items() if marks and names[0] in marks), None)
 
 
 def bone_angles(view: TrialView) -> tuple[tuple[str, str, AngleRange], ...]:

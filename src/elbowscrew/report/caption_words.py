@@ -9,7 +9,7 @@ import numpy as np
 
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.sensitivity import NORMAL_95
-from elbowscrew.quantities import angle_in, length_in
+from elbowscrew.quantities import angle_in, length_in, rounded
 from elbowscrew.view.bands import is_seen, span_of
 from elbowscrew.view.joint_space import ANGLE_NAMES
 from elbowscrew.view.long_trials import Stretch
@@ -82,12 +82,12 @@ def _how(values: Float, reach: Float, span: float | None = None) -> str:
 
 def angle(view: TrialView, value: float) -> str:
     """Write an angle (rad) in the trial's unit."""
-    return f"{float(angle_in(np.array(value), view.settings.angle_unit)):.2g} {view.settings.angle_unit}"
+    return f"{rounded(float(angle_in(np.array(value), view.settings.angle_unit)), 2)} {view.settings.angle_unit}"
 
 
 def length(view: TrialView, value: float) -> str:
     """Write a length (m) in the trial's unit."""
-    return f"{float(length_in(np.array(value), view.settings.length_unit)):.2g} {view.settings.length_unit}"
+    return f"{rounded(float(length_in(np.array(value), view.settings.length_unit)), 2)} {view.settings.length_unit}"
 
 
 def shading(view: TrialView, *, moving: bool = False) -> Iterator[str]:

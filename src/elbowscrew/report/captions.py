@@ -10,7 +10,7 @@ import numpy as np
 from elbowscrew.choices import JOINT_TYPE_WORDS, AngleUnit
 from elbowscrew.geometry.sensitivity import NORMAL_95
 from elbowscrew.model import Comparison, TrialsComparison
-from elbowscrew.quantities import angle_in
+from elbowscrew.quantities import angle_in, rounded
 from elbowscrew.report.bones_words import bone_words
 from elbowscrew.report.caption_words import (
     KEYFRAMES,
@@ -154,7 +154,8 @@ def _slide(view: TrialView) -> Iterator[str]:
             yield f"95 % interval of one frame by the noise of the poses: ±{half} (median)."
     pitch_mm = fitted_pitch_mm(view)
     if pitch_mm is not None:
-        yield f"Straight line: the slope of the screw-hinge that is fitted to all frames, {pitch_mm:.3g} mm per radian."
+        slope = f"{rounded(pitch_mm, 3)} mm per radian"
+        yield f"Straight line: the slope of the screw-hinge that is fitted to all frames, {slope}."
     if view.settings.axis_sd_deg is None:
         yield f"No slide is given below {view.settings.min_angle_deg:g} deg of rotation, where the axis is not known."
 
@@ -221,7 +222,7 @@ def _cycles(view: TrialView) -> Iterator[str]:
             yield "and one standard deviation to either side (grey band)."
         else:
             most = float(angle_in(np.nanmax(mean["theta_sd"]), unit))
-            yield f"and standard deviation ({most:.2g} {unit} at most, too narrow to be drawn)."
+            yield f"and standard deviation ({rounded(most, 2)} {unit} at most, too narrow to be drawn)."
 
 
 def _quality(view: TrialView) -> Iterator[str]:

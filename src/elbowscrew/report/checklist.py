@@ -15,6 +15,7 @@ from elbowscrew.choices import JOINT_TYPE_WORDS
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.model.summary_types import QualitySummary
 from elbowscrew.report.bones_words import axis_against_epicondyles, bone_words, landmark_sources
+from elbowscrew.report.facts import Facts
 from elbowscrew.report.methods import frame_words, method_words
 from elbowscrew.view.trial_view import TrialView
 
@@ -48,6 +49,11 @@ def checklist_lines(view: TrialView) -> tuple[str, ...]:
     return tuple(f"{entry.title}: {entry.text or f'[{MISSING}]'}" for entry in checklist_of(view))
 
 
+def common_of(facts: Facts) -> dict[str, str | None]:
+    """Fill in, by their titles, the entries that a study's trials should have in common."""
+    return {title: told(facts) for title, told in _COMMON.items()}
+
+
 def _unknown(view: TrialView) -> None:
     """Nothing in a recording tells it."""
 
@@ -59,19 +65,26 @@ def _file(view: TrialView) -> str | None:
     return f"{' '.join(source['name'].split())}, {source['layout'] or 'of unknown format'}, SHA-256 {source['sha256']}"
 
 
-def _rate(view: TrialView) -> str | None:
-    if view.settings.resample_hz is not None:
-        return None
-    trial = view.summary["trial"]
-    return f"{trial['rate_hz']:.6g} Hz, {trial['frames']} frames, {trial['duration_s']:.2f} s"
+def _rate(view: Facts) -> str | None:
+    return None if view.settings.resample_hz is not None else f"{view.summary['trial']['rate_hz']:.6g} Hz"
+
+
+def _rate_and_length(view: TrialView) -> str | None:
+    trial, rate = view.summary["trial"], _rate(view)
+    return None if rate is None else f"{rate}, {trial['frames']} frames, {trial['duration_s']:.2f} s"
+
+
+def _resampled(view: Facts) -> str:
+    if view.settings.resample_hz is None:
+        return "none"
+    return f"to {view.summary['trial']['rate_hz']:.6g} Hz by screw linear interpolation"
 
 
 def _resampling(view: TrialView) -> str:
-    trial = view.summary["trial"]
-    return f"to {trial['rate_hz']:.6g} Hz by screw linear interpolation; {trial['frames']} frames"
+    return f"{_resampled(view)}; {view.summary['trial']['frames']} frames"
 
 
-def _side(view: TrialView) -> str | None:
+def _side(view: Facts) -> str | None:
     bones = view.summary["motion"]["anatomy"]
     return view.summary["trial"]["joint"]["side"] if bones is None else bones["side"]
 
@@ -93,7 +106,7 @@ def _segments(view: TrialView) -> str:
     return f"{words.proximal.name}: {proximal}; {words.distal.name}: body {view.distal_name!r}"
 
 
-def _pose(view: TrialView) -> str:
+def _pose(view: Facts) -> str:
     if view.settings.proximal_markers or view.settings.distal_markers:
         way = {"svd": "least squares (singular value decomposition)", "dual-qr": "the dual QR decomposition"}
         return f"from marker positions by {way[view.settings.pose_method]}"
@@ -109,7 +122,12 @@ def _missing(view: TrialView) -> str:
     return f"{trial['measured_frames']} of {trial['frames']} frames measured, {filled}, {lost} lost"
 
 
-def _filter(view: TrialView) -> str:
+def _gaps(view: Facts) -> str:
+    longest = view.settings.max_gap_s
+    return f"filled up to {longest:g} s by screw linear interpolation" if longest > 0.0 else "none filled"
+
+
+def _filter(view: Facts) -> str:
     trial = view.summary["trial"]
     cutoff, instantaneous = trial["lowpass_hz"], trial["instantaneous_lowpass_hz"]
     how = ", chosen by residual analysis" if view.settings.lowpass_hz == "auto" else ""
@@ -125,7 +143,7 @@ def _noise(view: TrialView) -> str | None:
     return ", ".join(sources) or None
 
 
-def _coordinates(view: TrialView) -> str:
+def _coordinates(view: Facts) -> str:
     whose = "a cluster" if view.located else "a sensor"
     told = f"axes in {frame_words(view)}"
     told += "" if view.settings.express_in == "lab" else f", which is that of {whose} and not of a bone"
@@ -134,13 +152,13 @@ def _coordinates(view: TrialView) -> str:
     return f"{told}; no landmarks were given"
 
 
-def _reference(view: TrialView) -> str:
+def _reference(view: Facts) -> str:
     frame, window = view.summary["trial"]["reference_frame"], view.settings.reference_window
     chosen = "the first frame with all bodies" if view.settings.reference is None else "as chosen"
     return f"frame {frame} ({chosen})" + (f", mean of {window} frames" if window > 1 else "")
 
 
-def _angles(view: TrialView) -> str:
+def _angles(view: Facts) -> str:
     signed = "signed by the dominant axis" if view.summary["motion"]["signed"] else "without a sense"
     told = f"rotation θ about the finite helical axis since the reference, {signed}"
     if (words := bone_words(view)) is not None:
@@ -153,7 +171,7 @@ def _landmarks(view: TrialView) -> str:
     return "" if marks is None else landmark_sources(marks)
 
 
-def _axes(view: TrialView) -> str:
+def _axes(view: Facts) -> str:
     if view.settings.axis_sd_deg is not None:
         return f"helical axes where the direction's standard deviation is {view.settings.axis_sd_deg:g}° or less"
     return f"helical axes for rotations of {view.settings.min_angle_deg:g}° and more"
@@ -171,6 +189,15 @@ def _joint(view: TrialView) -> str:
     else:
         how = "no single axis: mean of the helical axes, weighted by sin²(θ/2)"
     return f"{JOINT_TYPE_WORDS[kind['type']]}{status}; {how}"
+
+
+def _joint_and_type(view: Facts) -> str:
+    kind = view.summary["motion"]["joint_type"]
+    return f"{view.named_joint.name}, " + ("of no type" if kind is None else JOINT_TYPE_WORDS[kind["type"]])
+
+
+def _format(view: Facts) -> str | None:
+    return view.summary["source"]["layout"]
 
 
 def _interval(view: TrialView) -> str | None:
@@ -204,7 +231,7 @@ def _epicondyles(view: TrialView) -> str:
     return f"{axis_against_epicondyles(found)}; the error of the landmarks is not included"
 
 
-def _soft_tissue(view: TrialView) -> str | None:
+def _soft_tissue(view: Facts) -> str | None:
     stated = view.settings.skin_motion
     if stated is None:
         return None
@@ -212,12 +239,15 @@ def _soft_tissue(view: TrialView) -> str | None:
     return f"motion of each cluster as a whole of {stated[0]:g} mm{turn} was stated and is in the intervals"
 
 
-def _model(view: TrialView) -> str:
+def _model(view: Facts) -> str:
     model = view.summary["interpolation"]
     laws = " and ".join(dict.fromkeys(law["law"] for law in model["phase_laws"]))
-    error = model["rms_angle_error_deg"]
-    told = "" if error is None else f"; error {error:.2g}° RMS"
-    return f"{method_words(view)} of {len(model['keyframes'])} keyframes, {laws} law of motion{told}"
+    return f"{method_words(view)} of {len(model['keyframes'])} keyframes, {laws} law of motion"
+
+
+def _model_and_error(view: TrialView) -> str:
+    error = view.summary["interpolation"]["rms_angle_error_deg"]
+    return _model(view) + ("" if error is None else f"; error {error:.2g}° RMS")
 
 
 def _repeatability(view: TrialView) -> str:
@@ -232,7 +262,7 @@ def _warnings(view: TrialView) -> str:
     return ", ".join(dict.fromkeys(codes)) or "none"
 
 
-def _software(view: TrialView) -> str:
+def _software(view: Facts) -> str:
     versions = ", ".join(f"{name} {version}" for name, version in view.summary["versions"].items())
     return f"elbowscrew {view.summary['elbowscrew']} with {versions}; every setting stands in summary.json"
 
@@ -297,6 +327,23 @@ def _has_landmarks(view: TrialView) -> bool:
     return view.has_landmarks
 
 
+_COMMON: Final[dict[str, Callable[[Facts], str | None]]] = {
+    "Joint": _joint_and_type,
+    "Side": _side,
+    "Format of the files": _format,
+    "Sampling rate": _rate,
+    "Resampling": _resampled,
+    "Poses": _pose,
+    "Gaps": _gaps,
+    "Filter": _filter,
+    "Coordinate systems": _coordinates,
+    "Reference pose": _reference,
+    "Angles and their convention": _angles,
+    "Axes": _axes,
+    "Soft-tissue motion": _soft_tissue,
+    "Model of the motion": _model,
+    "Software": _software,
+}
 _ITEMS: Final = (
     _item("Participants (number, age, sex, health) and ethics approval", _unknown),
     _item("Side", _side),
@@ -304,7 +351,7 @@ _ITEMS: Final = (
     _item("Movement cycles", _cycles),
     _item("Measuring system, its calibration and accuracy", _unknown),
     _item("File", _file),
-    _item("Sampling rate and length", _rate),
+    _item("Sampling rate and length", _rate_and_length),
     _item("Resampling", _resampling, lambda view: view.settings.resample_hz is not None),
     _item("Segments and bodies", _segments),
     *_of_body("Markers", _cluster),
@@ -325,7 +372,7 @@ _ITEMS: Final = (
     _item("Interval of the joint", _interval),
     _item("Axis and epicondyles", _epicondyles, _has_landmarks),
     _item("Soft-tissue motion", _soft_tissue),
-    _item("Model of the motion", _model),
+    _item("Model of the motion", _model_and_error),
     _item("Repeatability", _repeatability, lambda view: view.repetitions.number.size > 1),
     _item("Warnings", _warnings),
     _item("Software", _software),

@@ -63,7 +63,7 @@ COLUMNS: Final = (
     Measure("frames", "Frames", "", lambda one: one["trial"]["frames"], 0),
     Measure("tracked", "Tracked", "%", lambda one: 100.0 * (1.0 - one["trial"]["missing_share"]), 1),
     *MEASURES,
-    Measure("cone", "Axis 95 % cone", "deg", _cone, 3),
+    Measure("cone", "Axis 95\N{NO-BREAK SPACE}% cone", "deg", _cone, 3),
     Measure("displacement", "RMS displacement", "mm", lambda one: one["interpolation"]["rms_displacement_mm"], 2),
     Measure("repetitions", "Repetitions", "", lambda one: one["motion"]["repetitions"], 0),
 )

@@ -9,6 +9,7 @@ from elbowscrew.model.anatomy import BonyJoint
 from elbowscrew.model.joint_summary_types import JointSummary, NoiseOfBodies
 from elbowscrew.model.summary_types import ModelSummary, TrialSummary
 from elbowscrew.report.bones_words import bones_methods
+from elbowscrew.report.facts import Facts
 from elbowscrew.results.joint_summary import preferred_fit
 from elbowscrew.view.trial_view import TrialView
 
@@ -72,7 +73,7 @@ def citations_of(trial: TrialView) -> tuple[str, ...]:
     return (f"elbowscrew, version {trial.summary['elbowscrew']} (BSD-3-Clause).", PAPER, *of_bones)
 
 
-def frame_words(trial: TrialView) -> str:
+def frame_words(trial: Facts) -> str:
     """Name the frame that screws are expressed in."""
     proximal, distal = trial.named_joint.proximal.name, trial.named_joint.distal.name
     frames = {
@@ -83,7 +84,7 @@ def frame_words(trial: TrialView) -> str:
     return frames[trial.settings.express_in]
 
 
-def method_words(trial: TrialView) -> str:
+def method_words(trial: Facts) -> str:
     """Name the interpolation method of the model."""
     kind, method = trial.summary["motion"]["joint_type"], trial.settings.model_method
     angles = "the joint's own angles" if kind is None else _ANGLES.get(kind["type"], "the joint's own angles")

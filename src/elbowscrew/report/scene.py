@@ -27,6 +27,7 @@ MOST_FRAMES: Final = 900
 WIDEST: Final = 1.0
 """Half-angle (rad) of the widest region that is drawn; a wider one hides all else."""
 _DECIMALS: Final = 2
+_ANGLE_DECIMALS: Final = 4  # three more than are told: a number rounded twice may end otherwise than beside it
 _PURE_DECIMALS: Final = 5
 _BONE_DECIMALS: Final = 1
 
@@ -53,7 +54,7 @@ def scene_of(trial: TrialView) -> dict[str, Any]:
     return {
         "frame": trial.frame[rows].tolist(),
         "time": _rounded(trial.time_s[rows], 4),
-        "theta": _rounded(angle[rows], _DECIMALS),
+        "theta": _rounded(angle[rows], _ANGLE_DECIMALS),
         "slide": _rounded(1000.0 * trial.slide[rows], _DECIMALS),
         "valid": trial.valid[rows].astype(int).tolist(),
         "turn": _rounded(trial.euler_parameters[rows], _PURE_DECIMALS),

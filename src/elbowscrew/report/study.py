@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import csv
+import json
 import os
+import sys
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
@@ -18,6 +20,8 @@ from elbowscrew.errors import ResultError
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.opening import open_text
 from elbowscrew.reading.source import longest_cell
+from elbowscrew.report.checklist import common_of
+from elbowscrew.report.facts import SummaryFacts
 from elbowscrew.report.measures import COLUMNS
 from elbowscrew.report.pages import unshowable
 from elbowscrew.report.trial_parts import TrialAxis, axis_of, curve_of_result
@@ -63,6 +67,10 @@ class StudyTrial:
         Angle and length in its tables.
     page : bool
         Whether it has a ``report.html``.
+    reported : mapping of str to str or None
+        How it was recorded and analyzed, by the entries of the reporting checklist that a study has in common.
+    settings : str
+        All settings, as JSON.
     factors : mapping of str to str
         What the manifest says of it.
     """
@@ -77,6 +85,8 @@ class StudyTrial:
     axis: TrialAxis | None
     units: Units
     page: bool
+    reported: Mapping[str, str | None]
+    settings: str
     factors: Mapping[str, str] = field(default_factory=dict)
 
     @property
@@ -234,9 +244,16 @@ def _trial(result: Path, name: str) -> StudyTrial:
             axis=None if summary["landmarks"] is None else axis_of(read_joint_summary(proof)),
             units=units,
             page=(result / "report.html").is_file(),
+            reported=_once(common_of(SummaryFacts(summary, settings))),
+            settings=sys.intern(json.dumps(summary["settings"], sort_keys=True)),
         )
     except UNREADABLE as error:
         raise unshowable(result, error) from error
+
+
+def _once(reported: Mapping[str, str | None]) -> dict[str, str | None]:
+    """Hold texts that many trials share a single time."""
+    return {title: text if text is None else sys.intern(text) for title, text in reported.items()}
 
 
 def _failures(path: Path) -> list[Failure]:

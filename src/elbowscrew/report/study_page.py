@@ -11,10 +11,12 @@ from markupsafe import Markup
 
 from elbowscrew.group.curves import LEAST_FOR_BAND
 from elbowscrew.group.outliers import FALSE_ALARMS, LEAST, Outliers
+from elbowscrew.report.checklist import MISSING
 from elbowscrew.report.distributions import MOST_POINTS, strip_chart
 from elbowscrew.report.measures import MEASURES
 from elbowscrew.report.pages import INDEX, MARK, render
 from elbowscrew.report.study import Failure, Study, StudyTrial, read_study
+from elbowscrew.report.study_checklist import Findings, study_checklist
 from elbowscrew.report.study_curves import curve_charts, curves_of, left_out_text
 from elbowscrew.report.study_differences import MOST_COMPARED, differences_of
 from elbowscrew.report.study_groups import Group, axis_rows, groups_of, number_rows, outlying, values_of
@@ -23,6 +25,7 @@ from elbowscrew.report.trials_table import marks_of, shown_columns, table_data, 
 from elbowscrew.results.staging import write_files
 
 _MOST_STRIPS: Final = 24
+_MOST_FAILURES: Final = 200
 _SCRIPTS: Final = ("page.js", "study.js")
 
 
@@ -79,6 +82,10 @@ def study_page(study: Study, tables: Sequence[str] = ()) -> str:
     curves = curves_of(trials, groups)
     differences = differences_of(trials, groups)
     subjects = {trial.subject for trial in trials} - {""}
+    numbers, axes = number_rows(trials, groups), axis_rows(trials, groups)
+    outliers = sum(bool(outlier) for outlier, _ in marks)
+    tests = sum(of.tests for of in found.values())
+    shown = Findings(study, groups, grouped_by, numbers, curves, differences, axes, outliers, tests)
     content = {
         "name": study.name,
         "tables": tables,
@@ -87,22 +94,25 @@ def study_page(study: Study, tables: Sequence[str] = ()) -> str:
         "factors": [Factor(name=name, levels=_levels(trials, name)) for name in study.factors],
         "group_name": grouped_by,
         "subjects": len(subjects),
-        "numbers": number_rows(trials, groups),
+        "numbers": numbers,
         "curves": curve_charts(curves, groups),
         "left_out": left_out_text(curves.left_out),
         "least_for_band": LEAST_FOR_BAND,
         "differences": differences,
         "most_compared": MOST_COMPARED,
-        "axes": axis_rows(trials, groups),
+        "axes": axes,
         "columns": shown_columns(trials),
         "charts": _charts(trials, groups if len(groups) <= _MOST_STRIPS else _one_group(groups), found),
-        "failures": [*study.failures, *study.unread],
+        "failed": len(shown.failures),
+        "failures": shown.failures[:_MOST_FAILURES],
         "others": study.others,
-        "outliers": sum(bool(outlier) for outlier, _ in marks),
+        "outliers": outliers,
         "warned": sum(bool(warnings) for _, warnings in marks),
         "false_alarms": FALSE_ALARMS,
         "least": LEAST,
         "most_points": MOST_POINTS,
+        "checklist": study_checklist(shown),
+        "missing": MISSING,
     }
     data = table_data(trials, study.factors, marks)
     return render("study.html", styles=("page.css", "study.css"), scripts=_SCRIPTS, data=data, content=content)
