@@ -21,6 +21,8 @@ ClosedLaw = Literal[
 """Laws of motion in closed form; functions of `elbowscrew.motion.interpolation.laws`."""
 LawName = Literal[ClosedLaw, "empirical", "best"]
 """Laws of motion, those found from the recording among them."""
+LAW_PEAKS: Final = (0.05, 0.95)
+"""From where to where a law's highest velocity may be moved, as a share of its phase."""
 SimulatedLaw = Literal["minimum-jerk", ClosedLaw]
 """Laws that synthetic trials move by."""
 SimulatedJointType = Literal["hinge", "screw-hinge", "two-axes", "ball"]

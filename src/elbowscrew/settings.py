@@ -26,6 +26,7 @@ from elbowscrew.choices import (
     EXPORT_NAMES,
     FRAMES,
     LAW_NAMES,
+    LAW_PEAKS,
     STATED_JOINTS,
     AngleUnit,
     BlendName,
@@ -178,7 +179,7 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
     )  # fmt: skip
     law_peak: float | None = setting(
         None, "Time of the law's highest velocity, as a share of the phase.", MODEL,
-        metavar="SHARE", shown="0.5", ge=0.05, le=0.95,
+        metavar="SHARE", shown="0.5", ge=LAW_PEAKS[0], le=LAW_PEAKS[1],
     )  # fmt: skip
     knots: KnotName = setting("law", "Parameter of the keyframes.", MODEL)
     radius_mm: float | None = setting(

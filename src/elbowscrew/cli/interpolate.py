@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from elbowscrew.choices import ClosedLaw, MethodName
+from elbowscrew.choices import LAW_PEAKS, ClosedLaw, MethodName
 
 
 def interpolate(
@@ -45,7 +45,10 @@ def interpolate(
     law_peak: Annotated[
         float | None,
         typer.Option(
-            metavar="SHARE", min=0.05, max=0.95, help="Time of the law's highest velocity in a phase; with --law."
+            metavar="SHARE",
+            min=LAW_PEAKS[0],
+            max=LAW_PEAKS[1],
+            help="Time of the law's highest velocity in a phase; with --law.",
         ),
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace an earlier motion.")] = False,

@@ -10,8 +10,8 @@ from typing import Any, Final, Literal, NoReturn, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowscrew.choices import METHOD_NAMES
-from elbowscrew.errors import RecordingError, SettingError, why_unreadable
+from elbowscrew.choices import LAW_PEAKS, METHOD_NAMES
+from elbowscrew.errors import RecordingError, SettingError, shown, why_unreadable
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_quaternion import continuous_signs, dual_quat_from_pose, normalize
 from elbowscrew.geometry.quaternion import norm
@@ -169,9 +169,11 @@ def _laws(table: _Table, first: NDArray[np.intp], law: str | None, law_peak: flo
             msg = f"{place}: the law is the recording's own, which the file does not hold; give --law {', '.join(LAWS)}"
             raise SettingError(msg)
         peak = table.number(peaks[k], table.lines[k], "law_peak") if peaks[k] else None
-        if not is_closed(names[k]) or not (peak is None or 0.0 < peak < 1.0):
+        if not is_closed(names[k]):
+            table.refuse(table.lines[k], f"expected a law of {', '.join(LAWS)}, found {names[k]!r}")
+        if peak is not None and not LAW_PEAKS[0] <= peak <= LAW_PEAKS[1]:
             table.refuse(
-                table.lines[k], f"expected a law of {', '.join(LAWS)}, and its peak from 0 to 1, found {names[k]!r}"
+                table.lines[k], f"law_peak: expected {LAW_PEAKS[0]:g} to {LAW_PEAKS[1]:g}, found {shown(peaks[k])}"
             )
         found.append(PhaseLaw(names[k], peak, np.nan))
     return tuple(found)

@@ -111,7 +111,11 @@ def jointed(**changed: str | tuple[str, ...]) -> str:
         (GOOD.format(more=",law", a=",magic", b=",magic", c=",magic"), ":2: expected a law"),
         (
             GOOD.format(more=",law,law_peak", a=",cycloidal,1.5", b=",cycloidal,1.5", c=",cycloidal,1.5"),
-            "and its peak from 0 to 1, found 'cycloidal'",
+            ":2: law_peak: expected 0.05 to 0.95, found '1.5'",
+        ),
+        (
+            GOOD.format(more=",law,law_peak", a=",cycloidal,1e-310", b=",cycloidal,1e-310", c=",cycloidal,1e-310"),
+            ":2: law_peak: expected 0.05 to 0.95, found '1e-310'",
         ),
         (GOOD.format(more=",law", a=",empirical", b=",empirical", c=",empirical"), "give law cycloidal"),
         (GOOD.format(more=",method", a=",dlb", b=",dib", c=",dlb"), "method: expected one of"),

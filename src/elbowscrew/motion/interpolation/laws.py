@@ -10,7 +10,7 @@ from numpy.polynomial import Polynomial
 from numpy.typing import ArrayLike
 
 from elbowscrew import plug_ins
-from elbowscrew.choices import CLOSED_LAWS, functions_named
+from elbowscrew.choices import CLOSED_LAWS, LAW_PEAKS, functions_named
 from elbowscrew.errors import SettingError, UsageError
 from elbowscrew.geometry.arrays import Float
 
@@ -144,14 +144,14 @@ def _from_first_half(law: Law) -> Law:
 
 
 def asymmetric(law: Law, peak: float) -> Law:
-    """Move the time of a symmetric law's highest velocity from tau = 1/2 to `peak`, in (0, 1).
+    """Move the time of a symmetric law's highest velocity from tau = 1/2 to `peak`, within `LAW_PEAKS`.
 
     Either half is stretched in time and in share alike, so that the velocity stays as high and the acceleration
     continuous: ``t = 2 p law(tau / (2 p))`` up to p, and by symmetry from there.
     """
-    if not 0.0 < peak < 1.0:
-        msg = f"the time of the highest velocity must lie between 0 and 1, found {peak:g}"
-        raise ValueError(msg)
+    if not LAW_PEAKS[0] <= peak <= LAW_PEAKS[1]:
+        msg = f"the time of the highest velocity must lie between {LAW_PEAKS[0]:g} and {LAW_PEAKS[1]:g}, found {peak:g}"
+        raise SettingError(msg)
 
     def stretched(order: int, first_sign: float, offset: float) -> _Function:
         function = law[order]
