@@ -72,7 +72,7 @@ def test_all_figures_are_every_one() -> None:
     assert chosen_figures(("theta", "all")) == tuple(FIGURE_ENTRIES)
     assert chosen_figures(("velocity", "axis")) == ("velocity", "axis")
     assert chosen_figures(None) == USUAL_FIGURES
-    with pytest.raises(ValueError, match="figures"):
+    with pytest.raises(UsageError, match=r"figures: .* did you mean 'theta'"):
         Settings.model_validate({"figures": ("thta",)})
 
 

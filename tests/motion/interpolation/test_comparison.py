@@ -195,7 +195,7 @@ def test_a_folder_without_any_good_recording_says_why(tmp_path: Path) -> None:
         ({"laws": ()}, "^laws: .* found none"),
         ({"counts": (1,)}, "^counts: expected whole numbers from 2 to 20, found 1"),
         ({"decimation": (0,)}, "^decimation:"),
-        ({"data": ("filtered",)}, "--data"),
+        ({"data": ("filtered",)}, "^data: expected some of raw"),
     ],
 )
 def test_impossible_plans(plan: dict[str, Any], says: str) -> None:
