@@ -272,7 +272,7 @@ def test_rows_of_many_trials_are_drawn_as_they_come_into_view(open_page: Any, ma
     rows = page.locator("#trials tbody th")
     assert 50 <= rows.count() < 500
     assert page.locator("#trials").get_attribute("aria-rowcount") == "2001"
-    area = page.locator(".window")
+    area = page.get_by_role("region", name="Table of the trials")
     tall = area.evaluate("(area) => area.scrollHeight")
     area.evaluate("(area) => { area.scrollTop = area.scrollHeight; }")
     page.locator("#trials tbody th", has_text="t1999").wait_for()

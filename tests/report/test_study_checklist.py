@@ -20,7 +20,7 @@ UNKNOWN = {
     "Participants (age, sex, health) and ethics approval",
     "How the number of subjects was chosen",
     "Criteria of inclusion and exclusion",
-    "Trials excluded by hand, and why",
+    "Trials left out, and why",
     "Order of the conditions, randomization and blinding",
     "Task, instructions, load and speed",
     "Measuring system, its calibration and accuracy",

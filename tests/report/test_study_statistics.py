@@ -333,7 +333,7 @@ def test_axes_of_clusters_are_not_averaged_and_the_reason_is_told(few: Path) -> 
     part = page[page.index('id="h-axes"') :]
     part = part[: part.index("</section>")]
     assert "<table" not in part
-    assert "no trial has landmarks" in part
+    assert "no trial has both landmarks and an axis" in part
     assert "cannot be compared" in part
 
 

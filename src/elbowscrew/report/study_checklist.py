@@ -254,7 +254,7 @@ _ITEMS: Final[dict[str, Callable[[Findings], str | None]]] = {
     "Criteria of inclusion and exclusion": _unknown,
     "Trials": _analyzed,
     "Failures": _failed,
-    "Trials excluded by hand, and why": _unknown,
+    "Trials left out, and why": _unknown,
     "Conditions": _conditions,
     "Design": _design,
     "Order of the conditions, randomization and blinding": _unknown,

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from elbowscrew.errors import SettingError
 from elbowscrew.motion.interpolation.laws import LAWS, Law, asymmetric
 
 # Highest velocity and acceleration of each, in units of the stroke over the time and over its square; closed forms.
@@ -60,6 +61,6 @@ def test_half_way_is_no_change_and_the_ends_are_refused() -> None:
     tau = np.linspace(0.0, 1.0, 101)
     for law in LAWS.values():
         assert asymmetric(law, 0.5)(tau) == pytest.approx(law(tau), abs=1e-14)
-    for peak in (0.0, 1.0, -0.2):
-        with pytest.raises(ValueError, match="between 0 and 1"):
+    for peak in (0.0, 1.0, -0.2, 1e-310, 0.0499, 0.9501, float("nan")):
+        with pytest.raises(SettingError, match=r"between 0\.05 and 0\.95"):
             asymmetric(LAWS["cycloidal"], peak)
