@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, Final, Literal, get_args
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import BaseModel, ConfigDict, Field, StrictBool, ValidationError, model_validator
 
 from elbowscrew.choices import FileUnit, RotationType
 from elbowscrew.errors import shown, why_unreadable
@@ -107,7 +107,7 @@ class BodyColumns(_Part):
     matrix: tuple[str, ...] | None = None
     euler: Three | None = None
     sequence: str | None = None
-    degrees: bool | None = None
+    degrees: StrictBool | None = None
     position: Three | None = None
     unit: FileUnit | None = None
 

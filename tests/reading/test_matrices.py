@@ -299,6 +299,12 @@ def test_six_numbers_of_autoscoper(tmp_path: Path) -> None:
         read_recording(first)
 
 
+def test_a_first_row_that_lacks_a_cell_is_refused(tmp_path: Path) -> None:
+    path = write(tmp_path / "all.tra", ["1 2 3 0 10 0 0 1 6 0 -20 ", "1 2 3 0 10 0 9 5 6 27 -20 7"])
+    with pytest.raises(RecordingError, match="expected six numbers a body in the first row, found 11 cells"):
+        read_recording(path, **STATED)
+
+
 def test_angles_that_may_be_radians_are_not_guessed(tmp_path: Path) -> None:
     turns = Rotation.from_matrix(TRIAL.distal_R).as_euler("ZYX")
     rows = [",".join(f"{x:.9f}" for x in row) for row in np.hstack([1000.0 * np.asarray(TRIAL.distal_p), turns])]

@@ -243,6 +243,7 @@ FAULTS: dict[str, tuple[str, str, str]] = {
     "two clocks": ("time =", "rate_hz = 5\ntime =", "clock: time and rate_hz both make a clock"),
     "a missing column": ('"upper.x"', '"uper.x"', "no column 'uper.x' in .*:1; did you mean 'upper.x'"),
     "a place too far": ('"upper.x"', '"#99"', r"upper.quaternion: no column '#99'; line 1 of .* has 15 columns"),
+    "a number for a word": ("order =", "degrees = 0\norder =", "upper.degrees: should be a valid boolean, found 0"),
     "a column twice": ('"upper.x"', '"upper.y"', "'upper.y' is the column of bodies.upper.quaternion already"),
 }  # fmt: skip
 

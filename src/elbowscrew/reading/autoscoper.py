@@ -39,6 +39,9 @@ def read(source: TextSource, options: ReadOptions) -> Recording:
     """Read a table of poses; see `elbowscrew.reading.registry.read_recording`."""
     unit, rate = unit_and_rate(source, options)
     width = len(first_row(source, _CELLS))
+    if width % _CELLS:
+        msg = f"{source.path}: expected six numbers a body in the first row, found {width} cells"
+        raise RecordingError(msg)
     _check_degrees(source, width)
     names = body_names(source, width // _CELLS)
     bodies = tuple(
