@@ -85,6 +85,14 @@ def counted_rate(path: Path, frame: NDArray[np.int64], time_s: Float) -> float:
     return rate
 
 
+def stated_rate(text: str) -> float:
+    """Frames a second as a file's text has them, with a comma or a point; NaN if it is no number."""
+    try:
+        return parse_number(text.replace(",", "."))
+    except ValueError:
+        return float("nan")
+
+
 def frame_rate(path: Path, stated: str, frame: NDArray[np.int64], time_s: Float) -> tuple[float, list[QualityWarning]]:
     """Frames a second as a file states them, unless its times say otherwise, with a warning then.
 
@@ -93,10 +101,7 @@ def frame_rate(path: Path, stated: str, frame: NDArray[np.int64], time_s: Float)
     RecordingError
         If neither gives a possible rate.
     """
-    try:
-        rate = parse_number(stated.replace(",", "."))
-    except ValueError:
-        rate = float("nan")
+    rate = stated_rate(stated)
     counted = rate_of(frame, time_s)
     if not is_rate(counted):
         if not is_rate(rate):

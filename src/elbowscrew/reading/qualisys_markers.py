@@ -13,7 +13,7 @@ from typing import Final, NamedTuple
 from elbowscrew.errors import RecordingError
 from elbowscrew.model import Recording
 from elbowscrew.reading.cells import parse_number
-from elbowscrew.reading.clock import cut_warnings, frame_rate, is_rate, numbered
+from elbowscrew.reading.clock import cut_warnings, frame_rate, is_rate, numbered, stated_rate
 from elbowscrew.reading.options import ReadOptions, nothing_wanted
 from elbowscrew.reading.source import TextSource
 from elbowscrew.reading.table import MarkerCells, TableCells, read_table
@@ -112,10 +112,7 @@ def stated_frequency(source: TextSource, text: str) -> float:
     RecordingError
         If it is no possible rate.
     """
-    try:
-        rate = parse_number(text.replace(",", "."))
-    except ValueError:
-        rate = float("nan")
+    rate = stated_rate(text)
     if not is_rate(rate):
         msg = f"{source.path}: no times and no FREQUENCY; export the take again with the time of every frame"
         raise RecordingError(msg)
