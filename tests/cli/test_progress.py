@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import io
+import threading
 import time
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 from rich.console import Console
+from rich.progress import TaskID
 
 from elbowscrew import analyze, save_analysis, save_simulation, simulate_trial
 from elbowscrew.cli import main, progress
@@ -21,6 +25,28 @@ def terminal(monkeypatch: pytest.MonkeyPatch) -> io.StringIO:
     monkeypatch.setattr(progress, "Console", lambda stderr: Console(file=screen, force_terminal=stderr, width=80))
     monkeypatch.setattr(progress, "_SECONDS_WITHOUT_BAR", 0.0)
     return screen
+
+
+@pytest.fixture
+def prompt_terminal(terminal: io.StringIO, monkeypatch: pytest.MonkeyPatch) -> io.StringIO:
+    """The same, where what a command tells is drawn at once and not when the clock of the bar comes round."""
+
+    class AtOnce:
+        daemon = False
+
+        def __init__(self, _seconds: float, begin: Callable[[], None]) -> None:
+            self.start = begin
+
+        def cancel(self) -> None: ...
+        def join(self) -> None: ...
+
+    class Prompt(progress.Bar):
+        def update(self, task_id: TaskID, **told: Any) -> None:
+            super().update(task_id, **told, refresh=self.live.is_started)
+
+    monkeypatch.setattr(threading, "Timer", AtOnce)
+    monkeypatch.setattr(progress, "Bar", Prompt)
+    return terminal
 
 
 def awaited(screen: io.StringIO, text: str) -> bool:
@@ -59,7 +85,7 @@ def test_there_is_no_bar(case: str, terminal: io.StringIO, monkeypatch: pytest.M
 def test_compare_shows_its_steps_and_quiet_shows_nothing(
     trial: str,
     steps: str,
-    terminal: io.StringIO,
+    prompt_terminal: io.StringIO,
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
@@ -80,25 +106,26 @@ def test_compare_shows_its_steps_and_quiet_shows_nothing(
         "--json",
     ]
     assert main([*given, "-o", "quiet", "--quiet"]) == 0
-    assert terminal.getvalue() == ""
+    assert prompt_terminal.getvalue() == ""
     assert main([*given, "-o", "shown"]) == 0
-    assert steps in terminal.getvalue()
+    assert steps in prompt_terminal.getvalue()
     assert capsys.readouterr().err == ""
 
 
 def test_analyze_report_and_simulate_show_what_they_do(
-    terminal: io.StringIO, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    prompt_terminal: io.StringIO, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
     assert main(["simulate", "take.csv", "--frames", "60", "--inversion", "30"]) == 0
-    assert "Simulating take.csv" in terminal.getvalue() or "Writing take.csv" in terminal.getvalue()
+    assert "Simulating take.csv" in prompt_terminal.getvalue()
+    assert "Writing take.csv" in prompt_terminal.getvalue()
     given = ["analyze", "take.csv", "--figure-format", "none", "--no-report"]
     assert main([*given, "-o", "quiet", "--quiet"]) == 0
-    assert "Analyzing" not in terminal.getvalue()
+    assert "Analyzing" not in prompt_terminal.getvalue()
     assert main([*given, "-o", "shown"]) == 0
-    assert "Analyzing take.csv" in terminal.getvalue()
+    assert "Analyzing take.csv" in prompt_terminal.getvalue()
     assert main(["report", "shown", "quiet"]) == 0
-    assert "2/2" in terminal.getvalue()
+    assert "2/2" in prompt_terminal.getvalue()
     capsys.readouterr()
 
 
