@@ -11,6 +11,7 @@ from typing import Any
 
 import pytest
 from rich.console import Console
+from rich.progress import Progress as Bar
 from rich.progress import TaskID
 
 from elbowscrew import analyze, save_analysis, save_simulation, simulate_trial
@@ -40,7 +41,7 @@ def prompt_terminal(terminal: io.StringIO, monkeypatch: pytest.MonkeyPatch) -> i
         def cancel(self) -> None: ...
         def join(self) -> None: ...
 
-    class Prompt(progress.Bar):
+    class Prompt(Bar):
         def update(self, task_id: TaskID, **told: Any) -> None:
             super().update(task_id, **told, refresh=self.live.is_started)
 
