@@ -7,7 +7,6 @@ and options.
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any, Final, Literal
@@ -21,10 +20,10 @@ from pydantic import (
 )
 from pydantic.functional_validators import ModelWrapValidatorHandler
 
+from elbowscrew import setting_conflicts as conflicts
 from elbowscrew import setting_values as taken
 from elbowscrew.choices import (
     EXPORT_NAMES,
-    FRAMES,
     LAW_NAMES,
     LAW_PEAKS,
     STATED_JOINTS,
@@ -307,63 +306,18 @@ class Settings(BaseModel, frozen=True, extra="forbid", allow_inf_nan=False, defe
     _skin = field_validator("skin_motion")(taken.skin_motion)
 
     @model_validator(mode="after")
-    def _check_frame(self) -> Settings:
-        from elbowscrew.joints import ends_called, joints_of
-
-        joints = joints_of(self.joint)
-        if self.joint is not None and self.express_in not in FRAMES and not ends_called(self.express_in, joints):
-            words = ", ".join(dict.fromkeys(end.short for one in joints for end in (one.proximal, one.distal)))
-            msg = (
-                f"--express-in {self.express_in}: no segment of --joint {self.joint}; expected one of "
-                f"{', '.join(FRAMES)}, {words}"
-            )
-            raise ValueError(msg)
-        return self
-
-    @model_validator(mode="after")
-    def _check_cycles(self) -> Settings:
-        if self.no_cycles and self.cycles is not None:
-            msg = "--no-cycles and --cycles contradict each other; give one of them"
-            raise ValueError(msg)
-        return self
-
-    @model_validator(mode="after")
-    def _check_law(self) -> Settings:
-        if self.law_peak is not None and self.model_law in ("linear", "empirical", "best"):
-            why = {"linear": "has no highest velocity", "empirical": "is the recording's own", "best": "finds its own"}
-            msg = f"--law-peak: the law '{self.model_law}' {why[self.model_law]}; leave --law-peak out"
-            raise ValueError(msg)
-        return self
-
-    @model_validator(mode="after")
-    def _check_tolerance(self) -> Settings:
-        twice = "--tolerance chooses the keyframes itself; give either --tolerance or --keyframes"
-        faults = {
-            twice: self.keyframes is not None,
-            f"--tolerance: with --method {self.method} a piece depends on more than its two keyframes, and no best "
-            "set can be told; expected sclerp, sdlb or joint": self.model_method not in ("sclerp", "sdlb", "joint"),
-            "--tolerance: the recording's own law need not go forward all the time; expected another --law than "
-            "empirical": self.law == "empirical",
-            "--tolerance: the model must pass each keyframe at its own time, piece by piece; leave --knots and "
-            "--blend out": self.knots != "law" or self.blend != "piecewise",
-        }
-        found = next((fault for fault, present in faults.items() if present), None)
-        if self.tolerance_mm is not None and found is not None:
+    def _agree(self) -> Settings:
+        faults = (
+            conflicts.of_frame(self.express_in, self.joint),
+            conflicts.of_cycles(self.cycles, no_cycles=self.no_cycles),
+            conflicts.of_law(self.model_law, self.law_peak),
+            self.tolerance_mm is not None
+            and conflicts.of_tolerance(self.method, self.law, self.keyframes, self.knots, self.blend),
+            conflicts.of_keyframes(self.keyframes or (), self.inversion),
+        )
+        found = next(filter(None, faults), None)
+        if found is not None:
             raise ValueError(found)
-        return self
-
-    @model_validator(mode="after")
-    def _check_keyframes(self) -> Settings:
-        frames = self.keyframes or ()
-        if any(later <= earlier for earlier, later in itertools.pairwise(frames)):
-            msg = f"keyframes must increase, each of them once, found {','.join(map(str, frames))}"
-            raise ValueError(msg)
-        if frames and self.inversion is not None and self.inversion not in frames[1:-1]:
-            msg = (
-                f"the inversion ({self.inversion}) must be one of the keyframes between the first and the last: "
-                "add it to --keyframes or leave --inversion out"
-            )
-            raise ValueError(msg)
         return self
 
     @model_validator(mode="wrap")
