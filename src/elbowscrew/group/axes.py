@@ -10,10 +10,10 @@ import numpy as np
 
 from elbowscrew.geometry._small_angle import length
 from elbowscrew.geometry.arrays import Float
+from elbowscrew.geometry.lines import angle_of_lines, piercing
 from elbowscrew.geometry.quaternion import rotation_matrix_from_quat
 from elbowscrew.model.anatomy import BonyJoint, Side
 from elbowscrew.motion.anatomy.bone_frames import epicondyles, frame_of_proximal
-from elbowscrew.motion.difference import angle_of_lines, piercing
 
 _MIRROR: Final[Float] = np.array([1.0, 1.0, -1.0])
 

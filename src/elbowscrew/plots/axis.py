@@ -17,9 +17,9 @@ from numpy.typing import NDArray
 from elbowscrew.choices import LengthUnit
 from elbowscrew.geometry._blocks import evenly_thinned
 from elbowscrew.geometry.arrays import Float
+from elbowscrew.geometry.lines import piercing
 from elbowscrew.model import Analysis
 from elbowscrew.motion.axes.mean_axis import MOST_ACROSS
-from elbowscrew.motion.difference import piercing
 from elbowscrew.plots import style
 from elbowscrew.quantities import angle_in, length_in
 from elbowscrew.results.trial_views import view_of

@@ -7,11 +7,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from elbowscrew.geometry.arrays import Float
+from elbowscrew.geometry.lines import piercing
 from elbowscrew.geometry.sensitivity import NORMAL_95
 from elbowscrew.model import Analysis
 from elbowscrew.model.joint_axis import AxisPath
 from elbowscrew.model.joint_type import JointAngles
-from elbowscrew.motion.difference import piercing
 from elbowscrew.plots import style
 from elbowscrew.plots.figures import NARROW_MM, WIDTH_MM
 from elbowscrew.plots.series import band, line, mark_tracking, over_time, overview_grid, span_line

@@ -10,9 +10,9 @@ import pytest
 from elbowscrew import Settings, analyze, simulate_trial
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry.arrays import Float
+from elbowscrew.geometry.lines import angle_of_lines
 from elbowscrew.geometry.sensitivity import NORMAL_95, confidence_radius
 from elbowscrew.model.anatomy import AnatomicalMotion, Landmark, Landmarks
-from elbowscrew.motion.difference import angle_of_lines
 from elbowscrew.motion.joint.estimates import ProximalErrors
 from elbowscrew.motion.joint.lines import Z_LINE, line_pose, line_twist
 from elbowscrew.simulate import SimulatedTrial

@@ -17,13 +17,13 @@ from elbowscrew.geometry import line_through
 from elbowscrew.geometry._small_angle import length
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_quaternion import conjugate, multiply, transform_lines, transform_points
+from elbowscrew.geometry.lines import angle_of_lines
 from elbowscrew.joints import GENERIC, Joint, joints_of, side_between, side_of
 from elbowscrew.model import JointMotion, QualityWarning, Recording, RigidBody
 from elbowscrew.model.anatomy import LANDMARK_BODIES, LANDMARKS_OF, NO_LIMITS, AnatomicalMotion, BonyJoint, Landmarks
 from elbowscrew.motion.anatomy.bone_frames import BONES, bone_angles, epicondyles, frame_of_proximal
 from elbowscrew.motion.anatomy.functional_axis import FunctionalAxis
 from elbowscrew.motion.anatomy.landmarks import landmark_points
-from elbowscrew.motion.difference import angle_of_lines
 from elbowscrew.motion.screws.relative import frame_change
 
 # No elbow or knee is overextended so far in a tenth of its motion; nor turned so far in the middle of it.

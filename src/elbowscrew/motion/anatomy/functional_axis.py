@@ -8,10 +8,10 @@ import numpy as np
 
 from elbowscrew.geometry._small_angle import length
 from elbowscrew.geometry.arrays import Float
+from elbowscrew.geometry.lines import angle_of_lines
 from elbowscrew.model import JointAxis
 from elbowscrew.model.anatomy import FunctionalAxisName, Limits
 from elbowscrew.model.joint_type import JointLine, JointType
-from elbowscrew.motion.difference import angle_of_lines
 from elbowscrew.motion.joint.estimates import UNDETERMINED, ProximalErrors, Reach
 from elbowscrew.motion.joint.joint_axis import EstimatedAxis
 

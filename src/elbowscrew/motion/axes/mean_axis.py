@@ -9,8 +9,8 @@ import numpy as np
 from elbowscrew.geometry._blocks import evenly_thinned
 from elbowscrew.geometry._small_angle import length
 from elbowscrew.geometry.arrays import Float
+from elbowscrew.geometry.lines import angle_of_lines, direction_between, piercing
 from elbowscrew.model import MeanAxis
-from elbowscrew.motion.difference import angle_of_lines, direction_between, piercing
 
 _MOST_COMPARED: Final = 1000
 _STEP: Final = float(np.radians(1.0))

@@ -11,11 +11,11 @@ from elbowscrew.errors import SettingError
 from elbowscrew.geometry import quaternion, sclerp
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_quaternion import conjugate, multiply, pose_from_dual_quat
+from elbowscrew.geometry.lines import angle_of_lines
 from elbowscrew.model import HelicalSteps, InstantaneousMotion, MeanAxis, QualityWarning, RigidBody
 from elbowscrew.motion.axes.helical_steps import helical_steps
 from elbowscrew.motion.axes.instantaneous import instantaneous_motion, twists
 from elbowscrew.motion.axes.mean_axis import MOST_ACROSS, mean_axis_of
-from elbowscrew.motion.difference import angle_of_lines
 from elbowscrew.motion.screws.measurement import Measurement
 from elbowscrew.motion.screws.relative import IDENTITY, expressed
 from elbowscrew.motion.screws.sense import rotation_noise

@@ -8,15 +8,9 @@ import numpy as np
 
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat
+from elbowscrew.geometry.lines import angle_of_lines, direction_between, distance_across
 from elbowscrew.model import BodyPoints
-from elbowscrew.motion.difference import (
-    angle_between,
-    angle_of_lines,
-    direction_between,
-    distance_across,
-    origin_distance,
-    rms_displacement,
-)
+from elbowscrew.motion.difference import angle_between, origin_distance, rms_displacement
 from elbowscrew.motion.screws.helical import HelicalSeries, helical_series
 from elbowscrew.motion.screws.measurement import Measurement
 from elbowscrew.motion.screws.relative import expressed

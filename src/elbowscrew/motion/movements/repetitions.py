@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from elbowscrew.geometry._small_angle import divide, length
 from elbowscrew.geometry.arrays import Float
+from elbowscrew.geometry.lines import direction_between, piercing
 from elbowscrew.model import CycleCurves, QualityWarning, Repeatability, Repetitions, ScrewMotion
 from elbowscrew.motion.axes.mean_axis import mean_line_of
-from elbowscrew.motion.difference import direction_between, piercing
 from elbowscrew.motion.movements.boundaries import Cycles
 from elbowscrew.motion.movements.phases import nearest_rows
 from elbowscrew.motion.movements.unseen import Gaps, gaps_of
