@@ -7,7 +7,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from elbowscrew.geometry.arrays import Float
-from elbowscrew.geometry.lines import piercing
 from elbowscrew.geometry.sensitivity import NORMAL_95
 from elbowscrew.model import Analysis
 from elbowscrew.model.joint_axis import AxisPath
@@ -21,8 +20,8 @@ from elbowscrew.view.bands import span_of
 from elbowscrew.view.decimation import drawn_rows
 from elbowscrew.view.joint_space import ANGLE_NAMES
 from elbowscrew.view.long_trials import shown_part
-from elbowscrew.view.scene import directions_across
 from elbowscrew.view.trial_view import TrialView
+from elbowscrew.view.wander import off_mean
 
 
 def joint_angles_figure(analysis: Analysis | TrialView, *, width_mm: float = WIDTH_MM) -> Figure:
@@ -145,19 +144,13 @@ def _with_path(analysis: Analysis | TrialView) -> tuple[TrialView, AxisPath]:
 def plot_axis_path(ax: Axes, analysis: Analysis | TrialView, *, shifted: bool) -> Axes:
     """Draw how far an axis that wanders tilts from the mean axis, or shifts, against the angle."""
     view, path = _with_path(analysis)
-    direction, settings = view.joint_direction, view.settings
-    across, toward = directions_across(direction)
+    settings, found = view.settings, off_mean(view, path)
     angle = angle_in(path.angle, settings.angle_unit)
     if shifted:
-        offset = piercing(path.direction, path.point, direction, view.joint_point) - view.joint_point
-        parts = [length_in(offset @ u, settings.length_unit) for u in across]
-        sd = length_in(path.point_sd, settings.length_unit)
+        parts, reach = (length_in(values, settings.length_unit) for values in (found.shift, found.shift_reach))
     else:
-        along = path.direction @ direction
-        parts = [angle_in(np.arctan2(path.direction @ u, along), settings.angle_unit) for u in across]
-        sd = angle_in(path.axis_sd, settings.angle_unit)
-    reach = NORMAL_95 * sd / np.sqrt(2.0)  # of one component
-    for k, (values, name) in enumerate(zip(parts, toward, strict=True)):
+        parts, reach = (angle_in(values, settings.angle_unit) for values in (found.tilt, found.tilt_reach))
+    for k, (values, name) in enumerate(zip(parts, found.toward, strict=True)):
         if np.isfinite(reach).any():
             ax.fill_between(angle, values - reach, values + reach, label="95 % of each", **style.BAND)
         ax.plot(angle, values, label=f"toward {name}", linewidth=1.3, marker="o", markersize=2.5, **style.AXES[k])

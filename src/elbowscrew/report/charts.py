@@ -116,6 +116,11 @@ class Chart:
         self._keep(name or label or look, x[rows], y[rows])
         self._note(look, label)
 
+    def loop(self, x: Float, y: Float, look: str) -> None:
+        """Draw a curve that may come back along, so that no value of it belongs to a place along."""
+        rows = drawn_rows(x, y, keep_gaps=True, parts=int(self._inner[2] - self._inner[0]))
+        self._drawn.append(f'<path class="{look}" d="{path_of(self.x(x[rows]), self.y(y[rows]))}"/>')
+
     def band(self, x: Float, low: Float, high: Float, look: str, label: str = "") -> None:
         """Fill between two curves wherever both are known."""
         rows = drawn_rows(low, high, keep_gaps=True, parts=int(self._inner[2]))

@@ -44,12 +44,12 @@ def theta_chart(trial: TrialView) -> Markup:
     height = _TALL if stretch is None else _LOWER
     angle = np.degrees(shown.angle)
     motion = trial.summary["motion"]
-    chart = _over_time(
+    chart = over_time(
         shown, "theta", "", "", range_of(angle, np.degrees(shown.modeled_angle)), "Angle θ (deg)", height=height
     )
     time_s, phases = shown.time_s, shown.phases
     chart.spans(zip(time_s[phases.onset_rows], time_s[phases.offset_rows], strict=True), "fill-moving", "moving")
-    _mark_tracking(chart, shown)
+    mark_tracking(chart, shown)
     _mark_interval(chart, shown)
     chart.line(time_s, angle, "measured", "measured")
     chart.line(time_s, np.degrees(shown.modeled_angle), "modeled", model_name(trial))
@@ -70,7 +70,7 @@ def theta_chart(trial: TrialView) -> Markup:
 def _overview(trial: TrialView, stretch: Stretch) -> Chart:
     """What the angle spans all through a long trial, and where the stretch is that is drawn in full."""
     angle, rows = np.degrees(trial.angle), slice(stretch.first, stretch.end)
-    chart = _over_time(trial, "overview", "", "", range_of(angle), "θ (deg)", height=_ABOVE - 5.0)
+    chart = over_time(trial, "overview", "", "", range_of(angle), "θ (deg)", height=_ABOVE - 5.0)
     found = envelope(trial, angle)
     chart.band(found.time_s, found.low, found.high, "band-spread", _PARTS)
     first, last = trial.time_s[[stretch.first, stretch.end - 1]].tolist()
@@ -95,11 +95,11 @@ def error_chart(trial: TrialView) -> Markup:
     if trial.located:
         errors.append((1000.0 * trial.rms_displacement, "RMS displacement", "mm"))
     for k, (values, label, unit) in enumerate(errors):
-        chart = _over_time(trial, f"error{k}", "", "", range_of(values, zero=True), f"{label} ({unit})", height=230.0)
+        chart = over_time(trial, f"error{k}", "", "", range_of(values, zero=True), f"{label} ({unit})", height=230.0)
         if is_long:
             _span(chart, trial, values)
         else:
-            _mark_tracking(chart, trial)
+            mark_tracking(chart, trial)
             chart.line(trial.time_s, values, "measured", "model against measurement")
         if np.isfinite(values).any():
             level = float(np.sqrt(np.nanmean(values**2)))
@@ -119,7 +119,7 @@ def euler_chart(trial: TrialView) -> Markup:
     panels = []
     keys = Markup()
     for k in range(4):
-        chart = _over_time(
+        chart = over_time(
             shown,
             f"euler{k}",
             "",
@@ -129,7 +129,7 @@ def euler_chart(trial: TrialView) -> Markup:
             width=0.5 * WIDTH,
             height=230.0,
         )
-        _mark_tracking(chart, shown)
+        mark_tracking(chart, shown)
         chart.line(shown.time_s, measured[:, k], "measured", "measured")
         chart.line(shown.time_s, modeled[:, k], "modeled", "modeled")
         rows = shown.keyframes.row
@@ -230,7 +230,7 @@ def model_name(trial: TrialView) -> str:
     return f"{METHOD_LABELS.get(name, name)} through {trial.keyframes.row.size} poses"
 
 
-def _over_time(
+def over_time(
     trial: TrialView,
     name: str,
     title: str,
@@ -241,6 +241,7 @@ def _over_time(
     width: float = WIDTH,
     height: float = _TALL,
 ) -> Chart:
+    """Begin a chart over the time of the recording."""
     time_s = trial.time_s
     return Chart(
         name,
@@ -261,7 +262,8 @@ def _mark_interval(chart: Chart, trial: TrialView) -> None:
         chart.band(trial.time_s, angle - reach, angle + reach, "band-known", label)
 
 
-def _mark_tracking(chart: Chart, trial: TrialView) -> None:
+def mark_tracking(chart: Chart, trial: TrialView) -> None:
+    """Shade what was lost or filled in."""
     half = 0.5 / trial.rate_hz
     for mask, look, label in (
         (~trial.valid & ~trial.filled, "fill-lost", "not tracked"),

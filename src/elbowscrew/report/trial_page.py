@@ -18,6 +18,7 @@ from elbowscrew.model.mesh import Mesh
 from elbowscrew.report.bones_words import bone_angles, bone_words, bones_sentences
 from elbowscrew.report.captions import caption_of
 from elbowscrew.report.checklist import MISSING, checklist_of
+from elbowscrew.report.joint_charts import angles_chart, wander_chart
 from elbowscrew.report.joint_words import joint_sentences
 from elbowscrew.report.methods import citations_of, methods_of
 from elbowscrew.report.methods_file import METHODS
@@ -129,6 +130,8 @@ def trial_page(trial: TrialView, folder: Path, *, place: Path | None = None) -> 
         "hardly_deg": _HARDLY_DEG,
         "stretch": stretch_of(trial),
         "theta_chart": theta_chart(trial),
+        "angles_chart": angles_chart(trial),
+        "wander_chart": wander_chart(trial),
         "axis_chart": axis_chart(trial) if trial.located else None,
         "error_chart": error_chart(trial),
         "euler_chart": euler_chart(trial),

@@ -171,7 +171,7 @@
   const ends = (axis, share) => [-1, 1].map((way) => add(axis.center, times(way * share * axis.half, axis.direction)));
   // The second axis goes with the distal body.
   const ownAxes = (k) => scene.joint.axes.flatMap((axis, j) => {
-    const look = color(["proximal-text", "distal-text"][j]);
+    const look = color(`axis${j + 1}`);
     if (!axis.moves) return [{ ...axis, look }];
     const at = moved(k, axis.center);
     if (!at) return [];
@@ -312,9 +312,9 @@
     // Where the joint has axes of its own, or a center, the mean of the frames' axes is none of them.
     if (!own.length && !scene.joint.center) line(ends(scene, 1.15), color("measured"), 2.4);
     own.forEach((axis) => {
-      if (shown("cone")) surface(axis, axis.known, axis.look, 0.25);
+      if (shown("cone")) surface(axis, axis.known, color("distal"), 0.25);
       line(ends(axis, 1), axis.look, 2.4);
-      label(ends(axis, 1.06)[1], axis.name, axis.look);
+      label(ends(axis, 1.06)[1], axis.name, color("ink"));
     });
     if (shown("path")) line(path, color("distal"), 2);
     if (shown("moment") && scene.axis[k] && scene.point[k]) {
