@@ -417,6 +417,10 @@ def texts_with_numbers(told: Told) -> Iterator[tuple[str, list[str]]]:
         size = "size" if joint["wander"]["significant"] else "unseen"
         sizes = [dec(joint["wander"][f"{size}_{unit}"]) for unit in ("deg", "mm")]
         yield ("The axis wanders by" if size == "size" else "The axis is not seen to wander"), sizes
+    yield "95 % of each toward", ["95"]
+    yield "The joint’s axis against its angle", ["95"]
+    if two is not None or ball is not None:
+        yield from own_angles(told)
     yield "The 95 % intervals are those of", ["95"]
     if joint["sensitivity_deg_per_deg"] is not None:
         yield "Each degree that a cluster turns", [dec(joint["sensitivity_deg_per_deg"])]
@@ -467,6 +471,19 @@ def texts_with_numbers(told: Told) -> Iterator[tuple[str, list[str]]]:
     yield r"\d+ warnings?|\d+ notes?|No warnings", [str(n) for n in (severe, len(summary["warnings"]) - severe) if n]
     yield "After the ISB’s recommendations", ["1995", "2005"]
     yield "elbowscrew, version", []
+
+
+def own_angles(told: Told) -> Iterator[tuple[str, list[str]]]:
+    """Keys, description and caption of the chart of the joint's own angles."""
+    table = told.table("joint_angles")
+    keys = []
+    for name in (column.removesuffix("_deg") for column in map(str, table) if column.endswith("_sd_deg")):
+        reach = 1.959964 * table[f"{name}_deg"].median()
+        number = re.findall(r"\d", name)  # of an axis
+        keys += [*(["95", *number, f"{reach:.2g}"] if np.isfinite(reach) else []), *number]
+    yield r"(not tracked )?(filled in )?(95 % interval of )?(Angle 1|Rotation x)\b(?!, )", keys
+    yield "Angle 1, Angle 2 over time; on the right Angle 2 against Angle 1", ["1", "2", "2", "1"]
+    yield "The joint’s own angles since the reference, about axis", ["1", "2"]
 
 
 def test_every_other_number_on_the_page_is_looked_at(told: Told) -> None:
