@@ -137,3 +137,16 @@ def test_figures_and_pages_count_their_results(tmp_path: Path) -> None:
     steps: list[tuple[int, int]] = []
     remake_pages([tmp_path, folder], lambda done, total: steps.append((done, total)))
     assert steps == [(0, 2), (1, 2), (2, 2)]
+
+
+def test_quiet_writes_and_prints_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["simulate", "take.csv", "--frames", "60", "--inversion", "30", "-q"]) == 0
+    assert main(["analyze", "take.csv", "-q", "--figure-format", "none", "--no-report"]) == 0
+    assert main(["interpolate", "take_elbowscrew/keyframes.csv", "--frames", "9", "-q"]) == 0
+    assert main(["samples", "--copy", "copies", "-q"]) == 0
+    assert capsys.readouterr().out == ""
+    assert {"take.csv", "take.truth.json", "keyframes_motion.csv"} <= {file.name for file in tmp_path.iterdir()}
+    assert list((tmp_path / "copies").iterdir())

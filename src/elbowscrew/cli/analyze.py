@@ -44,9 +44,7 @@ def analyze(
     json_output: Annotated[
         bool, typer.Option("--json", help="Print summary.json instead of the table.", rich_help_panel=OUTPUT)
     ] = False,
-    quiet: Annotated[
-        bool, typer.Option("--quiet", "-q", help="Print neither table nor progress.", rich_help_panel=OUTPUT)
-    ] = False,
+    quiet: options.Quiet = False,
     verbose: Annotated[
         bool, typer.Option("--verbose", "-v", help="Name every file written.", rich_help_panel=OUTPUT)
     ] = False,

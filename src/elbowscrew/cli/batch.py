@@ -84,9 +84,7 @@ def batch(
         Path | None, typer.Option(metavar="FILE.toml", rich_help_panel=OUTPUT, help="Settings; options override them.")
     ] = None,
     json_output: Annotated[bool, typer.Option("--json", help="Print one JSON object.", rich_help_panel=OUTPUT)] = False,
-    quiet: Annotated[
-        bool, typer.Option("--quiet", "-q", help="Print neither table nor progress.", rich_help_panel=OUTPUT)
-    ] = False,
+    quiet: options.Quiet = False,
     verbose: Annotated[
         bool,
         typer.Option("--verbose", "-v", help="Name every file that was skipped or failed.", rich_help_panel=OUTPUT),

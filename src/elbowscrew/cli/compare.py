@@ -101,9 +101,7 @@ def compare(
     json_output: Annotated[
         bool, typer.Option("--json", help="Print compare.json instead of the table.", rich_help_panel=OUTPUT)
     ] = False,
-    quiet: Annotated[
-        bool, typer.Option("--quiet", "-q", help="Print neither table nor progress.", rich_help_panel=OUTPUT)
-    ] = False,
+    quiet: options.Quiet = False,
 ) -> None:
     """Compare models of one motion, or of a folder of recordings.
 

@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from elbowscrew.choices import LAW_PEAKS, ClosedLaw, MethodName
+from elbowscrew.cli import options
 
 
 def interpolate(
@@ -52,6 +53,7 @@ def interpolate(
         ),
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace an earlier motion.")] = False,
+    quiet: options.QuietPaths = False,
 ) -> None:
     """Rebuild a motion from its keyframes.
 
@@ -68,4 +70,6 @@ def interpolate(
         raise UsageError(msg)
     found = read_keyframes(keyframes, method=method, law=law, law_peak=law_peak)
     target = output if output is not None else Path(f"{keyframes.stem}_motion.csv")
-    emit(f"{printable(str(save_motion(rebuild(found, frames), target, overwrite=force)))}\n")
+    written = save_motion(rebuild(found, frames), target, overwrite=force)
+    if not quiet:
+        emit(f"{printable(str(written))}\n")

@@ -35,6 +35,11 @@ MeshUnit = Annotated[
     ),
 ]
 
+Quiet = Annotated[
+    bool, typer.Option("--quiet", "-q", rich_help_panel="Output", help="Print neither table nor progress.")
+]
+QuietPaths = Annotated[bool, typer.Option("--quiet", "-q", help="Print neither paths nor progress.")]
+
 TrialFile = Annotated[
     Path,
     typer.Argument(

@@ -97,7 +97,7 @@ def report(
     force: Annotated[
         bool, typer.Option("--force", rich_help_panel=_FIGURES, help="Replace figures of the same names.")
     ] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print neither paths nor progress.")] = False,
+    quiet: options.QuietPaths = False,
 ) -> None:
     """Make report.html and index.html anew, or figures for publication.
 

@@ -7,11 +7,14 @@ from typing import Annotated
 
 import typer
 
+from elbowscrew.cli import options
+
 
 def samples(
     copy: Annotated[
         Path | None, typer.Option(metavar="DIR", help="Copy all of them into this folder.", show_default=False)
     ] = None,
+    quiet: options.QuietPaths = False,
 ) -> None:
     """List the samples that come with the program, or copy them.
 
@@ -25,5 +28,6 @@ def samples(
         for name, text in SAMPLES.items():
             emit(f"{name:<{width}}  {text}\n")
         return
-    for file in copy_to(copy):
+    copied = copy_to(copy)
+    for file in () if quiet else copied:
         emit(f"{printable(str(file))}\n")

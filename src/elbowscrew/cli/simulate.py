@@ -8,6 +8,7 @@ from typing import Annotated, Literal
 import typer
 
 from elbowscrew.choices import FileUnit, JointName, SimulatedJointType, SimulatedLaw
+from elbowscrew.cli import options
 
 _MOTION, _RECORDING, _OUTPUT = "Motion", "Recording", "Output"
 
@@ -105,6 +106,7 @@ def simulate(
     force: Annotated[
         bool, typer.Option("--force", rich_help_panel=_OUTPUT, help="Replace an earlier simulation.")
     ] = False,
+    quiet: options.QuietPaths = False,
 ) -> None:
     """Write a synthetic trial of a joint.
 
@@ -141,12 +143,12 @@ def simulate(
         tremor_hz=tremor_hz,
         seed=seed,
     )
-    with shown_stages(quiet=False) as begin:
+    with shown_stages(quiet=quiet) as begin:
         begin(f"Simulating {output}")
         made = simulate_trial(simulation)
         begin(f"Writing {output}")
         written = save_simulation(
             made, output, layout=layout, length_unit=length_unit, landmarks=landmarks, overwrite=force
         )
-    for path in written:
+    for path in () if quiet else written:
         emit(f"{printable(str(path))}\n")
