@@ -76,7 +76,8 @@ def test_pandas_reads_the_long_table(tmp_path: Path, monkeypatch: pytest.MonkeyP
     "row",
     [
         "4,1,,3,0.5", "4,1,,3,0.5,0.5,0.5", "4,1,,3,word,0.5", "4.5,1,,3,0.5,0.5", "4,1,,3.5,0.5,0.5",
-        "4,1,,3,True,0.5", "4,1,,3,0x1,0.5", "4,1,,3,0.5,1e101", "4,1,,3,null,0.5", "4,word,,3,0.5,0.5", "",
+        "4,1,,3,True,0.5", "4,1,,3,0x1,0.5", "4,1,,3,0.5,1e101", "4,1,,3,0.5,inf", "4,1,,3,-inf,0.5",
+        "4,1,,3,null,0.5", "4,word,,3,0.5,0.5", "",
     ],
 )  # fmt: skip
 def test_a_row_that_was_not_written_is_refused(row: str, long: bool, tmp_path: Path) -> None:

@@ -259,7 +259,7 @@ def _values(cells: tuple[str, ...], quantity: Quantity) -> NDArray[Any]:
 
 
 def _check_size(values: NDArray[Any]) -> None:
-    if ((np.abs(values) > LARGEST) & np.isfinite(values)).any():
+    if (np.abs(values) > LARGEST).any():
         msg = f"it has numbers beyond {LARGEST:g}"
         raise ValueError(msg)
 
