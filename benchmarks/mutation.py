@@ -285,7 +285,7 @@ def main() -> None:
     again = chosen.again and chosen.again.read_text(encoding="utf-8").splitlines()
     os.chdir(ROOT)
     os.environ["OPENBLAS_NUM_THREADS"] = "1"  # threads do not live through a fork
-    sys.path[:] = [path for path in sys.path if not (Path(path) / PACKAGE).is_dir()]
+    sys.path[:] = [path for path in sys.path if not (Path(path) / PACKAGE / "__init__.py").is_file()]
     for library in ( "jinja2", "matplotlib.pyplot", "pandas", "pydantic", "rich.table", "scipy.linalg",
                     "scipy.optimize", "scipy.signal", "scipy.spatial.transform", "scipy.stats", "typer"):  # fmt: skip
         __import__(library)
