@@ -260,7 +260,7 @@ def of_repetitions(told: Told) -> set[str]:
     else:
         seen |= {*names, *AXIS, *POINT}
     axes = vectors(table, "axis")
-    middle = axes.sum(axis=0)
+    middle = axes.sum(axis=0) if len(axes) > 1 else np.full(3, np.nan)  # one axis is off from nothing
     seen |= near(table, ["axis_deviation_deg"], angle_between(axes, np.broadcast_to(middle, axes.shape)), 1e-6)
     return seen | {"start_frame", "inversion_frame", "end_frame"}
 

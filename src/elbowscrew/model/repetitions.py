@@ -60,7 +60,7 @@ class Repetitions(TableRecord):
     axis_direction, axis_point : ndarray, shape (R, 3)
         Weighted mean of the cycle's finite axes; NaN where it has none.
     axis_deviation : ndarray, shape (R,)
-        Angle (rad) of that axis from the mean of all cycles'.
+        Angle (rad) of that axis from the mean of all cycles'; NaN where no other cycle has one.
     """
 
     table: ClassVar = tables.REPETITION_COLUMNS

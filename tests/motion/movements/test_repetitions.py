@@ -125,7 +125,11 @@ def test_repeatability_of_alike_repetitions() -> None:
     assert np.degrees(found.mean.max()) == pytest.approx(130.0, abs=2.0)
     assert np.degrees(found.axis_sd) < 0.1
     assert found.point_sd < 2e-4
-    single = repeated(repetitions=1).repeatability
+    alone = repeated(repetitions=1)
+    single = alone.repeatability
+    assert alone.repetitions.number.size == 1
+    assert np.isfinite(alone.repetitions.axis_direction).all()
+    assert np.isnan(alone.repetitions.axis_deviation).all()  # it is the mean itself
     assert np.isnan(single.icc)
     assert np.isnan(single.axis_sd)
     assert np.isnan(single.sd).all()

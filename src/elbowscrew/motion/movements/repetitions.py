@@ -225,8 +225,9 @@ def _largest(angle: Float, first: int, last: int, gaps: Gaps) -> tuple[float, fl
 
 
 def _mean_direction(directions: Float) -> Float:
+    """Mean of the directions that are known; NaN of one, which has nothing to be off from."""
     known = directions[np.isfinite(directions[:, 0])]
-    if not len(known):
+    if len(known) < 2:
         return np.full(3, np.nan)
     total = known.sum(axis=0)
     return divide(total, length(total))
