@@ -10,6 +10,7 @@ from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.motion.joint.choice import choose_type
 from elbowscrew.motion.joint.likelihood import Poses
+from elbowscrew.motion.joint.typed import identify_joint
 
 
 def astray(poses: Float, share: float, rng: np.random.Generator) -> Float:
@@ -39,3 +40,46 @@ def test_a_motion_that_no_joint_has_is_free_also_after_a_long_rest() -> None:
         seen, covariance = mj.noisy(moved, rng, 0.1, 2e-4)
         found = choose_type(Poses.of(seen, covariance), noise_known=True)
         assert (found.type, found.status) == ("free", "determined")
+
+
+def with_angles(exact: mj.MovingJoint, angles: Float) -> Float:
+    """The same two axes at other angles (F, 2)."""
+    first, second = exact.truth["angles"][0]
+    one, two = exact.truth["axis1"], exact.truth["axis2"]
+    rest = dq.multiply(mj.turned(-first, one), dq.multiply(exact.poses[0], mj.turned(-second, two)))
+    return dq.multiply(mj.turned(angles[:, 0], one), dq.multiply(rest, mj.turned(angles[:, 1], two)))
+
+
+@pytest.mark.parametrize("noise_known", [True, False])
+@pytest.mark.parametrize("ranges_deg", [(500.0, 60.0), (60.0, 500.0), (420.0, 400.0)])
+@pytest.mark.parametrize("between", [85.0, 40.0])
+def test_axes_that_turn_on_and_on_are_two_axes(
+    ranges_deg: tuple[float, float], between: float, noise_known: bool
+) -> None:
+    """What winds and is known is no phantom of a hinge, whose two angles undo each other."""
+    rng = np.random.default_rng(8)
+    time = np.linspace(0.0, 2.0 * np.pi, 300)
+    angles = np.radians(ranges_deg) * np.stack([0.5 - 0.5 * np.cos(time), 0.5 + 0.5 * np.sin(2.0 * time)], axis=1)
+    exact = mj.two_axes(200, (90.0, 60.0), between, 0.03, rng)
+    seen, covariance = mj.noisy(with_angles(exact, angles), rng, 0.1, 2e-4)
+    found = identify_joint(seen, covariance, seen[0], noise_known=noise_known)
+    assert (found.type, found.status) == ("two_axes", "determined")
+    assert found.two_axes is not None
+    assert np.degrees(mj.angle_between(found.two_axes.axis1.direction_proximal, exact.truth["axis1"])) < 0.2
+    # Each angle but for its sense, and the second from wherever the first frame has it.
+    for k in range(2):
+        near = found.angle[:, k] - found.angle[0, k]
+        told = near if near @ (angles[:, k] - angles[0, k]) > 0.0 else -near
+        assert np.degrees(told) == pytest.approx(np.degrees(angles[:, k] - angles[0, k]), abs=4.0)
+
+
+@pytest.mark.parametrize("turns", [1.0, 3.0])
+def test_a_hinge_that_turns_on_and_on_stays_a_hinge(turns: float) -> None:
+    rng = np.random.default_rng(9)
+    exact = mj.hinge(200, 90.0, rng)
+    angle = 2.0 * np.pi * turns * np.linspace(0.0, 1.0, 300)
+    poses = dq.multiply(mj.turned(angle, exact.truth["axis1"]), exact.poses[0])
+    seen, covariance = mj.noisy(poses, rng, 0.1, 2e-4)
+    for noise_known in (True, False):
+        found = choose_type(Poses.of(seen, covariance), noise_known=noise_known)
+        assert (found.type, found.status) == ("hinge", "determined")

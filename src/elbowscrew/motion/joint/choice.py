@@ -146,7 +146,7 @@ def _best(contest: Contest) -> Choice:
     if not contest.sure_axes():
         doubt = f"a direction is not known to {np.degrees(LARGEST_AXIS_SD):.0f} deg"
     elif retraced > _MUCH_RETRACED:
-        doubt = "it goes back the way it came, as one axis that wanders with the angle would"
+        doubt = "what one axis leaves goes with its angle, as where that axis wanders"
     elif over(left_single, left_two) < NEED_SMALL:
         doubt = "one axis does not leave much more"
     elif not contest.poses.located and not two.leaves_little:

@@ -28,6 +28,9 @@ _CROSSING_ROUNDS: Final = 4
 _TINY: Final = float(np.finfo(np.float64).tiny)
 _SCALE: Final = np.array([1.0, 1.0, 1.0, _LENGTH, _LENGTH, _LENGTH])
 
+LARGEST_UNDONE: Final = 0.36
+"""Of `undone_share`: errors that draw the axes together to that extent leave nothing of where they were."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class TwoAxesMechanism(Mechanism):
@@ -229,9 +232,15 @@ def undone_share(at: TwoAxesMechanism) -> float:
 
 
 def is_phantom(fit: Fit[Mechanism]) -> bool:
-    """Whether two axes nearly in one only share out its rotation: their angles wind, or are not determined."""
-    winding = np.ptp(fit.mechanism.frames, axis=0).max()
-    return bool(angle_sd(fit).max() > _LARGEST_ANGLE_SD or winding > _LARGEST_WINDING)
+    """Whether two axes nearly in one only share out its rotation: their angles wind against each other, or are unknown.
+
+    Angles that wind and do not undo each other are those of a joint that turns on and on.
+    """
+    if angle_sd(fit).max() > _LARGEST_ANGLE_SD:
+        return True
+    at = fit.mechanism
+    winds = bool(np.ptp(at.frames, axis=0).max() > _LARGEST_WINDING)
+    return winds and isinstance(at, TwoAxesMechanism) and undone_share(at) > LARGEST_UNDONE
 
 
 def _line_gap(line: Float, other: Float) -> float:

@@ -21,7 +21,14 @@ from elbowscrew.motion.joint.interval import ClusterMotion, JointInterval, Metho
 from elbowscrew.motion.joint.likelihood import Fit, Mechanism, Poses, fit_mechanism, fit_robustly, refined
 from elbowscrew.motion.joint.lines import Z_LINE, nearest_points
 from elbowscrew.motion.joint.simple_types import Ball, OneAxis
-from elbowscrew.motion.joint.two_axes import TwoAxesMechanism, angle_sd, axes_geometry, geometry_slopes, undone_share
+from elbowscrew.motion.joint.two_axes import (
+    LARGEST_UNDONE,
+    TwoAxesMechanism,
+    angle_sd,
+    axes_geometry,
+    geometry_slopes,
+    undone_share,
+)
 from elbowscrew.motion.joint.type_interval import Evidence, interval_of_type
 
 _MOST_FRAMES: Final = 5000
@@ -29,8 +36,6 @@ _PARALLEL: Final = np.radians(5.0)
 _SURE: Final = 3.0
 _SHARES_THE_HINGE: Final = 1.5
 _LEAST_BESIDE: Final = np.radians(45.0)
-# Errors that draw the axes together to that extent leave nothing of where they were.
-_LARGEST_UNDONE: Final = 0.36
 # Rows of the tilts and of the shifts of both axes among the 12 shared numbers.
 _TILTS: Final = (np.eye(12)[0:2], np.eye(12)[8:10])
 _SHIFTS: Final = (np.eye(12)[2:4], np.eye(12)[10:12])
@@ -241,7 +246,7 @@ def _lines(
         (at.proximal, dq.multiply(dq.conjugate(reference), at.proximal)),
         (dq.multiply(reference, at.distal), at.distal),
     ]
-    apart = undone_share(at) <= _LARGEST_UNDONE or _between(at, interval)[1]
+    apart = undone_share(at) <= LARGEST_UNDONE or _between(at, interval)[1]
     lines = []
     for k, (proximal, distal) in enumerate(poses):
         tilt_sd = max(interval.radius(row[None]) for row in _TILTS[k]) / NORMAL_95
