@@ -30,7 +30,8 @@ from elbowscrew.geometry import quaternion as qn
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.motion.joint.choice import choose_type
 from elbowscrew.motion.joint.fitting import fit_type
-from elbowscrew.motion.joint.likelihood import Poses, fit_mechanism
+from elbowscrew.motion.joint.likelihood import fit_mechanism
+from elbowscrew.motion.joint.poses import Poses
 from elbowscrew.motion.joint.starts import find_two_axes
 from elbowscrew.motion.joint.typed import identify_joint
 

@@ -17,7 +17,8 @@ from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.sensitivity import NORMAL_95
 from elbowscrew.motion.joint.every_frame import Everywhere, numbers_everywhere
 from elbowscrew.motion.joint.interval import JointInterval
-from elbowscrew.motion.joint.likelihood import Fit, Mechanism, Poses, fit_mechanism
+from elbowscrew.motion.joint.likelihood import Fit, Mechanism, fit_mechanism
+from elbowscrew.motion.joint.poses import Poses
 from elbowscrew.motion.joint.simple_types import Ball
 from elbowscrew.motion.joint.starts import _from_lines
 from elbowscrew.motion.joint.two_axes import TwoAxesMechanism, axes_geometry, geometry_slopes

@@ -9,7 +9,7 @@ import pytest
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.motion.joint.choice import choose_type
-from elbowscrew.motion.joint.likelihood import Poses
+from elbowscrew.motion.joint.poses import Poses
 from elbowscrew.motion.joint.typed import identify_joint
 
 

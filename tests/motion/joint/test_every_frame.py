@@ -12,7 +12,7 @@ from elbowscrew.geometry.arrays import Float
 from elbowscrew.motion.joint import every_frame
 from elbowscrew.motion.joint.every_frame import Everywhere, inverse_jacobian, numbers_everywhere
 from elbowscrew.motion.joint.fitting import Fitted, fit_type
-from elbowscrew.motion.joint.likelihood import Poses
+from elbowscrew.motion.joint.poses import Poses
 from elbowscrew.motion.joint.typed import identify_joint
 
 

@@ -20,9 +20,10 @@ from elbowscrew.model import PoseNoise
 from elbowscrew.motion.joint.choice import choose_type
 from elbowscrew.motion.joint.fitting import Fitted, fit_type, shared_covariance
 from elbowscrew.motion.joint.joint_fit import fit_joint
-from elbowscrew.motion.joint.likelihood import Poses, fit_mechanism
+from elbowscrew.motion.joint.likelihood import fit_mechanism
 from elbowscrew.motion.joint.lines import Z_LINE
 from elbowscrew.motion.joint.pieces import influence_pieces
+from elbowscrew.motion.joint.poses import Poses
 from elbowscrew.motion.joint.simple_types import OneAxis
 from elbowscrew.motion.joint.starts import find_two_axes
 from elbowscrew.motion.joint.two_axes import TwoAxesMechanism, axes_geometry, geometry_slopes

@@ -10,7 +10,8 @@ from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.twist import adjoint, inverse_left_jacobian
 from elbowscrew.motion.joint.fitting import Fitted, fit_type
-from elbowscrew.motion.joint.likelihood import Fit, Mechanism, Poses, fit_mechanism, refined, settled
+from elbowscrew.motion.joint.likelihood import Fit, Mechanism, fit_mechanism, refined, settled
+from elbowscrew.motion.joint.poses import Poses
 
 KINDS: tuple[Fitted, ...] = ("rigid", "hinge", "screw_hinge", "two_axes", "ball")
 

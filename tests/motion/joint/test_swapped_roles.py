@@ -12,8 +12,8 @@ import pytest
 from elbowscrew import Analysis, Recording, Settings, analyze, simulate_trial
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry.arrays import Float
-from elbowscrew.motion.joint.likelihood import Poses
 from elbowscrew.motion.joint.lines import Z_LINE
+from elbowscrew.motion.joint.poses import Poses
 from elbowscrew.motion.joint.starts import find_two_axes
 
 

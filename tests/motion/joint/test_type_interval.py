@@ -13,8 +13,9 @@ from elbowscrew.geometry.sensitivity import NORMAL_95
 from elbowscrew.motion.joint.influence import influence_of_fit
 from elbowscrew.motion.joint.interval import SkinMotion, joint_interval
 from elbowscrew.motion.joint.joint_fit import fit_joint
-from elbowscrew.motion.joint.likelihood import Poses, fit_mechanism
+from elbowscrew.motion.joint.likelihood import fit_mechanism
 from elbowscrew.motion.joint.lines import Z_LINE, about_z
+from elbowscrew.motion.joint.poses import Poses
 from elbowscrew.motion.joint.simple_types import OneAxis
 from elbowscrew.motion.joint.two_axes import TwoAxesMechanism, undone_share
 from elbowscrew.motion.joint.type_interval import Evidence, interval_of_type

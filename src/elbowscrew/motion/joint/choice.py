@@ -16,7 +16,8 @@ from elbowscrew.geometry.arrays import Index
 from elbowscrew.model.joint_type import JointTypeName, TypeCandidate
 from elbowscrew.motion.joint.contest import LARGEST_AXIS_SD, NEED_LARGE, NEED_SMALL, ORDER, Contest, over
 from elbowscrew.motion.joint.fitting import Fitted
-from elbowscrew.motion.joint.likelihood import Fit, Mechanism, Poses
+from elbowscrew.motion.joint.likelihood import Fit, Mechanism
+from elbowscrew.motion.joint.poses import Poses
 
 _EXPLAINED: Final = 1.15
 _TIMES_BETTER: Final = 1.5

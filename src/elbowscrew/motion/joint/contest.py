@@ -10,8 +10,9 @@ import numpy as np
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.motion.joint.deciding_frames import deciding_frames
 from elbowscrew.motion.joint.fitting import Fitted, fit_again, fit_type, shared_covariance
-from elbowscrew.motion.joint.likelihood import Fit, Mechanism, Poses, settled
+from elbowscrew.motion.joint.likelihood import Fit, Mechanism, settled
 from elbowscrew.motion.joint.pieces import influence_pieces
+from elbowscrew.motion.joint.poses import Poses
 from elbowscrew.motion.joint.simple_types import OneAxis
 from elbowscrew.motion.joint.two_axes import TwoAxesMechanism, angle_sd, is_phantom
 

@@ -13,8 +13,9 @@ from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry._small_angle import length
 from elbowscrew.geometry.arrays import Float, Index
 from elbowscrew.model.joint_coordinates import JointCoordinates
-from elbowscrew.motion.joint.likelihood import Mechanism, Poses, settled
+from elbowscrew.motion.joint.likelihood import Mechanism, settled
 from elbowscrew.motion.joint.lines import Z_LINE, about_z, line_pose
+from elbowscrew.motion.joint.poses import Poses
 from elbowscrew.motion.joint.simple_types import Ball, OneAxis
 from elbowscrew.motion.joint.two_axes import TwoAxesMechanism
 

@@ -7,7 +7,9 @@ import numpy as np
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.motion.joint.fitting import frames_that_count_as_one
 from elbowscrew.motion.joint.joint_fit import LineFit
-from elbowscrew.motion.joint.likelihood import Poses, fit_mechanism, fit_robustly
+from elbowscrew.motion.joint.likelihood import fit_mechanism
+from elbowscrew.motion.joint.poses import Poses
+from elbowscrew.motion.joint.robust_fit import fit_robustly, refined_robustly
 from elbowscrew.motion.joint.simple_types import OneAxis
 
 
@@ -31,7 +33,7 @@ def fit_direction(joint: Float, covariance: Float, *, robust: bool = False) -> L
     poses = Poses.of(joint, covariance)
     fit = fit_mechanism(OneAxis.start(joint), poses)
     if robust:
-        fit = fit_robustly(fit, poses)
+        fit = refined_robustly(fit_robustly(fit, poses), poses)
     hinge = fit.mechanism
     return LineFit(
         proximal=hinge.proximal,

@@ -16,7 +16,8 @@ from elbowscrew.geometry.quaternion import rotation_matrix_from_quat
 from elbowscrew.geometry.sensitivity import cross_matrix
 from elbowscrew.geometry.twist import adjoint
 from elbowscrew.motion.joint.interval import JointInterval
-from elbowscrew.motion.joint.likelihood import Mechanism, Poses, settled
+from elbowscrew.motion.joint.likelihood import Mechanism, settled
+from elbowscrew.motion.joint.poses import Poses
 from elbowscrew.motion.joint.simple_types import Ball
 
 _MOST_SETTLED: Final = 20_000

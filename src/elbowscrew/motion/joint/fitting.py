@@ -9,7 +9,9 @@ import numpy as np
 
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.motion.joint.joint_fit import _integrated_autocorrelation
-from elbowscrew.motion.joint.likelihood import Fit, M, Mechanism, Poses, fit_mechanism, fit_robustly
+from elbowscrew.motion.joint.likelihood import Fit, M, Mechanism, fit_mechanism
+from elbowscrew.motion.joint.poses import Poses
+from elbowscrew.motion.joint.robust_fit import fit_robustly
 from elbowscrew.motion.joint.simple_types import Ball, OneAxis, Rigid
 from elbowscrew.motion.joint.starts import find_two_axes
 from elbowscrew.motion.joint.two_axes import is_phantom

@@ -10,7 +10,7 @@ from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.twist import adjoint
 from elbowscrew.motion.joint.joint_fit import LineFit, linear_model
-from elbowscrew.motion.joint.likelihood import whitener_of
+from elbowscrew.motion.joint.poses import whitener_of
 
 _LEAST_INFORMATION: Final = 1e-13
 _SAME: Final = 1e-12

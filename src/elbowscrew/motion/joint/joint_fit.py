@@ -18,7 +18,7 @@ from elbowscrew.geometry._small_angle import length
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.quaternion import quat_from_rotation_matrix, rotation_matrix_from_quat
 from elbowscrew.geometry.twist import adjoint, inverse_left_jacobian
-from elbowscrew.motion.joint.likelihood import information_of
+from elbowscrew.motion.joint.poses import information_of
 
 _ITERATIONS: Final = 30
 # Steps shrink until they are round-off, which does not.

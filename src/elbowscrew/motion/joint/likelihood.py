@@ -17,9 +17,9 @@ from typing import ClassVar, Final, Generic, NamedTuple, Self, TypeVar
 import numpy as np
 
 from elbowscrew.geometry import dual_quaternion as dq
-from elbowscrew.geometry._blocks import evenly_thinned
 from elbowscrew.geometry.arrays import Bool, Float, Index
 from elbowscrew.geometry.twist import adjoint, inverse_left_jacobian
+from elbowscrew.motion.joint.poses import COMPONENTS, Poses
 
 M = TypeVar("M", bound="Mechanism")
 M_co = TypeVar("M_co", bound="Mechanism", covariant=True)
@@ -37,54 +37,8 @@ _ROUND_OFF: Final = 1e-13
 _SMALL: Final = 1e-8
 _SHRINKS: Final = 0.9
 _SHORT: Final = 1e-4
-_ROBUST_ROUNDS: Final = 30
-_ROBUST_STEPS: Final = 2
 _BLOCK: Final = 4096
 _TINY: Final = np.finfo(np.float64).tiny
-_LEAST_SCALE: Final = 1e-150  # whose reciprocal has a square
-_COMPONENTS: Final = 6
-# By the residual's degrees of freedom a frame: median of chi-square, and Tukey's constant with 95 % efficiency, from
-# the asymptotic variance of an M-estimate of location in so many dimensions (Maronna, Martin and Yohai 2006).
-_MEDIAN_SQUARE: Final = {1: 0.455, 2: 1.386, 3: 2.366, 4: 3.357, 5: 4.351, 6: 5.348}
-_TUKEY: Final = {1: 4.685, 2: 5.123, 3: 5.490, 4: 5.810, 5: 6.096, 6: 6.356}
-
-
-class Poses(NamedTuple):
-    """Relative poses with what their errors are weighed by.
-
-    Attributes
-    ----------
-    joint : ndarray, shape (F, 8)
-        Distal body in the proximal one, any signs.
-    whitener : ndarray, shape (F, 6, 6) or (F, 3, 6)
-        ``U`` with ``U^T U`` the inverse covariance of each pose's error in the distal body's frame; three rows where
-        the positions were not measured.
-    """
-
-    joint: Float
-    whitener: Float
-
-    @classmethod
-    def of(cls, joint: Float, covariance: Float) -> Poses:
-        """Poses (F, 8) and the covariances (F, 6, 6) of their errors in the distal body's frame.
-
-        The variance of positions that were not measured is infinite (`fitted_covariance`).
-        """
-        return cls(joint, whitener_of(information_of(np.broadcast_to(covariance, (len(joint), 6, 6)))))
-
-    @property
-    def located(self) -> bool:
-        """Whether the positions were measured."""
-        return int(self.whitener.shape[-2]) == _COMPONENTS
-
-    def at(self, rows: Index | slice) -> Poses:
-        """Give the poses of some frames."""
-        return Poses(self.joint[rows], self.whitener[rows])
-
-    def thinned(self, most: int) -> tuple[Poses, Index]:
-        """At most so many frames, evenly spread, and which they are."""
-        rows = evenly_thinned(np.arange(len(self.joint)), most)
-        return self.at(rows), rows
 
 
 class Linear(NamedTuple):
@@ -211,7 +165,7 @@ class Fit(NamedTuple, Generic[M_co]):
     @property
     def told(self) -> tuple[int, ...] | None:
         """Which of the shared numbers the poses tell of; None where it is all of them."""
-        return None if self.whitened.shape[-1] == _COMPONENTS else self.mechanism.turning
+        return None if self.whitened.shape[-1] == COMPONENTS else self.mechanism.turning
 
     @property
     def frame_freedom(self) -> int:
@@ -421,50 +375,40 @@ def refined(fit: Fit[M], poses: Poses) -> Fit[M]:
     at = _reduced(mechanism, poses, weight)
     size = np.inf
     for _ in range(_REFINEMENTS if at.gradient.size else 0):
-        scale = np.sqrt(np.maximum(np.diag(at.information), _TINY))
-        step = np.linalg.lstsq(at.information / np.outer(scale, scale), at.gradient / scale, rcond=1e-13)[0] / scale
-        own = at.own_step - at.own_by_shared @ step
-        before, size = size, float(max(np.abs(step).max(), np.abs(own).max(initial=0.0)))
-        after = mechanism.moved(mechanism.whole(step), own)
+        before = size
+        after, size = _after_full_step(mechanism, at)
         new = _reduced(after, poses, weight)
         if size > _SHORT and not weight @ new.here <= weight @ at.here:
             break
         mechanism, at = after, new
-        if size < _ROUND_OFF or _SHRINKS * before < size < _SMALL:
+        if is_round_off(size, before):
             break
     return _fitted(mechanism, at, weight)
+
+
+def is_round_off(size: float, before: float) -> bool:
+    """Whether steps have shrunk until they are round-off, by the size of the last and of the one before it."""
+    return size < _ROUND_OFF or _SHRINKS * before < size < _SMALL
+
+
+def stepped(fit: Fit[M], poses: Poses, weight: Float) -> tuple[Fit[M], float]:
+    """One step of Gauss and Newton under the weights (F,), and how far it led, rad and m."""
+    mechanism, size = _after_full_step(fit.mechanism, _reduced(fit.mechanism, poses, weight))
+    return _fitted(mechanism, _reduced(mechanism, poses, weight), weight), size
+
+
+def _after_full_step(mechanism: M, at: _Reduced) -> tuple[M, float]:
+    scale = np.sqrt(np.maximum(np.diag(at.information), _TINY))
+    step = np.linalg.lstsq(at.information / np.outer(scale, scale), at.gradient / scale, rcond=1e-13)[0] / scale
+    own = at.own_step - at.own_by_shared @ step
+    size = float(max(np.abs(step).max(), np.abs(own).max(initial=0.0)))
+    return mechanism.moved(mechanism.whole(step), own), size
 
 
 def _fitted(mechanism: M, at: _Reduced, weight: Float) -> Fit[M]:
     return Fit(
         mechanism, at.square, at.whitened, at.residual, weight, at.information, at.own_covariance, -at.own_by_shared
     )
-
-
-def fit_robustly(fit: Fit[M], poses: Poses) -> Fit[M]:
-    """Go on from a fit by Tukey's biweight, after a start by weights 1/distance that forgets the outliers.
-
-    References
-    ----------
-    Maronna, Martin and Yohai 2006; the scale is the median distance.
-    """
-    freedom = fit.frame_freedom
-    if not freedom:  # each frame is met exactly
-        return fit
-    cost = np.inf
-    for k in range(_ROBUST_ROUNDS):
-        distance = np.sqrt(fit.square)
-        scale = float(np.median(distance)) / np.sqrt(_MEDIAN_SQUARE[freedom])
-        relative = distance / max(scale, _LEAST_SCALE)
-        if k < _ROBUST_ROUNDS // 3:
-            weight = 1.0 / np.maximum(relative, 1.0)
-        else:
-            weight = np.maximum(1.0 - (relative / _TUKEY[freedom]) ** 2, 0.0) ** 2
-        fit = fit_mechanism(fit.mechanism, poses, iterations=_ROBUST_STEPS, weight=weight)
-        if k > _ROBUST_ROUNDS // 3 and abs(fit.variance - cost) <= 1e-10 * cost:
-            break
-        cost = fit.variance
-    return fit
 
 
 def settled(mechanism: M, poses: Poses, *, rounds: int = 3) -> Fit[M]:
@@ -501,20 +445,3 @@ def settled(mechanism: M, poses: Poses, *, rounds: int = 3) -> Fit[M]:
 def residual_twist(model: Float, joint: Float) -> Float:
     """Twist (F, 6) that leads from the model's poses to the measured ones, in the model's frame."""
     return 2.0 * dq.log(dq.canonical(dq.multiply(dq.conjugate(model), joint)))
-
-
-def information_of(covariance: Float) -> Float:
-    """Inverse of covariances (..., 6, 6); 0 for positions whose variance is infinite."""
-    if np.isfinite(covariance[..., 3:, 3:]).all():
-        return np.asarray(np.linalg.inv(covariance), dtype=np.float64)
-    found = np.zeros(covariance.shape)
-    found[..., :3, :3] = np.linalg.inv(covariance[..., :3, :3])
-    return found
-
-
-def whitener_of(information: Float) -> Float:
-    """``U`` with ``U^T U`` the information (..., 6, 6): upper triangular, with three rows if positions have none."""
-    if information[..., 3:, 3:].any():
-        return np.swapaxes(np.linalg.cholesky(information), -1, -2)
-    turning = np.swapaxes(np.linalg.cholesky(information[..., :3, :3]), -1, -2)
-    return np.concatenate([turning, np.zeros(turning.shape)], axis=-1)

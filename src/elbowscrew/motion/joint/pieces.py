@@ -8,7 +8,8 @@ import numpy as np
 
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.twist import adjoint
-from elbowscrew.motion.joint.likelihood import Fit, Mechanism, Poses
+from elbowscrew.motion.joint.likelihood import Fit, Mechanism
+from elbowscrew.motion.joint.poses import Poses
 
 
 class Pieces(NamedTuple):

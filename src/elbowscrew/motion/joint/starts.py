@@ -18,8 +18,9 @@ from elbowscrew.geometry._small_angle import length
 from elbowscrew.geometry.arrays import Float, Index
 from elbowscrew.geometry.quaternion import rotation_matrix_from_quat
 from elbowscrew.geometry.twist import adjoint
-from elbowscrew.motion.joint.likelihood import Fit, Poses, fit_mechanism, race
+from elbowscrew.motion.joint.likelihood import Fit, fit_mechanism, race
 from elbowscrew.motion.joint.lines import Z_LINE, about_z, angle_about_z, least_solution, line_pose, mean_rotation_pair
+from elbowscrew.motion.joint.poses import Poses
 from elbowscrew.motion.joint.simple_types import OneAxis
 from elbowscrew.motion.joint.two_axes import TwoAxesMechanism, is_phantom
 

@@ -11,7 +11,8 @@ from elbowscrew.geometry.arrays import Float, Index
 from elbowscrew.geometry.twist import adjoint
 from elbowscrew.motion.joint.influence import Influence, influence_of_poses
 from elbowscrew.motion.joint.interval import ClusterMotion, JointInterval, SkinMotion, joint_interval
-from elbowscrew.motion.joint.likelihood import Fit, Mechanism, Poses
+from elbowscrew.motion.joint.likelihood import Fit, Mechanism
+from elbowscrew.motion.joint.poses import Poses
 from elbowscrew.motion.joint.simple_types import Ball
 
 

@@ -18,8 +18,10 @@ from elbowscrew.motion.joint.coordinates import coordinates_of
 from elbowscrew.motion.joint.every_frame import Everywhere, FrameNumbers, numbers_everywhere, reference_numbers
 from elbowscrew.motion.joint.fitting import Fitted, frames_that_count_as_one, shared_covariance
 from elbowscrew.motion.joint.interval import ClusterMotion, JointInterval, Method, SkinMotion
-from elbowscrew.motion.joint.likelihood import Fit, Mechanism, Poses, fit_mechanism, fit_robustly, refined
+from elbowscrew.motion.joint.likelihood import Fit, Mechanism, fit_mechanism, refined
 from elbowscrew.motion.joint.lines import Z_LINE, nearest_points
+from elbowscrew.motion.joint.poses import Poses
+from elbowscrew.motion.joint.robust_fit import fit_robustly, refined_robustly
 from elbowscrew.motion.joint.simple_types import Ball, OneAxis
 from elbowscrew.motion.joint.two_axes import (
     LARGEST_UNDONE,
@@ -96,7 +98,7 @@ def identify_joint(
     most, rows = poses.thinned(_MOST_FRAMES)
     evidence = Evidence(noise_known=noise_known, clusters=clusters, skin=skin)
     fit = fit_mechanism(found.mechanism.placed(most.joint), most)
-    fit = fit_robustly(fit, most) if robust else refined(fit, most)
+    fit = refined_robustly(fit_robustly(fit, most), most) if robust else refined(fit, most)
     if everywhere is None:
         of_each = np.broadcast_to(covariance, (len(joint), 6, 6))
         everywhere = Everywhere(joint, lambda rows: of_each[rows], np.ones(len(joint)))
