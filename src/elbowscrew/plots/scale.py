@@ -103,7 +103,14 @@ class Scale(Artist):
 
 
 def _tick_of(axis: Any, *, lies: bool) -> tuple[Text, Line2D]:
-    """Label and mark of a tick of an axis, which are those of any other."""
+    """Label and mark of a tick of an axis, which are those of any other, made once for all that measure and draw it."""
+    if not hasattr(axis, "one_tick"):
+        axis.one_tick = _new_tick(axis, lies=lies)
+    label, marks = axis.one_tick
+    return label, marks
+
+
+def _new_tick(axis: Any, *, lies: bool) -> tuple[Text, Line2D]:
     ax, kind = axis.axes, "xtick" if lies else "ytick"
     usual: Any = mpl.rcParams
     look = {name: usual[f"{kind}.major.{name}"] for name in ("size", "width", "pad")}
@@ -111,7 +118,7 @@ def _tick_of(axis: Any, *, lies: bool) -> tuple[Text, Line2D]:
     transform, vertical, horizontal = (ax.get_xaxis_text1_transform if lies else ax.get_yaxis_text1_transform)(
         look["size"] + look["pad"]
     )
-    label = Text(
+    label = _Label(
         color=color, fontsize=usual[f"{kind}.labelsize"], va=vertical, ha=horizontal, transform=transform
     )  # fmt: skip
     label.set_figure(ax.figure)
@@ -125,14 +132,30 @@ def _tick_of(axis: Any, *, lies: bool) -> tuple[Text, Line2D]:
 
 
 _BOXES: Final[dict[Any, tuple[float, float, float, float]]] = {}
+_LAYOUTS: Final[dict[Any, Any]] = {}
+
+
+class _Label(Text):
+    """The label of a tick: the same numbers stand in the figures of all trials."""
+
+    def _get_layout(self, renderer: Any) -> Any:
+        lay_out: Any = super()._get_layout  # type: ignore[misc]
+        if not isinstance(renderer, RendererAgg):
+            return lay_out(renderer)
+        return kept(_LAYOUTS, (self.get_text(), *_look(self, renderer)), lambda: lay_out(renderer))
+
+
+def _look(text: Any, renderer: Any) -> tuple[Any, ...]:
+    """What a text's size hangs on beside its word."""
+    font = hash(text.get_fontproperties())
+    return renderer.dpi, font, text.get_rotation(), text.get_ha(), text.get_va(), text.get_rotation_mode()
 
 
 def _about(text: Any, word: str, renderer: Any) -> tuple[float, float, float, float]:
     """Corners of a word about the point where a text puts it, pixels; kept of what is drawn in pixels."""
     if not isinstance(renderer, RendererAgg):
         return _measured(text, word, renderer)
-    look = hash(text.get_fontproperties()), text.get_rotation(), text.get_ha(), text.get_va(), text.get_rotation_mode()
-    return kept(_BOXES, (word, renderer.dpi, look), lambda: _measured(text, word, renderer))
+    return kept(_BOXES, (word, *_look(text, renderer)), lambda: _measured(text, word, renderer))
 
 
 def _measured(text: Any, word: str, renderer: Any) -> tuple[float, float, float, float]:
