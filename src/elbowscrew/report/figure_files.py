@@ -38,7 +38,8 @@ _METADATA: Final[dict[str, dict[str, Any]]] = {
 _EPS_DATE: Final = re.compile(rb"^%%CreationDate:.*\n", re.MULTILINE)
 _TIFF_DOTS_PER_INCH: Final = 600
 _PNG: Final = b"\x89PNG\r\n\x1a\n"
-_COMPRESSION: Final = 3  # less than half the time of the default, for a sixth more bytes
+_COMPRESSION: Final = 2  # a third of the time of the default, for a fifth more bytes
+_MEMORY: Final = 6  # of 9: its tables stay in fast memory
 _INCH_M: Final = 0.0254
 
 
@@ -137,6 +138,11 @@ def _pixels(figure: Figure) -> NDArray[np.uint8]:
     return np.asarray(canvas.buffer_rgba(), dtype=np.uint8)
 
 
+def _compressed(rows: NDArray[np.uint8]) -> bytes:
+    stream = zlib.compressobj(_COMPRESSION, memLevel=_MEMORY)
+    return stream.compress(rows.data) + stream.flush()
+
+
 def _png(pixels: NDArray[np.uint8], dots_per_inch: float) -> bytes:
     """Write pixels (height, width, 4), but not how opaque they are, without a filter.
 
@@ -155,7 +161,7 @@ def _png(pixels: NDArray[np.uint8], dots_per_inch: float) -> bytes:
     parts = (
         (b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)),
         (b"pHYs", struct.pack(">IIB", per_meter, per_meter, 1)),
-        (b"IDAT", zlib.compress(rows.data, _COMPRESSION)),
+        (b"IDAT", _compressed(rows)),
         (b"IEND", b""),
     )
     return _PNG + b"".join(
