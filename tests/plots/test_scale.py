@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 from typing import Any, cast
 
 import numpy as np
@@ -9,9 +10,10 @@ import pytest
 from drawn_trials import drawn_trial
 from matplotlib.figure import Figure
 from matplotlib.transforms import Bbox
+from mpl_toolkits.mplot3d.axes3d import Axes3D
 from numpy.typing import NDArray
 
-from elbowscrew.plots import canvas, scale
+from elbowscrew.plots import canvas, scale, style
 from elbowscrew.plots.layout import settle
 from elbowscrew.plots.registry import FIGURES
 from elbowscrew.plots.scale import draw_at_once
@@ -43,6 +45,26 @@ def test_a_figure_drawn_at_once_has_the_pixels_of_one_that_matplotlib_draws(
         draw_at_once(figure)
         assert any(isinstance(one, scale.Scale) for ax in figure.axes for one in ax.get_children())
         assert np.array_equal(pixels(figure), expected)
+
+
+def test_views_in_space_and_legends_are_as_matplotlib_draws_them(monkeypatch: pytest.MonkeyPatch) -> None:
+    def drawn() -> tuple[bytes, list[NDArray[np.uint8]]]:
+        with publication_style():
+            figure = FIGURES["joint"](drawn_trial("two axes"), width_mm=170.0)
+            settle(figure)
+            found = [pixels(figure)]
+            stream = io.BytesIO()
+            figure.savefig(stream, format="svg", metadata={"Date": None})
+            figure.set_dpi(110.0)
+            return stream.getvalue(), [*found, pixels(figure)]
+
+    ours = drawn()
+    monkeypatch.setattr(canvas, "Space", Axes3D)
+    monkeypatch.setattr(style, "_measured_once", lambda _box: None)
+    expected = drawn()
+    assert ours[0] == expected[0]
+    for found, usual in zip(ours[1], expected[1], strict=True):
+        assert np.array_equal(found, usual)
 
 
 @pytest.mark.parametrize(("name", "kind", "width_mm"), DRAWN)
@@ -77,7 +99,7 @@ def test_panels_stand_in_line() -> None:
 
 def test_a_figure_is_the_same_whatever_was_drawn_before() -> None:
     trial = drawn_trial("short")
-    for known in (canvas._SIZES, canvas._STAMPS, scale._BOXES):
+    for known in (canvas._SIZES, canvas._STAMPS, scale._BOXES, scale._LAYOUTS):
         known.clear()
     fresh = figure_files(trial, ["joint"], ["svg", "png"])
     figure_files(drawn_trial("gappy"), ["joint"], ["png"])

@@ -11,9 +11,11 @@ from typing import Any, Final, cast
 import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import RendererAgg
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties, fontManager
+from matplotlib.offsetbox import OffsetBox
 
 from elbowscrew.errors import UsageError, shown
 from elbowscrew.plots.canvas import Sheet
@@ -183,7 +185,27 @@ def legend(figure: Figure, *panels: Axes, below: bool = False) -> None:
     rows = -(-len(keys) // columns)
     figure.set_size_inches(width, height + (1.5 * rows + 1.0) * TEXT / 72.0)
     place: Any = "outside lower center" if below else "outside upper center"
-    figure.legend(keys.values(), keys.keys(), loc=place, ncols=columns)
+    made: Any = figure.legend(keys.values(), keys.keys(), loc=place, ncols=columns)
+    _measured_once(made._legend_box)
+
+
+def _measured_once(box: Any) -> None:
+    """Let a box of a legend, and those within it, keep their size in pixels, which matplotlib finds several times."""
+    measure = box.get_bbox
+    found: dict[float, Any] = {}
+
+    def get_bbox(renderer: Any) -> Any:
+        if not isinstance(renderer, RendererAgg):
+            return measure(renderer)
+        if renderer.dpi not in found:
+            found.clear()
+            found[renderer.dpi] = measure(renderer)
+        return found[renderer.dpi]
+
+    box.get_bbox = get_bbox
+    for part in box.get_children():
+        if isinstance(part, OffsetBox):
+            _measured_once(part)
 
 
 def _columns(figure: Figure, labels: list[str], width: float) -> int:
