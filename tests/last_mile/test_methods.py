@@ -15,6 +15,7 @@ from scipy.spatial.transform import Rotation
 from told_results import Told
 
 from elbowscrew import Recording, RigidBody, Settings, analyze, read_recording, save_analysis, simulate_trial
+from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.report.methods import methods_of
 from elbowscrew.results.trial_views import view_of_result
 
@@ -64,6 +65,26 @@ def ball_joint() -> Recording:
     return Recording.from_bodies([body], rate_hz=100.0)
 
 
+def no_joint() -> Recording:
+    """Rotations about a point that goes to and fro by 15 cm."""
+    turn = np.linspace(0.0, 2.0 * np.pi, 150)
+    R = Rotation.from_rotvec(np.stack([np.sin(turn), 0.4 * np.sin(2.0 * turn), 0.3 * np.cos(turn)], axis=1))
+    center = 0.15 * np.stack([np.sin(2.0 * turn), np.cos(3.0 * turn), np.sin(turn + 1.0)], axis=1)
+    body = RigidBody.from_quaternions("Forearm", R.as_quat()[:, [3, 0, 1, 2]], center + R.apply([0.0, -0.25, 0.0]))
+    return Recording.from_bodies([body], rate_hz=100.0)
+
+
+def astray() -> Recording:
+    """A joint of two axes, a twelfth of whose poses are elsewhere."""
+    exact = two_axes_moving().bodies[0].dual_quat_lab_body
+    rng = np.random.default_rng(4)
+    errors = rng.normal(size=(len(exact), 6)) * np.repeat([0.15, 0.04], 3)
+    errors[rng.random(len(exact)) >= 0.08] = 0.0
+    poses = dq.multiply(exact, dq.exp(0.5 * errors + rng.normal(0.0, 2e-4, errors.shape)))
+    body = RigidBody(name="Forearm", dual_quat_lab_body=poses, loss=np.zeros(len(exact), dtype=np.uint8))
+    return Recording.from_bodies([body], rate_hz=100.0)
+
+
 def from_file() -> Recording:
     return read_recording(Path(__file__).parent.parent.parent / "sample_data" / "elbow_moving_arm_mm.csv")
 
@@ -85,6 +106,11 @@ CASES: dict[str, tuple[Callable[[], Recording], dict[str, Any]]] = {
     "ball": (ball, {}),
     "two axes": (two_axes_moving, {}),
     "ball joint": (ball_joint, {}),
+    "no joint": (no_joint, {}),
+    "astray": (astray, {}),
+    "astray, robust": (astray, {"robust": True}),
+    "stated rigid": (USUAL, {"joint_type": "rigid"}),
+    "stated two axes": (USUAL, {"joint_type": "two-axes"}),
     "own angles": (USUAL, {"method": "joint"}),
     "own two angles": (two_axes_moving, {"method": "joint"}),
     "stated hinge": (USUAL, {"joint_type": "hinge"}),
@@ -177,13 +203,48 @@ def reference(case: Case) -> str:
 def single_axis(case: Case) -> str:
     """By how far the screw-hinge's pitch is from none."""
     fit = case.told.joint["screw_hinge"]
+    stated = case.settings.joint_type
+    if stated in ("rigid", "two_axes", "ball"):
+        return "stated otherwise"
     if fit is None:
         return "none"
-    if case.settings.joint_type != "auto":
+    if stated != "auto":
         return f"{case.settings.joint_type.replace('_', '-')}, stated"
     if fit["pitch_sd_mm_per_rad"] is None:
         return "hinge, unsure"
     return "screw-hinge" if abs(fit["pitch_mm_per_rad"]) > 3.5 * fit["pitch_sd_mm_per_rad"] else "hinge"
+
+
+def has_one(case: Case) -> bool:
+    return single_axis(case) not in ("none", "stated otherwise")
+
+
+def other_joint(case: Case) -> str:
+    """What the joint is that has no single axis."""
+    if has_one(case):
+        return "none"
+    kind = case.told.joint["joint_type"]["type"]
+    return "tried" if kind in ("free", "undetermined") else str(kind)
+
+
+def status(case: Case) -> str:
+    return "stated" if single_axis(case) == "stated otherwise" else str(case.told.joint["joint_type"]["status"])
+
+
+def first_word(case: Case) -> str:
+    return {"tried": "a rigid joint", "none": "?"}.get(other_joint(case), "the joint")
+
+
+def tried(case: Case) -> str:
+    """Each type that was fitted, and what it leaves."""
+    names = {"rigid": "a rigid joint", "hinge": "a hinge", "screw_hinge": "a screw-hinge"}
+    names |= {"two_axes": "two axes", "ball": "a ball joint"}
+    parts = []
+    for one in case.told.joint["joint_type"]["candidates"]:
+        verb = "leave" if one["type"] == "two_axes" else "leaves"
+        left = f"{names[one['type']]} {verb} {one['residual_deg']:.3g}° and {one['residual_mm'] or 0.0:.3g} mm RMS"
+        parts.append(left + ("" if one["valid"] else " (not determined by the motion)"))
+    return f"{', '.join(parts[:-1])}, and {parts[-1]}" if parts[1:] else "".join(parts)
 
 
 def unexplained(case: Case) -> str:
@@ -347,6 +408,9 @@ DECISIONS: dict[str, tuple[Outcome, Sentences]] = {
             "by chance (99.73 %).",
             "hinge, unsure": "; the hinge is reported, as no error can be given for the pitch of the screw-hinge.",
             "hinge, stated": "; the hinge is reported, as stated.",
+            "stated otherwise": "No single axis is reported, as the joint was stated ("
+            + {"rigid": "a rigid joint", "two_axes": "two axes"}.get(case.settings.joint_type, "?")
+            + "); the mean of the helical axes,",
             "none": f"The motion has no single axis (a hinge leaves {unexplained(case)} unexplained)",
         },
     ),
@@ -358,23 +422,26 @@ DECISIONS: dict[str, tuple[Outcome, Sentences]] = {
         },
     ),
     "other joint": (
-        lambda case: next((kind for kind in ("two_axes", "ball") if case.told.joint[kind] is not None), "none"),
+        other_joint,
         lambda case: {
             "two_axes": "the joint has two axes, one fixed in each segment "
-            f"({case.told.joint['joint_type']['status']}), so that θ mixes its rotations",
-            "ball": f"the joint is a ball joint ({case.told.joint['joint_type']['status']}), "
-            "so that θ mixes its rotations",
+            f"({status(case)}), so that θ mixes its rotations",
+            "ball": f"the joint is a ball joint ({status(case)}), so that θ mixes its rotations",
+            "rigid": "the joint is rigid (stated). The dispersion",
+            "tried": f"{tried(case)}. None of them is reported ({case.told.joint['joint_type']['reason']}). The disp",
         },
     ),
     "robust": (
-        lambda case: "none" if single_axis(case) == "none" else str(case.settings.robust),
+        lambda case: f"{'one axis' if has_one(case) else 'another joint'}, {case.settings.robust}",
         lambda case: {
-            "True": "as a hinge and as a screw-hinge, frames weighted by Tukey's biweight;",
-            "False": "as a hinge and as a screw-hinge;",
+            "one axis, True": "as a hinge and as a screw-hinge, frames weighted by Tukey's biweight;",
+            "one axis, False": "as a hinge and as a screw-hinge;",
+            "another joint, True": "relative poses, frames weighted by Tukey's biweight, the joint has two axes",
+            "another joint, False": f"By maximum likelihood of all relative poses, {first_word(case)} ",
         },
     ),
     "fitted frames": (
-        lambda case: "none" if single_axis(case) == "none" else "some",
+        lambda case: "some" if has_one(case) else "none",
         lambda case: {"some": f"to the relative poses of {int(case.told.screw['valid'].sum())} frames by maximum"},
     ),
     "interval": (interval, interval_texts),

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Final
 
+from elbowscrew.choices import JOINT_TYPE_WORDS
 from elbowscrew.model.anatomy import BonyJoint
-from elbowscrew.model.joint_summary_types import JointSummary, NoiseOfBodies
+from elbowscrew.model.joint_summary_types import JointSummary, JointTypeSummary, NoiseOfBodies
 from elbowscrew.model.summary_types import ModelSummary, TrialSummary
 from elbowscrew.report.bones_words import bones_methods
 from elbowscrew.report.facts import Facts
@@ -180,11 +181,13 @@ def _joint_axis(trial: TrialView) -> Iterator[str]:
     if preferred is None or fit is None:
         share = joint["unexplained_share"]
         left = "more rotation than there is about it" if share is None else f"{100.0 * share:.2g} % of its rotation"
-        yield (
-            f"The motion has no single axis (a hinge leaves {left} unexplained); the mean of the helical axes, "
-            "weighted by sin²(θ/2), is given (Woltring 1994)."
-        )
-        yield from _other_joint(joint, located=trial.located)
+        why = f"The motion has no single axis (a hinge leaves {left} unexplained)"
+        if joint["joint_type"]["status"] == "forced":
+            why = (
+                f"No single axis is reported, as the joint was stated ({JOINT_TYPE_WORDS[joint['joint_type']['type']]})"
+            )
+        yield f"{why}; the mean of the helical axes, weighted by sin²(θ/2), is given (Woltring 1994)."
+        yield from _other_joint(joint, located=trial.located, robust=trial.settings.robust)
     else:
         robust = ", frames weighted by Tukey's biweight" if trial.settings.robust else ""
         if screw_hinge is None:
@@ -234,21 +237,52 @@ def _joint_axis(trial: TrialView) -> Iterator[str]:
     )
 
 
-def _other_joint(joint: JointSummary, *, located: bool) -> Iterator[str]:
-    """Tell of two axes or a center, where the motion has them."""
-    two, ball, kind = joint["two_axes"], joint["ball"], joint["joint_type"]
-    ball_by_turning = two is None and ball is None and kind["type"] == "ball"
-    if two is None and ball is None and not ball_by_turning:
-        return
+def _other_joint(joint: JointSummary, *, located: bool, robust: bool) -> Iterator[str]:
+    """Tell which joint it is that has no single axis, or which ones were tried where none was found."""
+    kind = joint["joint_type"]
+    weighed = ", frames weighted by Tukey's biweight" if robust else ""
+    match kind["type"]:
+        case "two_axes":
+            found = "has two axes, one fixed in each segment"
+        case "ball":
+            found = "is a ball joint"
+        case "rigid":
+            found = "is rigid"
+        case _:
+            if kind["candidates"]:
+                yield (
+                    f"By maximum likelihood of all relative poses{weighed}, {_joined(_left(kind, located=located))}. "
+                    f"None of them is reported ({kind['reason']})."
+                )
+            return
     status = "stated" if kind["status"] == "forced" else kind["status"]
-    found = "has two axes, one fixed in each segment" if two is not None else "is a ball joint"
     yield (
-        f"By maximum likelihood of all relative poses, the joint {found} ({status}), so that θ mixes its rotations; "
-        "its own angles are given for each frame."
+        f"By maximum likelihood of all relative poses{weighed}, the joint {found} ({status})"
+        + (
+            "."
+            if kind["type"] == "rigid"
+            else ", so that θ mixes its rotations; its own angles are given for each frame."
+        )
     )
     if kind["interval_method"] is not None:
         whose = "marker clusters'" if located else "sensors'"
         yield f"The 95 % intervals are those of the {whose} frames, {kind['interval_method']}."
+
+
+def _left(kind: JointTypeSummary, *, located: bool) -> Iterator[str]:
+    """Say what each type that was tried leaves."""
+    for one in kind["candidates"]:
+        name, verb = JOINT_TYPE_WORDS[one["type"]], "leave" if one["type"] == "two_axes" else "leaves"
+        rotation, shift = one["residual_deg"], one["residual_mm"]
+        left = "" if rotation is None else f"{rotation:.3g}°"
+        if located and shift is not None:
+            left += f" and {shift:.3g} mm"
+        yield f"{name} {verb} {left} RMS" + ("" if one["valid"] else " (not determined by the motion)")
+
+
+def _joined(parts: Iterator[str]) -> str:
+    *first, last = parts
+    return f"{', '.join(first)}, and {last}" if first else last
 
 
 def _model(trial: TrialView) -> Iterator[str]:
