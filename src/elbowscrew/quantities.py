@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from enum import Enum
 from typing import Any, Final
 
@@ -51,19 +52,31 @@ def power_of_ten(power: int) -> str:
     return f"10{str(power).translate(_RAISED)}"
 
 
-def rounded(value: float, digits: int) -> str:
-    """Write a number to so many digits that count, a very small or large one with a power of ten.
+def in_digits(value: float | None, digits: int = 2) -> str:
+    """Write a number to so many digits that count, in letters that any terminal has; a dash of none.
 
     Examples
     --------
-    >>> rounded(0.123, 2), rounded(123.0, 2), rounded(5.5e-5, 2)
+    >>> in_digits(0.123), in_digits(123.0), in_digits(5.5e-5)
+    ('0.12', '120', '5.5e-05')
+    """
+    if value is None or math.isnan(value):
+        return "–"
+    text = f"{value:.{digits}g}"
+    power = text.partition("e+")[2]
+    return f"{float(text):.0f}" if power and int(power) < _LONG else text
+
+
+def rounded(value: float | None, digits: int = 2) -> str:
+    """Write a number to so many digits that count, a very small or large one with a power of ten; a dash of none.
+
+    Examples
+    --------
+    >>> rounded(0.123), rounded(123.0), rounded(5.5e-5)
     ('0.12', '120', '5.5·10⁻⁵')
     """
-    mantissa, _, power = f"{value:.{digits}g}".partition("e")
-    if not power:
-        return mantissa
-    exponent = int(power)
-    return f"{float(f'{mantissa}e{power}'):.0f}" if 0 < exponent < _LONG else f"{mantissa}·{power_of_ten(exponent)}"
+    mantissa, _, power = in_digits(value, digits).partition("e")
+    return f"{mantissa}·{power_of_ten(int(power))}" if power else mantissa
 
 
 def unit_suffixes(angle_unit: AngleUnit, length_unit: LengthUnit) -> dict[Quantity, str]:

@@ -183,7 +183,9 @@ def radii_of(told: Told) -> str:
         return f"direction within {axis['axis_cone95_deg']:.2g}°, place within {axis['point_radius95_mm']:.2g} mm"
     if two is not None:
         return "; ".join(f"axis {k} within {two[f'axis{k}']['cone95_deg']:.2g}°" for k in (1, 2))
-    return f"center within {ball['radius95_mm']:.2g} mm"
+    mantissa, _, power = f"{ball['radius95_mm']:.2g}".partition("e-")  # without noise it is very small
+    raised = str(int(power or 0)).translate(str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹"))
+    return f"center within {mantissa}{f'·10⁻{raised}' if power else ''} mm"
 
 
 def test_the_page_tells_how_many_entries_are_filled_in(told: Told) -> None:

@@ -12,7 +12,7 @@ from rich.table import Table
 from rich.text import Text
 
 from elbowscrew.cli.render_joint import anatomy_rows, joint_axis_text, joint_text, place_text
-from elbowscrew.cli.text import emit, one_line, printable, rounded, tell, vector_text
+from elbowscrew.cli.text import emit, one_line, printable, tell, two_decimals, vector_text
 
 if TYPE_CHECKING:
     from elbowscrew.model.comparison_summary_types import ComparisonSummary, ModelChoice, TrialsSummary
@@ -67,14 +67,14 @@ def analysis_table(summary: Summary, folder: Path) -> None:
         ("Frames", _frames(trial)),
         (
             "Angle θ",
-            f"{rounded(motion['theta_min_deg'])} to {rounded(motion['theta_max_deg'])} deg"
+            f"{two_decimals(motion['theta_min_deg'])} to {two_decimals(motion['theta_max_deg'])} deg"
             + ("" if motion["signed"] else ", without a sense"),
         ),
         ("Inversion", _inversions(motion["inversion_frames"])),
         (
             "Slide",
-            f"median {rounded(motion['slide_median_mm'])} mm ({rounded(motion['slide_min_mm'])} to "
-            f"{rounded(motion['slide_max_mm'])})"
+            f"median {two_decimals(motion['slide_median_mm'])} mm ({two_decimals(motion['slide_min_mm'])} to "
+            f"{two_decimals(motion['slide_max_mm'])})"
             if trial["positions"]
             else "not known, as all places: there are orientations and no positions",
         ),
@@ -100,8 +100,9 @@ def analysis_table(summary: Summary, folder: Path) -> None:
         *_fitted_peaks(model),
         (
             "Model error",
-            f"rotation {rounded(model['rms_angle_error_deg'])} deg RMS, {rounded(model['max_angle_error_deg'])} at "
-            f"most (frame {model['max_angle_error_frame']})" + _displacement(model),
+            f"rotation {two_decimals(model['rms_angle_error_deg'])} deg RMS, "
+            f"{two_decimals(model['max_angle_error_deg'])} at most (frame {model['max_angle_error_frame']})"
+            + _displacement(model),
         ),
         ("Results", str(folder)),
         *([("Open", str(page))] if (page := folder / "report.html").is_file() else []),
@@ -134,7 +135,7 @@ def comparison_table(summary: ComparisonSummary | TrialsSummary, folder: Path) -
         for one in summary["best_by_keyframes"]:
             errors = one["rms_displacement_mm"], one["max_displacement_mm"]
             errors = errors if unit == "mm" else (one["rms_angle_error_deg"], one["max_angle_error_deg"])
-            rms, most = map(rounded, errors)
+            rms, most = map(two_decimals, errors)
             table.add_row(*_model(one), rms, most, f"{one['ns_per_frame']:.0f}")
         refused = f", {summary['refused']} of them refused" if summary["refused"] else ""
         rows = [("Models", models + refused)]
@@ -176,7 +177,7 @@ def _model(best: ModelChoice) -> tuple[str, str, str, str]:
 
 
 def _mean_sd(mean: float | None, sd: float | None) -> str:
-    return rounded(mean) + ("" if sd is None else f" ± {sd:.2f}")
+    return two_decimals(mean) + ("" if sd is None else f" ± {sd:.2f}")
 
 
 def spread(found: SpreadSummary | None) -> str:
@@ -250,7 +251,7 @@ def _displacement(model: ModelSummary) -> str:
     if model["points"]["radius_of_gyration_mm"] is None:
         return ""
     over = "" if model["points"]["from"] == "markers" else f" ({_radius(model)})"
-    return f"; displacement {rounded(model['rms_displacement_mm'])} mm RMS{over}"
+    return f"; displacement {two_decimals(model['rms_displacement_mm'])} mm RMS{over}"
 
 
 def _radius(model: ModelSummary) -> str:

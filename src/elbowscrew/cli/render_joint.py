@@ -6,8 +6,9 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Literal
 
 from elbowscrew.choices import FUNCTIONAL_AXIS_WORDS
-from elbowscrew.cli.text import rounded, vector_text
+from elbowscrew.cli.text import two_decimals, vector_text
 from elbowscrew.joints import joints_of
+from elbowscrew.quantities import in_digits
 
 if TYPE_CHECKING:
     from elbowscrew.model.joint_summary_types import (
@@ -40,12 +41,12 @@ def joint_axis_text(motion: MotionSummary, *, located: bool) -> str:
         return f"direction ({direction}){place} ({model}; undetermined: no interval can be given){beside}"
     which = f"mean axis of a {model} whose axis wanders" if axis["is_mean"] else model
     place = "" if axis["point_mm"] is None else f", point ({vector_text(axis['point_mm'], 1)})"
-    place += "" if axis["point_radius95_mm"] is None else f" within {axis['point_radius95_mm']:.2g} mm"
+    place += "" if axis["point_radius95_mm"] is None else f" within {in_digits(axis['point_radius95_mm'])} mm"
     return (
-        f"direction ({direction}) within {axis['axis_cone95_deg']:.2g} deg{place} "
+        f"direction ({direction}) within {in_digits(axis['axis_cone95_deg'])} deg{place} "
         f"({which}, 95 %, for the {whose} frames, {axis['interval_method']}; "
         f"each degree that a {whose_body} turns on its bone with the motion turns this axis by up to "
-        f"{axis['sensitivity_deg_per_deg']:.2g} deg){beside}"
+        f"{in_digits(axis['sensitivity_deg_per_deg'])} deg){beside}"
     )
 
 
@@ -64,23 +65,23 @@ def anatomy_rows(found: AnglesOfBones | None) -> Iterator[tuple[str, str]]:
     known = "no interval can be given" if found["axis_angle_deg_low"] is None else "95 %, for the clusters' frames"
     yield (
         "Epicondyles",
-        f"the {FUNCTIONAL_AXIS_WORDS[found['axis']]} is {rounded(angle)} deg"
+        f"the {FUNCTIONAL_AXIS_WORDS[found['axis']]} is {two_decimals(angle)} deg"
         f"{_limits(found['axis_angle_deg_low'], found['axis_angle_deg_high'])} off their line and passes "
-        f"{rounded(distance)} mm{_limits(found['axis_distance_mm_low'], found['axis_distance_mm_high'])} from the "
+        f"{two_decimals(distance)} mm{_limits(found['axis_distance_mm_low'], found['axis_distance_mm_high'])} from the "
         f"point midway between them ({known}, without the error of the landmarks: each mm that one of them is off "
-        f"turns the line by up to {found['landmark_sensitivity_deg_per_mm']:.2g} deg)",
+        f"turns the line by up to {in_digits(found['landmark_sensitivity_deg_per_mm'])} deg)",
     )
 
 
 def _range_text(word: str, found: AngleRange) -> str:
     if found["start_deg"] is None:
         return f"{word} not known"
-    low, high, start = (rounded(found[key]) for key in ("min_deg", "max_deg", "start_deg"))
+    low, high, start = (two_decimals(found[key]) for key in ("min_deg", "max_deg", "start_deg"))
     return f"{word} {low} to {high} deg ({start} at the start)"
 
 
 def _limits(low: float | None, high: float | None) -> str:
-    return "" if low is None or high is None else f" ({rounded(low)} to {rounded(high)})"
+    return "" if low is None or high is None else f" ({two_decimals(low)} to {two_decimals(high)})"
 
 
 def _wander(found: WanderSummary | None) -> str:
@@ -88,9 +89,9 @@ def _wander(found: WanderSummary | None) -> str:
     if found is None or found["size_deg"] is None or found["unseen_deg"] is None:
         return ""
     if not found["significant"]:
-        return f"; the axis stays: a wander below {found['unseen_deg']:.2g} deg would not be seen"
-    shift = "" if found["size_mm"] is None else f" and {found['size_mm']:.2g} mm"
-    return f"; it wanders by {found['size_deg']:.2g} deg{shift} over the range (axis_path.csv)"
+        return f"; the axis stays: a wander below {in_digits(found['unseen_deg'])} deg would not be seen"
+    shift = "" if found["size_mm"] is None else f" and {in_digits(found['size_mm'])} mm"
+    return f"; it wanders by {in_digits(found['size_deg'])} deg{shift} over the range (axis_path.csv)"
 
 
 def _second_rotation(found: SecondRotationSummary | None) -> str:
@@ -98,7 +99,7 @@ def _second_rotation(found: SecondRotationSummary | None) -> str:
         return ""
     axis = found["axis"]
     which = "its axis undetermined" if axis is None else f"about ({vector_text(axis['direction'], 4)})"
-    return f"; second rotation {found['range_deg']:.2g} deg, {which}"
+    return f"; second rotation {in_digits(found['range_deg'])} deg, {which}"
 
 
 def place_text(point_mm: Vector | None) -> str:
@@ -123,7 +124,7 @@ def _axes_or_center(motion: MotionSummary, whose: str) -> str:
             apart = f"parallel, {axes['parallel_offset_mm']:.1f} mm"
         return f"{told}; {apart} apart ({_stands_on(found, whose)})"
     if ball is not None:
-        within = "" if ball["radius95_mm"] is None else f" within {ball['radius95_mm']:.2g} mm"
+        within = "" if ball["radius95_mm"] is None else f" within {in_digits(ball['radius95_mm'])} mm"
         return (
             f"center ({vector_text(ball['center_in_proximal_mm'], 1)}) mm in the proximal body{within} "
             f"({_stands_on(found, whose)})"
@@ -141,6 +142,6 @@ def _one_of_two(axis: JointLineSummary, body: Literal["proximal", "distal"]) -> 
     if not axis["determined"]:
         return f"axis {number} undetermined, {axis['range_deg']:.0f} deg about it"
     return (
-        f"axis {number} ({direction}) in the {body} body within {axis['cone95_deg']:.2g} deg, "
+        f"axis {number} ({direction}) in the {body} body within {in_digits(axis['cone95_deg'])} deg, "
         f"{axis['range_deg']:.0f} deg about it"
     )

@@ -94,7 +94,7 @@ def one_line(text: str) -> str:
     return printable(shortened(" ".join(text.split())))
 
 
-def rounded(value: float | None) -> str:
+def two_decimals(value: float | None) -> str:
     """Write a number with two decimals; a dash where it is not known."""
     return "–" if value is None else f"{value:z.2f}"
 

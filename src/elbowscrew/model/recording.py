@@ -19,6 +19,7 @@ from elbowscrew.geometry import dual_quaternion, nonrigid_coordinates, quaternio
 from elbowscrew.geometry._blocks import evenly_thinned
 from elbowscrew.geometry.arrays import Bool, Float, Index
 from elbowscrew.model.array_record import ArrayRecord
+from elbowscrew.quantities import in_digits
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -191,7 +192,7 @@ class RigidBody(ArrayRecord):
             yield "markers", f"{len(self.marker_offsets)}"
         if self.marker_residual is not None and np.isfinite(self.marker_residual).any():
             misfit = 1e3 * np.nanmedian(self.marker_residual)
-            yield "misfit", f"{misfit:.2g} mm, the median of the RMS over its markers"
+            yield "misfit", f"{in_digits(misfit)} mm, the median of the RMS over its markers"
 
     def to_frame(self, length_unit: LengthUnit = "mm") -> pd.DataFrame:
         """Return the poses as a pandas data frame, a row a frame.

@@ -104,7 +104,7 @@ def confidence_text(view: TrialView) -> str:
     angle = angle_in(np.array(cone), view.settings.angle_unit)
     radius = length_in(np.array(circle), view.settings.length_unit)
     units = view.settings.angle_unit, view.settings.length_unit
-    known = [f"{rounded(float(value), 2)} {unit}" for value, unit in zip((angle, radius), units, strict=True)]
+    known = [f"{rounded(float(value))} {unit}" for value, unit in zip((angle, radius), units, strict=True)]
     return f"{model}; 95 % confidence: {', '.join(known)}"
 
 

@@ -22,7 +22,7 @@ from elbowscrew.errors import UsageError, why_unreadable
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.model.mesh import Mesh
 from elbowscrew.opening import read_bytes
-from elbowscrew.quantities import METERS
+from elbowscrew.quantities import METERS, in_digits
 
 MOST_TRIANGLES: Final = 6000
 """Triangles of a bone that are kept to be drawn."""
@@ -118,8 +118,8 @@ def _check_size(vertices: Float, unit: str) -> None:
     farthest = float(np.abs(vertices).max())
     if farthest > _FARTHEST_M or not np.ptp(vertices, axis=0).max() > 0.0:
         msg = (
-            f"its coordinates reach {farthest:.3g} m with the unit {unit}: expected a bone within {_FARTHEST_M:g} m of "
-            "its body's origin; give --mesh-unit mm or m"
+            f"its coordinates reach {in_digits(farthest, 3)} m with the unit {unit}: expected a bone within "
+            f"{_FARTHEST_M:g} m of its body's origin; give --mesh-unit mm or m"
         )
         raise ValueError(msg)
 

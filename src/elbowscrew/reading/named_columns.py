@@ -11,6 +11,7 @@ from typing import Final, NamedTuple
 from elbowscrew.column_file import SECONDS, BodyColumns, ColumnFile, MarkerColumns
 from elbowscrew.errors import Missing, MissingStatementError, RecordingError, SettingError, did_you_mean
 from elbowscrew.model import QualityWarning, Recording
+from elbowscrew.quantities import in_digits
 from elbowscrew.reading.cells import parse_number
 from elbowscrew.reading.clock import numbered
 from elbowscrew.reading.options import ASK_FOR_UNITS, ReadOptions, nothing_wanted
@@ -64,8 +65,8 @@ def read(source: TextSource, options: ReadOptions, named: ColumnFile) -> Recordi
     if clock.time is None or recording.rate_hz >= _SLOW_HZ:
         return recording
     message = (
-        f"times in {clock.unit} give {recording.rate_hz:.3g} frames a second: if they are in another unit, say so in "
-        f'{named.name}, as in unit = "ms" under [clock]'
+        f"times in {clock.unit} give {in_digits(recording.rate_hz, 3)} frames a second: if they are in another unit, "
+        f'say so in {named.name}, as in unit = "ms" under [clock]'
     )
     return replace(recording, warnings=(QualityWarning(code="slow-clock", message=message), *recording.warnings))
 

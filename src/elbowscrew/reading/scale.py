@@ -10,7 +10,7 @@ import numpy as np
 from elbowscrew.errors import SettingError
 from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat
 from elbowscrew.model import QualityWarning, Recording
-from elbowscrew.quantities import METERS
+from elbowscrew.quantities import METERS, in_digits
 
 DOUBTFUL: Final = "units-doubtful"
 # Farther from the origin no laboratory reaches; beyond these two it is rare.
@@ -42,7 +42,7 @@ def with_scale_checked(recording: Recording, given: str | None) -> Recording:
         return recording
     fitting = [unit for unit, meters in METERS.items() if _NEAR_M <= distance * meters / METERS[units] <= _FAR_M]
     what = f"--units {units}" if given else f"the unit that is stated, {units},"
-    message = f"{what} puts what is in the file {distance:.3g} m from the origin: " + (
+    message = f"{what} puts what is in the file {in_digits(distance, 3)} m from the origin: " + (
         f"is its unit {' or '.join(fitting)}?" if fitting else "is its unit another one?"
     )
     if given and distance > _FARTHEST_M:

@@ -107,7 +107,7 @@ def _frames(count: int) -> str:
 def filtered(view: TrialView) -> str:
     """Tell the filter of the velocities, if any."""
     cutoff = view.summary["trial"]["instantaneous_lowpass_hz"]
-    return "" if cutoff is None else f"From poses low-pass filtered at {cutoff:.3g} Hz."
+    return "" if cutoff is None else f"From poses low-pass filtered at {rounded(cutoff, 3)} Hz."
 
 
 def trial(view: TrialView) -> Iterator[str]:

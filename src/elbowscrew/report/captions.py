@@ -222,7 +222,7 @@ def _cycles(view: TrialView) -> Iterator[str]:
             yield "and one standard deviation to either side (grey band)."
         else:
             most = float(angle_in(np.nanmax(mean["theta_sd"]), unit))
-            yield f"and standard deviation ({rounded(most, 2)} {unit} at most, too narrow to be drawn)."
+            yield f"and standard deviation ({rounded(most)} {unit} at most, too narrow to be drawn)."
 
 
 def _quality(view: TrialView) -> Iterator[str]:

@@ -14,6 +14,7 @@ import numpy as np
 from elbowscrew.choices import JOINT_TYPE_WORDS
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.model.summary_types import QualitySummary
+from elbowscrew.quantities import rounded
 from elbowscrew.report.bones_words import axis_against_epicondyles, bone_words, landmark_sources
 from elbowscrew.report.facts import Facts
 from elbowscrew.report.methods import frame_words, method_words
@@ -131,10 +132,10 @@ def _filter(view: Facts) -> str:
     trial = view.summary["trial"]
     cutoff, instantaneous = trial["lowpass_hz"], trial["instantaneous_lowpass_hz"]
     how = ", chosen by residual analysis" if view.settings.lowpass_hz == "auto" else ""
-    poses = "none" if cutoff is None else f"Butterworth of order 2, forward and backward, {cutoff:.3g} Hz{how}"
+    poses = "none" if cutoff is None else f"Butterworth of order 2, forward and backward, {rounded(cutoff, 3)} Hz{how}"
     if cutoff is not None or instantaneous is None:
         return poses
-    return f"{poses}; for instantaneous axes and velocities {instantaneous:.3g} Hz, chosen by residual analysis"
+    return f"{poses}; for instantaneous axes and velocities {rounded(instantaneous, 3)} Hz, chosen by residual analysis"
 
 
 def _noise(view: TrialView) -> str | None:
@@ -215,13 +216,13 @@ def _radii(view: TrialView) -> Iterator[str]:
     axis = view.summary["motion"]["joint_axis"]
     two, ball = view.joint_summary["two_axes"], view.joint_summary["ball"]
     if axis is not None and axis["axis_cone95_deg"] is not None:
-        radius = "" if axis["point_radius95_mm"] is None else f", place within {axis['point_radius95_mm']:.2g} mm"
-        yield f"direction within {axis['axis_cone95_deg']:.2g}°{radius}"
+        radius = "" if axis["point_radius95_mm"] is None else f", place within {rounded(axis['point_radius95_mm'])} mm"
+        yield f"direction within {rounded(axis['axis_cone95_deg'])}°{radius}"
     for number, line in enumerate([] if two is None else [two["axis1"], two["axis2"]], start=1):
         cone = line["cone95_deg"]
-        yield f"axis {number} " + ("undetermined" if cone is None else f"within {cone:.2g}°")
+        yield f"axis {number} " + ("undetermined" if cone is None else f"within {rounded(cone)}°")
     if ball is not None and ball["radius95_mm"] is not None:
-        yield f"center within {ball['radius95_mm']:.2g} mm"
+        yield f"center within {rounded(ball['radius95_mm'])} mm"
 
 
 def _epicondyles(view: TrialView) -> str:
@@ -247,14 +248,14 @@ def _model(view: Facts) -> str:
 
 def _model_and_error(view: TrialView) -> str:
     error = view.summary["interpolation"]["rms_angle_error_deg"]
-    return _model(view) + ("" if error is None else f"; error {error:.2g}° RMS")
+    return _model(view) + ("" if error is None else f"; error {rounded(error)}° RMS")
 
 
 def _repeatability(view: TrialView) -> str:
     found = view.joint_summary["repeatability"]
     icc = "not known" if found["icc"] is None else f"{found['icc']:.3f}"
     sd = found["theta_max_sd_deg"]
-    return f"ICC(A,1) of θ over the cycles {icc}" + ("" if sd is None else f"; largest θ ± {sd:.2g}° (SD)")
+    return f"ICC(A,1) of θ over the cycles {icc}" + ("" if sd is None else f"; largest θ ± {rounded(sd)}° (SD)")
 
 
 def _warnings(view: TrialView) -> str:

@@ -9,6 +9,7 @@ from markupsafe import Markup
 
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.sensitivity import NORMAL_95
+from elbowscrew.quantities import rounded
 from elbowscrew.report.charts import WIDTH, Chart, picture, range_of
 from elbowscrew.report.trial_charts import mark_tracking, over_time
 from elbowscrew.view.joint_space import ANGLE_NAMES
@@ -35,7 +36,7 @@ def angles_chart(trial: TrialView) -> Markup | None:
     mark_tracking(chart, shown)
     for k, name in enumerate(names):
         if np.isfinite(reach[:, k]).any():
-            label = f"95 % interval of {name} (±{np.nanmedian(reach[:, k]):.2g})"
+            label = f"95 % interval of {name} (±{rounded(np.nanmedian(reach[:, k]))})"
             chart.band(found.time_s, angles[:, k] - reach[:, k], angles[:, k] + reach[:, k], "band-known", label)
         chart.line(found.time_s, angles[:, k], f"axis{k + 1}", name)
     panels = [chart.panel()]

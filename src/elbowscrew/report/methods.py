@@ -9,6 +9,7 @@ from elbowscrew.choices import JOINT_TYPE_WORDS
 from elbowscrew.model.anatomy import BonyJoint
 from elbowscrew.model.joint_summary_types import JointSummary, JointTypeSummary, NoiseOfBodies
 from elbowscrew.model.summary_types import ModelSummary, TrialSummary
+from elbowscrew.quantities import rounded
 from elbowscrew.report.bones_words import bones_methods
 from elbowscrew.report.facts import Facts
 from elbowscrew.results.joint_summary import preferred_fit
@@ -150,8 +151,8 @@ def _recording(trial: TrialView, figures: TrialSummary) -> Iterator[str]:
     else:
         chosen = ", chosen by residual analysis (Winter 2009)" if settings.lowpass_hz == "auto" else ""
         yield (
-            f"The poses were low-pass filtered at {lowpass:.3g} Hz{chosen}: second-order Butterworth, forward and "
-            "backward, with the cut-off corrected for the two passes, on the components of sign-continuous dual "
+            f"The poses were low-pass filtered at {rounded(lowpass, 3)} Hz{chosen}: second-order Butterworth, forward "
+            "and backward, with the cut-off corrected for the two passes, on the components of sign-continuous dual "
             "quaternions."
         )
     if settings.resample_hz is not None:
@@ -180,7 +181,9 @@ def _joint_axis(trial: TrialView) -> Iterator[str]:
     skin = joint["skin_motion"]
     if preferred is None or fit is None:
         share = joint["unexplained_share"]
-        left = "more rotation than there is about it" if share is None else f"{100.0 * share:.2g} % of its rotation"
+        left = (
+            "more rotation than there is about it" if share is None else f"{rounded(100.0 * share)} % of its rotation"
+        )
         why = f"The motion has no single axis (a hinge leaves {left} unexplained)"
         if joint["joint_type"]["status"] == "forced":
             why = (
@@ -207,23 +210,24 @@ def _joint_axis(trial: TrialView) -> Iterator[str]:
         wander, told = joint["wander"], joint["mean_axis"] or fit
         if joint["mean_axis"] is not None and wander is not None and wander["size_deg"] is not None:
             yield (
-                f"As the axis turns by {wander['size_deg']:.2g}° over the range of the angle, its mean over the "
+                f"As the axis turns by {rounded(wander['size_deg'])}° over the range of the angle, its mean over the "
                 "range is reported."
             )
         if told["axis_cone95_deg"] is not None and not trial.located:
             yield (
-                f"Its 95 % cone, {told['axis_cone95_deg']:.2g}°, is that of the sensors' frames, "
+                f"Its 95 % cone, {rounded(told['axis_cone95_deg'])}°, is that of the sensors' frames, "
                 f"{told['interval_method']}. It holds if no sensor turns on its bone with the motion; each degree that "
-                f"one does turns the axis by up to {fit['sensitivity_deg_per_deg']:.2g}°."
+                f"one does turns the axis by up to {rounded(fit['sensitivity_deg_per_deg'])}°."
             )
             if skin is not None and skin["deg"] > 0.0:
                 yield f"A turn of the sensors on the bone of {skin['deg']:g}° was stated and is included."
         elif told["axis_cone95_deg"] is not None:
             yield (
-                f"Its 95 % cone and radius, {told['axis_cone95_deg']:.2g}° and {told['point_radius95_mm']:.2g} mm, are "
-                f"those of the marker clusters' frames, {told['interval_method']}. They hold if the clusters move on "
-                "the bone no more as a whole than their markers among themselves; each degree that a cluster turns "
-                f"with the motion turns the axis by up to {fit['sensitivity_deg_per_deg']:.2g}°."
+                f"Its 95 % cone and radius, {rounded(told['axis_cone95_deg'])}° and "
+                f"{rounded(told['point_radius95_mm'])} mm, are those of the marker clusters' frames, "
+                f"{told['interval_method']}. They hold if the clusters move on the bone no more as a whole than their "
+                f"markers among themselves; each degree that a cluster turns with the motion turns the axis by up to "
+                f"{rounded(fit['sensitivity_deg_per_deg'])}°."
             )
             if skin is not None:
                 turn = f" and {skin['deg']:g}°" if skin["deg"] > 0.0 else ""
@@ -233,7 +237,7 @@ def _joint_axis(trial: TrialView) -> Iterator[str]:
                 )
     yield (
         "The dispersion of the helical axes is their angle to the plain mean of their directions "
-        f"(median {joint['dispersion']['direction_median_deg']:.2g}°)."
+        f"(median {rounded(joint['dispersion']['direction_median_deg'])}°)."
     )
 
 
@@ -311,7 +315,7 @@ def _model(trial: TrialView) -> Iterator[str]:
     over = (
         f"the {trial.named_joint.distal.name}'s markers"
         if points["from"] == "markers"
-        else f"points with a radius of gyration of {points['radius_of_gyration_mm']:.3g} mm"
+        else f"points with a radius of gyration of {rounded(points['radius_of_gyration_mm'], 3)} mm"
     )
     yield (
         f"The model's error is the angle between modeled and measured orientation, and the RMS displacement of {over}."

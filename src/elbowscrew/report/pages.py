@@ -18,6 +18,7 @@ from markupsafe import Markup
 
 from elbowscrew._version import __version__
 from elbowscrew.errors import ResultError
+from elbowscrew.quantities import rounded
 from elbowscrew.results.trial_views import UNREADABLE
 
 MARK: Final = 'name="generator" content="elbowscrew'
@@ -132,11 +133,11 @@ def known(value: float | None, decimals: int = 2) -> str:
 
 
 def brief(value: float | None, digits: int = 2) -> str:
-    """Write a number to so many digits that count, never with an exponent unless it is very small."""
+    """Write a number to so many digits that count, a very small one with a power of ten."""
     if value is None or not math.isfinite(value):
         return _NONE
     if value == 0.0 or abs(value) < 1e-4:
-        return f"{value:.{digits - 1}g}".replace("-", "−")
+        return rounded(value, digits).replace("-", "−")
     decimals = digits - 1 - math.floor(math.log10(abs(value)))
     return number(round(value, decimals), max(decimals, 0))
 

@@ -13,6 +13,7 @@ from elbowscrew.choices import METHOD_LABELS
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.sensitivity import NORMAL_95
 from elbowscrew.motion.movements.phases import runs_of
+from elbowscrew.quantities import rounded
 from elbowscrew.report.charts import (
     COLORS,
     WIDTH,
@@ -258,7 +259,7 @@ def over_time(
 def _mark_interval(chart: Chart, trial: TrialView) -> None:
     reach = NORMAL_95 * np.degrees(trial.angle_sd)
     if np.isfinite(reach).any():
-        angle, label = np.degrees(trial.angle), f"95 % interval (±{np.nanmedian(reach):.2g})"
+        angle, label = np.degrees(trial.angle), f"95 % interval (±{rounded(np.nanmedian(reach))})"
         chart.band(trial.time_s, angle - reach, angle + reach, "band-known", label)
 
 

@@ -204,14 +204,15 @@ def _frame_names(words: Joint) -> dict[str, str]:
 
 
 def _estimates(joint: JointSummary) -> list[dict[str, Any]]:
-    """Rows of the table of the joint's axis, the preferred one marked."""
+    """Rows of the table of the joint's axis, the one that is told at the top of the page marked."""
     estimates: list[tuple[str, EstimateSummary | None]] = [
+        ("Mean of the axis as it wanders", joint["mean_axis"]),
         ("Hinge, maximum likelihood", joint["hinge"]),
         ("Screw-hinge, maximum likelihood", joint["screw_hinge"]),
         ("Weighted mean helical axis", joint["weighted_mean"]),
         ("SARA", joint["sara"]),
     ]
-    best = preferred_fit(joint)
+    best = joint["mean_axis"] or preferred_fit(joint)
     blank = dict.fromkeys(
         ("axis_cone95_deg", "point_radius95_mm", "pitch_mm_per_rad", "residual_rotation_deg", "residual_translation_mm")
     )

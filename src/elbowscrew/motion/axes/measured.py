@@ -22,6 +22,7 @@ from elbowscrew.motion.screws.sense import rotation_noise
 from elbowscrew.motion.smoothing.resampling import linear_at
 from elbowscrew.motion.smoothing.smoothing import Smoothing, inside
 from elbowscrew.motion.tracking.clock import other_rate
+from elbowscrew.quantities import in_digits
 from elbowscrew.settings import Settings
 
 # What the field filters at: the cut-off of recordings too short for residual analysis, lower where the rate asks it.
@@ -154,9 +155,10 @@ def _left_out(
         which = "theta, axes and speeds", "by --lowpass"
     largest = float(np.sqrt(square.max()))
     message = (
-        f"{which[0]} are of motion up to {filter_.cutoff_hz:.3g} Hz, {which[1]}; that leaves out {np.degrees(rms):.2g} "
-        f"deg RMS of rotation while the joint moves, {np.degrees(largest):.2g} deg at worst, where the noise is "
-        f"{np.degrees(noise):.2g} deg: what is faster is not in them (--lowpass HZ sets the cut-off)"
+        f"{which[0]} are of motion up to {in_digits(filter_.cutoff_hz, 3)} Hz, {which[1]}; that leaves out "
+        f"{in_digits(np.degrees(rms))} deg RMS of rotation while the joint moves, {in_digits(np.degrees(largest))} deg "
+        f"at worst, where the noise is {in_digits(np.degrees(noise))} deg: what is faster is not in them (--lowpass HZ "
+        "sets the cut-off)"
     )
     return (QualityWarning(code="fast-motion-left-out", message=message),)
 
@@ -175,8 +177,8 @@ def _without_axes(
         )
     elif speed.size:
         reason = (
-            f"the distal body turns at {speed.max():.3g} rad/s at most, and an axis needs "
-            f"{least:.3g} rad/s (--min-rate)"
+            f"the distal body turns at {in_digits(speed.max(), 3)} rad/s at most, and an axis needs "
+            f"{in_digits(least, 3)} rad/s (--min-rate)"
         )
     else:
         reason = "no stretch of poses is long enough beside the filter's half a period at its two ends"

@@ -13,6 +13,7 @@ from elbowscrew.geometry.arrays import Bool, Float, Index
 from elbowscrew.model import BodyPoints, Selection
 from elbowscrew.motion.difference import displacement_of_error, told_error
 from elbowscrew.motion.interpolation.segment_errors import JointSeries, PoseTrack
+from elbowscrew.quantities import in_digits
 
 # Up to so many frames every pair of them is looked at, and so the best set of each size is known.
 MOST_FRAMES_COMPLETE: Final = 600
@@ -311,8 +312,8 @@ def _no_set(track: _Track, tolerance: float) -> SettingError:
     limit, left = (scale * float(told_error(np.asarray(e), track.points)) for e in (tolerance, track.left.max()))
     if track.poses.series is not None:
         return SettingError(
-            f"--tolerance {limit:g}{unit}: the joint itself leaves up to {left:.2g} {unit} of the measured poses, "
-            "so that no keyframes keep to it; give a larger tolerance, or --method sclerp"
+            f"--tolerance {limit:g}{unit}: the joint itself leaves up to {in_digits(left)} {unit} of the measured "
+            "poses, so that no keyframes keep to it; give a larger tolerance, or --method sclerp"
         )
     return SettingError(
         f"--tolerance {limit:g}{unit}: where the law rests the motion itself moves by more than that, so that "

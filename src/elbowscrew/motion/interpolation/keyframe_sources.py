@@ -26,6 +26,7 @@ from elbowscrew.geometry.arrays import Bool, Float
 from elbowscrew.model import ModelPhases
 from elbowscrew.motion.axes.measured import smoothed_displacement, twist_cutoff
 from elbowscrew.motion.screws.measurement import Measurement
+from elbowscrew.quantities import in_digits
 from elbowscrew.settings import Settings
 
 _LAWS: Final[tuple[LawName, ...]] = (*CLOSED_LAWS, "best", "empirical")  # in the order that tables have had
@@ -132,7 +133,7 @@ def _lowpass(
     flipped = np.sum(pose[:, :4] * measured.displacement[:, :4], axis=1) < 0.0
     pose = np.where(flipped[:, None], -pose, pose)
     pose = np.where(np.isfinite(pose), pose, measured.displacement)
-    name = f"lowpass {cutoff_hz:.3g} Hz"
+    name = f"lowpass {in_digits(cutoff_hz, 3)} Hz"
     return [SourcePoses(name, pose, recorded.usable, recorded.phases)]
 
 

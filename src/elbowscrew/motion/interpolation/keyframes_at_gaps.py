@@ -13,6 +13,7 @@ from elbowscrew.motion.movements.feet import GAP_SD
 from elbowscrew.motion.movements.phases import nearest_rows
 from elbowscrew.motion.movements.unseen import gaps_of
 from elbowscrew.motion.screws.measurement import Measurement
+from elbowscrew.quantities import in_digits
 
 # A turn that may go on by less than this share of its swing, or so many radians, is where the keyframe is.
 _HIDDEN_SHARE: Final = 0.01
@@ -64,7 +65,7 @@ def _turns_in_gaps(phases: ModelPhases, course: Float, measured: Measurement) ->
             lost = f"frames {frame[gaps.before[gap] + 1]} to {frame[gaps.after[gap] - 1]}"
             found[k] = (
                 f"keyframe {frame[rows[k]]} stands for a turn in {lost}, where the joint may go farther by about "
-                f"{np.degrees(0.5 * tip.max()):.2g} deg, and up to {np.degrees(tip.max()):.2g}"
+                f"{in_digits(np.degrees(0.5 * tip.max()), 2)} deg, and up to {in_digits(np.degrees(tip.max()), 2)}"
             )
     return found
 
@@ -84,6 +85,6 @@ def _times_from_gaps(phases: ModelPhases, measured: Measurement, movements: Move
         before, after = nearest_rows(elapsed, np.array([begin, end])).tolist()
         found[bound] = (
             f"the time of keyframe {frame[rows[bound]]} is told from frames {frame[before + 1]} to {frame[after - 1]} "
-            f"and uncertain by {GAP_SD * (end - begin):.2g} s (sd)"
+            f"and uncertain by {in_digits(GAP_SD * (end - begin))} s (sd)"
         )
     return found

@@ -15,6 +15,7 @@ from elbowscrew.model import Keyframes
 from elbowscrew.model.joint_coordinates import JointCoordinates
 from elbowscrew.motion.interpolation.keyframes import phase_time
 from elbowscrew.motion.joint.coordinates import joint_poses
+from elbowscrew.quantities import in_digits
 
 Method = Callable[[Float, Float, Float], Float]
 
@@ -28,7 +29,7 @@ def _weights(parameter: Float, knots: Float) -> Float:
     largest = float(np.abs(weights).max(initial=0.0))
     if not largest <= _LARGEST_WEIGHT:
         msg = (
-            f"--keyframes: a polynomial through {knots.size} poses weighs them by up to {largest:.2g}, and "
+            f"--keyframes: a polynomial through {knots.size} poses weighs them by up to {in_digits(largest)}, and "
             "their noise with them; give fewer keyframes, or --method sclerp"
         )
         raise SettingError(msg)
@@ -43,7 +44,7 @@ def _dib(poses: Float, knots: Float, parameter: Float) -> Float:
     blend = dib(poses, _weights(parameter, knots), way="as given")
     if (blend.residual > _LARGEST_STEP).any():
         msg = (
-            f"--method dib: the blend still moves by {blend.residual.max():.2g} rad after {blend.iterations} "
+            f"--method dib: the blend still moves by {in_digits(blend.residual.max())} rad after {blend.iterations} "
             "iterations; give keyframes closer together, or --method dlb"
         )
         raise SettingError(msg)

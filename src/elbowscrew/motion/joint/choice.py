@@ -18,6 +18,7 @@ from elbowscrew.motion.joint.contest import LARGEST_AXIS_SD, NEED_LARGE, NEED_SM
 from elbowscrew.motion.joint.fitting import Fitted
 from elbowscrew.motion.joint.likelihood import Fit, Mechanism
 from elbowscrew.motion.joint.poses import Poses
+from elbowscrew.quantities import in_digits
 
 _EXPLAINED: Final = 1.15
 _TIMES_BETTER: Final = 1.5
@@ -137,7 +138,7 @@ def _best(contest: Contest) -> Choice:
     if ball_valid and gain >= two.need:
         return _unless_too_far(contest, "ball", 0.0)
     if not contest.poses.located and two.leaves_much:
-        left = f"two axes leave {np.degrees(two.fit.residual_rotation):.2g} deg RMS of rotation; {_NO_CENTER}"
+        left = f"two axes leave {in_digits(np.degrees(two.fit.residual_rotation))} deg RMS of rotation; {_NO_CENTER}"
         return _chosen(contest, "ball", "approximate", left)
     if not two.valid:
         return _none_fits(contest, "more than one axis moves, but too little or too noisily to tell the second")
@@ -163,8 +164,8 @@ def _unless_too_far(contest: Contest, name: Fitted, gain: float, *, doubt: str |
     if contest.too_far(name):
         contest.try_all()
         return _none_fits(contest, f"{words} would be preferred, but {leave} {left_mm:.0f} mm")
-    left = f"{words} {leave} {np.degrees(tried.fit.residual_rotation):.2g} deg"
-    left += f" and {left_mm:.2g} mm RMS" if contest.poses.located else " RMS of rotation"
+    left = f"{words} {leave} {in_digits(np.degrees(tried.fit.residual_rotation))} deg"
+    left += f" and {in_digits(left_mm)} mm RMS" if contest.poses.located else " RMS of rotation"
     if doubt is None and gain >= NEED_LARGE:
         doubt = (
             f"a richer type leaves {gain:.1f} times less variance, which is within what skin and imperfect joints do"

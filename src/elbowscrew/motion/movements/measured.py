@@ -15,6 +15,7 @@ from elbowscrew.motion.movements.cuts import cut
 from elbowscrew.motion.movements.given import given_cycles
 from elbowscrew.motion.movements.swings import FEWEST_FOR_NOISE
 from elbowscrew.motion.screws.measurement import Measurement, rotation_noise_of
+from elbowscrew.quantities import in_digits
 from elbowscrew.settings import Settings
 
 # The law of a foot is in doubt in most recordings, and the cut's standard deviation tells by how much: a smaller one
@@ -101,8 +102,8 @@ def _small_strokes(cuts: Cuts, settings: Settings) -> tuple[QualityWarning, ...]
     degrees = np.degrees(cuts.small)
     several = "1 stroke" if degrees.size == 1 else f"{degrees.size} strokes"
     message = (
-        f"{several} out and back of {degrees.min():.2g} to {degrees.max():.2g} deg count as hesitations beside the "
-        f"larger ones, and not as cycles; --cycle-swing {0.7 * degrees.min():.2g} counts them"
+        f"{several} out and back of {in_digits(degrees.min())} to {in_digits(degrees.max())} deg count as hesitations "
+        f"beside the larger ones, and not as cycles; --cycle-swing {in_digits(0.7 * degrees.min())} counts them"
     )
     return (QualityWarning(code="small-strokes", message=message, count=int(degrees.size)),)
 
@@ -114,7 +115,7 @@ def _no_such_swing(cuts: Cuts, settings: Settings) -> tuple[QualityWarning, ...]
         return ()
     message = (
         f"the motion does not swing out and back by the {settings.cycle_swing_deg:g} deg of --cycle-swing: there is "
-        f"no cycle; all of it spans {np.degrees(cuts.excursion):.3g} deg"
+        f"no cycle; all of it spans {in_digits(np.degrees(cuts.excursion), 3)} deg"
     )
     return (QualityWarning(code="no-such-swing", message=message),)
 

@@ -15,6 +15,7 @@ from elbowscrew.motion.difference import summed_rotation
 from elbowscrew.motion.movements.boundaries import Cycles
 from elbowscrew.motion.movements.phases import nearest_rows
 from elbowscrew.motion.tracking.inserted import recorded_poses
+from elbowscrew.quantities import in_digits
 
 # Widths of the fits, frames to either side: from five poses to most of a stroke.
 _LEAST_HALF: Final = 2
@@ -161,7 +162,7 @@ def speed_doubts(quat: Float, elapsed: Float, cycles: Cycles, repetitions: Repet
     if not off:
         return ()
     share, told, found = max(off, key=lambda one: one[0])
-    sd = f" (sd {np.degrees(found.sd):.2g})" if np.isfinite(found.sd) else ""
+    sd = f" (sd {in_digits(np.degrees(found.sd))})" if np.isfinite(found.sd) else ""
     strokes = "1 stroke" if len(off) == 1 else f"{len(off)} strokes"
     message = (
         f"the highest speed of {strokes} is off by more than {100.0 * _TOLD_SHARE:.0f} %, by {100.0 * share:.0f} % at "

@@ -32,6 +32,7 @@ from elbowscrew.motion.smoothing.resampling import resample_recording, resamplin
 from elbowscrew.motion.smoothing.smoothing import Smoothing
 from elbowscrew.motion.tracking.bodies import tracked_bodies
 from elbowscrew.motion.tracking.clock import elapsed_time, fastest_rate, other_rate, row_of_frame
+from elbowscrew.quantities import in_digits
 from elbowscrew.settings import Settings
 
 
@@ -288,7 +289,7 @@ def _measured_series(
     series.line[unsure], series.slide[unsure] = np.nan, np.nan
     peak = int(np.nanargmax(np.abs(series.angle)))
     if not np.isfinite(series.line[joint.measured]).any():
-        found = f"the largest rotation since the reference is {np.degrees(abs(series.angle[peak])):.3g} deg"
+        found = f"the largest rotation since the reference is {in_digits(np.degrees(abs(series.angle[peak])), 3)} deg"
         if settings.axis_sd_deg is None:
             msg = (
                 f"{found}, less than the {settings.min_angle_deg:g} deg an axis needs: no rotation to analyze "
@@ -298,7 +299,7 @@ def _measured_series(
             best = np.degrees(np.nanmin(errors.axis, initial=np.inf))
             msg = (
                 f"{found}, and no axis is known to the {settings.axis_sd_deg:g} deg of --axis-sd: the best is known "
-                f"to {best:.3g} deg; give a larger limit, or --min-angle"
+                f"to {in_digits(best, 3)} deg; give a larger limit, or --min-angle"
             )
         raise AnalysisError(msg)
     return series, known_errors(errors, series.angle, np.isfinite(series.slide))

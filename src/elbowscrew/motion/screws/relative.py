@@ -13,6 +13,7 @@ from elbowscrew.geometry import dlb
 from elbowscrew.geometry.dual_quaternion import conjugate, continuous_signs, multiply
 from elbowscrew.model import JointMotion, QualityWarning, RigidBody
 from elbowscrew.motion.smoothing.gaps import fill_gaps, filled_gaps
+from elbowscrew.quantities import in_digits
 
 # What is filled in is told to be doubtful from so many radians on, and so many times what the noise explains.
 _DOUBTFUL: Final = float(np.radians(1.0))
@@ -135,9 +136,9 @@ def fill_doubts(
         lost = frame[[gaps.before[worst] + 1, gaps.after[worst] - 1]].tolist()
         where = f"frame {lost[0]}" if lost[0] == lost[1] else f"frames {lost[0]} to {lost[1]}"
         parts.append(
-            f"by the speeds at its ends the joint may be up to {np.degrees(off[worst]):.2g} deg off the poses that are "
-            f"put in for {where}, and by over {np.degrees(_DOUBTFUL):g} deg in {doubtful.sum()} of {off.size} filled "
-            "gaps"
+            f"by the speeds at its ends the joint may be up to {in_digits(np.degrees(off[worst]))} deg off the poses "
+            f"that are put in for {where}, and by over {np.degrees(_DOUBTFUL):g} deg in {doubtful.sum()} of {off.size} "
+            "filled gaps"
         )
     if unknown.any():
         parts.append(f"no speed is known at the ends of {unknown.sum()} of {off.size} filled gaps")

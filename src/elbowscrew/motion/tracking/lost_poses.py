@@ -15,6 +15,7 @@ from elbowscrew.motion.difference import angle_between, origin_distance
 from elbowscrew.motion.tracking.leaps import without_leaps
 from elbowscrew.motion.tracking.losses import as_lost, frames_of, frames_warning
 from elbowscrew.motion.tracking.resolution import coarse_step
+from elbowscrew.quantities import in_digits
 from elbowscrew.settings import Settings
 
 # An exact identity this far from where its neighbors put the body is what is written for a body that is not solved.
@@ -136,7 +137,7 @@ def _without_frozen(body: RigidBody, recording: Recording, warnings: list[Qualit
     if step_m is not None:
         message = (
             f"body {body.name!r} repeats its pose in {frames_of(rows, recording)}, and its positions come in steps of "
-            f"{1000.0 * step_m:.3g} mm: taken as stillness; lost tracking would not be seen"
+            f"{in_digits(1000.0 * step_m, 3)} mm: taken as stillness; lost tracking would not be seen"
         )
         warnings.append(frames_warning("coarse-numbers", message, rows, recording))
         return body

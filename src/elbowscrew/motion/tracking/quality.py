@@ -22,6 +22,7 @@ from elbowscrew.motion.tracking.clock import allowed_offset, elapsed_time
 from elbowscrew.motion.tracking.inserted import inserted_warnings
 from elbowscrew.motion.tracking.losses import frames_warning
 from elbowscrew.motion.tracking.lost_poses import CheckedBody, check_tracking
+from elbowscrew.quantities import in_digits
 from elbowscrew.settings import Settings
 
 _LARGE_RESIDUAL_M: Final = 0.005
@@ -138,7 +139,7 @@ def clock_warnings(recording: Recording) -> tuple[QualityWarning, ...]:
         found.append(frames_warning("frame-numbers", message, rows, recording))
     elif quality.largest_offset_s > allowed_offset(recording):
         message = (
-            f"times stray from the frame numbers by up to {1000 * quality.largest_offset_s:.3g} ms: "
+            f"times stray from the frame numbers by up to {in_digits(1000 * quality.largest_offset_s, 3)} ms: "
             "the times are taken as the clock"
         )
         found.append(QualityWarning(code="irregular-clock", message=message))
@@ -162,7 +163,7 @@ def _residual_warnings(body: RigidBody, recording: Recording) -> list[QualityWar
         return []
     message = (
         f"the markers of body {body.name!r} do not fit it in {rows.size} frames (RMS over "
-        f"{1000 * _LARGE_RESIDUAL_M:g} mm, at most {1000 * np.nanmax(body.marker_residual):.3g} mm): "
+        f"{1000 * _LARGE_RESIDUAL_M:g} mm, at most {in_digits(1000 * np.nanmax(body.marker_residual), 3)} mm): "
         "not rigid, mislabeled or swapped"
     )
     return [frames_warning("marker-residual", message, rows, recording)]
