@@ -278,9 +278,9 @@ def _left(kind: JointTypeSummary, *, located: bool) -> Iterator[str]:
     for one in kind["candidates"]:
         name, verb = JOINT_TYPE_WORDS[one["type"]], "leave" if one["type"] == "two_axes" else "leaves"
         rotation, shift = one["residual_deg"], one["residual_mm"]
-        left = "" if rotation is None else f"{rotation:.3g}°"
+        left = "" if rotation is None else f"{rounded(rotation, 3)}°"
         if located and shift is not None:
-            left += f" and {shift:.3g} mm"
+            left += f" and {rounded(shift, 3)} mm"
         yield f"{name} {verb} {left} RMS" + ("" if one["valid"] else " (not determined by the motion)")
 
 
