@@ -7,19 +7,22 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Iterator
+from itertools import product
 from pathlib import Path
-from typing import Any, Final, Literal, get_args
+from typing import Any, Final, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, StrictBool, ValidationError, model_validator
 
-from elbowscrew.choices import FileUnit, RotationType
+from elbowscrew.choices import FileUnit
 from elbowscrew.errors import shown, why_unreadable
 from elbowscrew.opening import read_toml_and_digest
 
 SECONDS: Final = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
 """What a time is in seconds, by its unit."""
 
-_ORDERS: Final = tuple(order for order in get_args(RotationType) if order.isupper())
+_ORDERS: Final = tuple(
+    f"{first}{second}{third}" for first, second, third in product("XYZ", repeat=3) if first != second != third
+)
 _SEQUENCES: Final = (*_ORDERS, *map(str.lower, _ORDERS))
 
 Three = tuple[str, str, str]
@@ -140,9 +143,8 @@ class BodyColumns(_Part):
             "sequence and degrees are of euler; leave them out": (
                 self.euler is None and (self.sequence is not None or self.degrees is not None)
             ),
-            f"sequence: expected XYZ, xyz or another order of three different axes, found {shown(self.sequence)}": (
-                self.sequence is not None and self.sequence not in _SEQUENCES
-            ),
+            f"sequence: expected XYZ, xyz, YXY or another order in which no axis follows itself, "
+            f"found {shown(self.sequence)}": (self.sequence is not None and self.sequence not in _SEQUENCES),
         }
         fault = next((text for text, present in faults.items() if present), None)
         if fault is not None:

@@ -80,9 +80,15 @@ def _way_round(start: RigidTransform, vector: Float, position: Float, turn: floa
     return np.asarray((start * RigidTransform.from_components(shift, turned)).as_matrix())
 
 
-@pytest.mark.parametrize("order", qn.EULER_ORDERS)
+@pytest.mark.parametrize("order", [*qn.EULER_ORDERS, "XYX", "XZX", "YXY", "YZY", "ZXZ", "ZYZ"])
 def test_euler_angles_are_intrinsic(order: str) -> None:
     angles = np.random.default_rng(5).uniform(-3, 3, size=(50, 3))
     theirs = Rotation.from_euler(order, angles).as_matrix()
     ours = qn.rotation_matrix_from_quat(qn.quat_from_euler_angles(angles, order))
     assert ours == pytest.approx(theirs, abs=1e-14)
+
+
+@pytest.mark.parametrize("order", ["XXY", "XYY", "xyz", "XY", "XYZX", "XYW", ""])
+def test_what_is_no_order_of_euler_angles_is_refused(order: str) -> None:
+    with pytest.raises(ValueError, match="no axis follows itself"):
+        qn.quat_from_euler_angles(np.zeros(3), order)

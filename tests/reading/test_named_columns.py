@@ -91,7 +91,7 @@ def check(recording: Recording) -> None:
 
 
 QUATERNIONS = ("quaternion wxyz", "quaternion xyzw")
-EULER_ANGLES = ("euler XYZ deg", "euler zxy rad", "euler YXZ rad", "euler xyz deg")
+EULER_ANGLES = ("euler XYZ deg", "euler zxy rad", "euler YXZ rad", "euler xyz deg", "euler YXY deg", "euler zyz rad")
 
 
 @pytest.mark.parametrize("kind", [*QUATERNIONS, "matrix", *EULER_ANGLES])
@@ -246,6 +246,13 @@ FAULTS: dict[str, tuple[str, str, str]] = {
     "a number for a word": ("order =", "degrees = 0\norder =", "upper.degrees: should be a valid boolean, found 0"),
     "a column twice": ('"upper.x"', '"upper.y"', "'upper.y' is the column of bodies.upper.quaternion already"),
 }  # fmt: skip
+
+
+def test_a_sequence_in_which_an_axis_follows_itself_is_refused(tmp_path: Path) -> None:
+    table, columns = table_and_columns(tmp_path, "euler XYZ deg")
+    columns.write_text(columns.read_text().replace('"XYZ"', '"XXY"'))
+    with pytest.raises(ElbowscrewError, match=r"expected .* YXY or another order .* found 'XXY'"):
+        read_recording(table, columns=columns)
 
 
 @pytest.mark.parametrize("fault", FAULTS)

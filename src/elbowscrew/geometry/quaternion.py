@@ -13,6 +13,7 @@ from elbowscrew.geometry._blocks import in_blocks
 from elbowscrew.geometry._small_angle import cosine_and_sine, divide_rows, length, ratio_of_equals, row_length
 
 EULER_ORDERS: Final = tuple("".join(order) for order in permutations("XYZ"))
+"""Those of three different axes."""
 
 _CONJUGATE: Final = np.array([1.0, -1.0, -1.0, -1.0])
 
@@ -251,7 +252,7 @@ def quat_from_euler_angles(angles: ArrayLike, order: str) -> NDArray[np.float64]
     angles : array_like, shape (..., 3)
         Radians, in the order of the name: for "YXZ" the first is about Y.
     order : str
-        One of the six orders of three different axes, in capitals: "XYZ" means R = Rx Ry Rz.
+        Of three different axes, or the last as the first (proper Euler angles), in capitals: "XYZ" means R = Rx Ry Rz.
 
     Returns
     -------
@@ -260,7 +261,7 @@ def quat_from_euler_angles(angles: ArrayLike, order: str) -> NDArray[np.float64]
     Raises
     ------
     ValueError
-        If the order is none of the six.
+        If the order is none of these twelve.
 
     References
     ----------
@@ -271,8 +272,8 @@ def quat_from_euler_angles(angles: ArrayLike, order: str) -> NDArray[np.float64]
     >>> quat_from_euler_angles([np.pi / 2, np.pi / 2, 0], "XYZ").round(6)
     array([0.5, 0.5, 0.5, 0.5])
     """
-    if order not in EULER_ORDERS:
-        msg = f"Euler order {order!r} is not one of {', '.join(EULER_ORDERS)}"
+    if len(order) != 3 or not set(order) <= set("XYZ") or order[1] in (order[0], order[2]):
+        msg = f"Euler order {order!r} is not XYZ or another one in which no axis follows itself"
         raise ValueError(msg)
     a = np.asarray(angles, dtype=np.float64)
     axes = np.eye(3)
