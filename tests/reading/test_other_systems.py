@@ -228,6 +228,25 @@ def test_trc_files_state_their_unit_and_rate(tmp_path: Path) -> None:
     assert [warning.code for warning in wrong.warnings] == ["frame-rate"]
 
 
+def test_times_in_milliseconds_are_told_by_the_rate(tmp_path: Path) -> None:
+    right = read_recording(trc(tmp_path / "a.trc"), markers=("*",))
+    path = trc(tmp_path / "b.trc")
+    rows = [line.split("\t") for line in path.read_text().splitlines()]
+    for row in rows[6:]:
+        row[1] = f"{1000.0 * float(row[1]):.3f}"
+    path.write_text("\n".join(map("\t".join, rows)) + "\n")
+    found = read_recording(path, markers=("*",))
+    assert found.time_s == pytest.approx(right.time_s, abs=1e-12)
+    assert found.rate_hz == right.rate_hz
+    (warning,) = found.warnings
+    assert warning.code == "times-in-milliseconds"
+    assert "its times go on by 10 a frame, at 100 frames a second as the header states" in warning.message
+    # At another rate than the header's nothing says what the times are.
+    slower = trc(tmp_path / "c.trc", header={"DataRate": "50"})
+    slower.write_text("\n".join(map("\t".join, [*rows[:2], ["50", *rows[2][1:]], *rows[3:]])) + "\n")
+    assert [one.code for one in read_recording(slower, markers=("*",)).warnings] == ["frame-rate"]
+
+
 def test_c3d_files_that_are_none_are_refused(tmp_path: Path) -> None:
     path = tmp_path / "t.c3d"
     path.write_bytes(b"\x02\x50" + bytes(2000))

@@ -93,8 +93,12 @@ def stated_rate(text: str) -> float:
         return float("nan")
 
 
-def frame_rate(path: Path, stated: str, frame: NDArray[np.int64], time_s: Float) -> tuple[float, list[QualityWarning]]:
-    """Frames a second as a file states them, unless its times say otherwise, with a warning then.
+def rate_and_times(
+    path: Path, stated: str, frame: NDArray[np.int64], time_s: Float
+) -> tuple[float, Float, list[QualityWarning]]:
+    """Frames a second as a file states them, unless its times say otherwise, with a warning then; and its times.
+
+    Times that go on a thousand times as far as the stated rate has it are in milliseconds; seconds are given.
 
     Raises
     ------
@@ -107,15 +111,21 @@ def frame_rate(path: Path, stated: str, frame: NDArray[np.int64], time_s: Float)
         if not is_rate(rate):
             msg = f"{path}: neither the header nor the times give a possible frame rate; export the take again"
             raise RecordingError(msg)
-        return rate, []
+        return rate, time_s, []
     # A time rounded at either end is no disagreement.
     rounding_s = 2.0 * max(time_resolution(time_s), 1e-3)
     if is_rate(rate) and abs(counted - rate) <= rate * (0.01 + rounding_s / (time_s[-1] - time_s[0])):
-        return rate, []
+        return rate, time_s, []
+    if is_rate(rate) and abs(1000.0 * counted - rate) <= 0.01 * rate:
+        message = (
+            f"its times go on by {(time_s[-1] - time_s[0]) / (frame[-1] - frame[0]):.4g} a frame, at {rate:g} frames a "
+            "second as the header states: they are taken as milliseconds"
+        )
+        return rate, 1e-3 * time_s, [QualityWarning(code="times-in-milliseconds", message=message)]
     if np.isfinite(rate):
         message = f"the header states {rate:g} frames a second, the times give {counted:.4g}: the latter is used"
-        return counted, [QualityWarning(code="frame-rate", message=message)]
-    return counted, []
+        return counted, time_s, [QualityWarning(code="frame-rate", message=message)]
+    return counted, time_s, []
 
 
 def cut_warnings(source: TextSource, stated: str, rows: int) -> list[QualityWarning]:

@@ -12,7 +12,7 @@ from elbowscrew.model import QualityWarning, Recording, Source
 from elbowscrew.quantities import METERS
 from elbowscrew.reading.builders import ArrayBuilder, MarkerBuilder
 from elbowscrew.reading.cells import read_blocks
-from elbowscrew.reading.clock import check_frames, cut_warnings, frame_rate
+from elbowscrew.reading.clock import check_frames, cut_warnings, rate_and_times
 from elbowscrew.reading.cluster_shapes import swap_warnings
 from elbowscrew.reading.motive_bodies import MotiveBody, sample_bodies
 from elbowscrew.reading.motive_header import (
@@ -64,7 +64,7 @@ def read(source: TextSource, options: ReadOptions) -> Recording:
         msg = f"{source.path}:{header.lines + 1}: no frame follows the header; export the take again"
         raise RecordingError(msg)
     stated_rate = header.pairs.get("Export Frame Rate") or header.pairs.get("Capture Frame Rate") or ""
-    rate, warnings = frame_rate(source.path, stated_rate, frame, time_s)
+    rate, time_s, warnings = rate_and_times(source.path, stated_rate, frame, time_s)
     for builder in builders:
         warnings += builder.warnings(header.version)
     for marker in markers.values():

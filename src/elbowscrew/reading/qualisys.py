@@ -22,7 +22,7 @@ from elbowscrew.model import Recording, Source
 from elbowscrew.quantities import METERS
 from elbowscrew.reading.builders import ArrayBuilder, BodyBuilder
 from elbowscrew.reading.cells import read_blocks
-from elbowscrew.reading.clock import check_frames, cut_warnings, frame_rate, frames_and_times
+from elbowscrew.reading.clock import check_frames, cut_warnings, frames_and_times, rate_and_times
 from elbowscrew.reading.options import ReadOptions
 from elbowscrew.reading.qualisys_markers import HEADER_LINES, marker_header, read_markers, stated_frequency
 from elbowscrew.reading.source import TextSource
@@ -68,7 +68,7 @@ def read(source: TextSource, options: ReadOptions) -> Recording:
     if not frame.size:
         msg = f"{source.path}:{line + 1}: no frame follows the header; export the take again"
         raise RecordingError(msg)
-    rate, warnings = frame_rate(source.path, stated.get("frequency", ""), frame, time_s)
+    rate, time_s, warnings = rate_and_times(source.path, stated.get("frequency", ""), frame, time_s)
     return Recording(
         bodies=tuple(builder.finish() for builder in builders),
         frame=frame,

@@ -13,7 +13,7 @@ from typing import Final, NamedTuple
 from elbowscrew.errors import RecordingError
 from elbowscrew.model import Recording
 from elbowscrew.reading.cells import parse_number
-from elbowscrew.reading.clock import cut_warnings, frame_rate, is_rate, numbered, stated_rate
+from elbowscrew.reading.clock import cut_warnings, is_rate, numbered, rate_and_times, stated_rate
 from elbowscrew.reading.options import ReadOptions, nothing_wanted
 from elbowscrew.reading.source import TextSource
 from elbowscrew.reading.table import MarkerCells, TableCells, read_table
@@ -84,8 +84,8 @@ def read_markers(source: TextSource, header: MarkerHeader, options: ReadOptions)
     frames = cut_warnings(
         replace(source, ends_with_newline=True), header.stated.get("no_of_frames", ""), len(recording.frame)
     )
-    rate_hz, doubts = frame_rate(source.path, stated_rate, recording.frame, recording.time_s)
-    return replace(recording, rate_hz=rate_hz, warnings=(*recording.warnings, *frames, *doubts))
+    rate_hz, time_s, doubts = rate_and_times(source.path, stated_rate, recording.frame, recording.time_s)
+    return replace(recording, rate_hz=rate_hz, time_s=time_s, warnings=(*recording.warnings, *frames, *doubts))
 
 
 def _first_column(source: TextSource, header: MarkerHeader) -> int:

@@ -17,7 +17,7 @@ from elbowscrew.errors import RecordingError
 from elbowscrew.model import Recording, Source
 from elbowscrew.reading.builders import ArrayBuilder, BodyBuilder
 from elbowscrew.reading.cells import read_blocks
-from elbowscrew.reading.clock import check_frames, cut_warnings, frame_rate, numbered
+from elbowscrew.reading.clock import check_frames, cut_warnings, numbered, rate_and_times
 from elbowscrew.reading.options import ReadOptions
 from elbowscrew.reading.source import END_OF_STORAGE_HEADER, TextSource
 
@@ -57,7 +57,7 @@ def read(source: TextSource, _options: ReadOptions) -> Recording:
         msg = f"{source.path}:{line + 1}: no frame follows the header; export the take again"
         raise RecordingError(msg)
     frame = np.arange(rows, dtype=np.int64)
-    rate, warnings = frame_rate(source.path, stated.get("datarate", ""), frame, time_s)
+    rate, time_s, warnings = rate_and_times(source.path, stated.get("datarate", ""), frame, time_s)
     return Recording(
         bodies=tuple(builder.finish() for builder in builders),
         frame=frame,

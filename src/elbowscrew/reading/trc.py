@@ -18,7 +18,7 @@ from elbowscrew.model import QualityWarning, Recording, Source
 from elbowscrew.quantities import METERS
 from elbowscrew.reading.builders import ArrayBuilder, MarkerBuilder
 from elbowscrew.reading.cells import read_blocks
-from elbowscrew.reading.clock import check_frames, cut_warnings, frame_rate
+from elbowscrew.reading.clock import check_frames, cut_warnings, rate_and_times
 from elbowscrew.reading.options import ReadOptions, nothing_wanted, stated_unit
 from elbowscrew.reading.source import TextSource
 
@@ -68,7 +68,7 @@ def read(source: TextSource, options: ReadOptions) -> Recording:
         msg = f"{source.path}:{header.lines + 1}: no frame follows the header"
         raise RecordingError(msg)
     cut = cut_warnings(source, header.stated.get("numframes", ""), frame.size)
-    rate, warnings = frame_rate(source.path, header.stated.get("datarate", ""), frame, time_s)
+    rate, time_s, warnings = rate_and_times(source.path, header.stated.get("datarate", ""), frame, time_s)
     if header.nowhere:
         told = ", ".join(header.nowhere[:_NAMES_TOLD])
         message = f"{len(header.nowhere)} markers are named in the header and have no columns ({told}): left out"
