@@ -9,6 +9,7 @@ import pytest
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.motion.joint.choice import choose_type
+from elbowscrew.motion.joint.contest import Contest
 from elbowscrew.motion.joint.poses import Poses
 from elbowscrew.motion.joint.typed import identify_joint
 
@@ -83,3 +84,40 @@ def test_a_hinge_that_turns_on_and_on_stays_a_hinge(turns: float) -> None:
     for noise_known in (True, False):
         found = choose_type(Poses.of(seen, covariance), noise_known=noise_known)
         assert (found.type, found.status) == ("hinge", "determined")
+
+
+def test_a_joint_that_some_types_come_near_is_not_free() -> None:
+    """A ball that hardly turns, in much noise: of a rigid joint it is 20 mm off, of others not."""
+    rng = np.random.default_rng(0)
+    seen, covariance = mj.noisy(mj.ball(200, 28.0, rng).poses, rng, 2.1, 2.5e-3)
+    for noise_known in (True, False):
+        found = choose_type(Poses.of(seen, covariance), noise_known=noise_known)
+        left = {one.type: one.residual_translation for one in found.candidates if one.valid}
+        assert left["rigid"] > 0.02
+        assert min(left.values()) < 0.012
+        assert (found.type, found.status) == ("undetermined", None)
+
+
+@pytest.mark.parametrize("along", [0, 1, 2])
+def test_outliers_are_few_frames_whichever_way_they_lie(along: int) -> None:
+    rng = np.random.default_rng(10)
+    exact = mj.ball(200, 60.0, rng)
+    errors = np.zeros((200, 6))
+    errors[7::50, 3 + along] = 0.2 * np.array([1.0, -1.0, 1.0, -1.0])
+    seen, covariance = mj.noisy(dq.multiply(exact.poses, dq.exp(0.5 * errors)), rng, 0.1, 2e-4)
+    contest = Contest(Poses.of(seen, covariance), noise_known=True, robust=False)
+    assert contest.left_by_few_frames("ball")
+    # A center that goes to and fro the same way is off in all of them.
+    errors[:, 3 + along] = 0.2 * np.sin(np.linspace(0.0, 20.0, 200))
+    seen, covariance = mj.noisy(dq.multiply(exact.poses, dq.exp(0.5 * errors)), rng, 0.1, 2e-4)
+    assert not Contest(Poses.of(seen, covariance), noise_known=True, robust=False).left_by_few_frames("ball")
+
+
+def test_a_motion_without_a_joint_has_no_angles() -> None:
+    rng = np.random.default_rng(11)
+    seen, covariance = mj.noisy(mj.free(100, 40.0, rng).poses, rng, 0.1, 2e-4)
+    found = identify_joint(seen, covariance, seen[0], noise_known=True)
+    assert found.type == "free"
+    assert not found.has_angles
+    for empty in (found.angle, found.angle_sd, found.residual_rotation, found.residual_translation):
+        assert empty.shape == (0,) * empty.ndim

@@ -94,3 +94,13 @@ def test_the_end_takes_up_a_reference_that_does_not_fit() -> None:
     made = joint_poses(joint, analysis.joint_angles.angle)
     left = dq.log(dq.canonical(dq.multiply(dq.conjugate(made), analysis.displacement)))
     assert np.degrees(2.0 * np.linalg.norm(left[:, :3], axis=1)).max() < 4.0
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3, 4])
+def test_the_end_is_a_small_rotation_whichever_way_it_goes(seed: int) -> None:
+    """Its sign is the one whose scalar part is positive; that of no other part says anything."""
+    trial = simulate_trial(joint_type="two-axes", marker_noise_mm=0.5, frames=120, inversion=60, seed=seed)
+    joint_type = analyze(trial.recording).joint_type
+    assert joint_type is not None
+    assert joint_type.coordinates is not None
+    assert joint_type.coordinates.end[0] > 0.99

@@ -22,6 +22,7 @@ from cluster_noise import (
     wander,
     white,
 )
+from scipy.optimize import brentq
 from scipy.stats import binom, t
 from trials import LINE, START, joint_poses
 
@@ -37,9 +38,11 @@ from elbowscrew.motion.joint.interval import (
     SkinMotion,
     joint_interval,
     pose_radii,
+    skin_covariance,
     skin_sensitivity,
 )
 from elbowscrew.motion.joint.joint_fit import fit_joint
+from elbowscrew.motion.joint.lines import Z_LINE
 from elbowscrew.motion.joint.nonrigid import nonrigid_covariance, residual_covariance
 from elbowscrew.motion.joint.tails import Mixture
 from elbowscrew.motion.screws.pose_noise import covariance_from_markers
@@ -310,3 +313,42 @@ def test_the_pose_of_a_body_carries_its_lines() -> None:
     cone, radius = pose_radii(covariance, h, point)
     assert np.mean(turn <= cone) == pytest.approx(0.95, abs=0.006)
     assert np.mean(place <= radius) == pytest.approx(0.95, abs=0.006)
+
+
+def test_a_mixture_of_covariances_holds_its_share() -> None:
+    """Along one direction it is a mixture of Student's t, each scaled by its own standard deviation."""
+    variance, freedom, weight = np.array([1e-6, 9e-6, 4e-6]), np.array([3.0, 8.0, np.inf]), np.array([0.5, 0.2, 0.3])
+    mixture = Mixture(variance[:, None, None], freedom, weight)
+
+    def outside(radius: float) -> float:
+        return float(2.0 * np.sum(weight * t.sf(radius / np.sqrt(variance), freedom)))
+
+    for level in (0.5, 0.95, SURE):
+        wanted = brentq(lambda radius, level=level: outside(radius) - (1.0 - level), 0.0, 1.0, xtol=1e-16)
+        assert mixture.radius(level) == pytest.approx(wanted, rel=1e-6)
+
+
+@pytest.mark.parametrize("power", [1.5, 3.0])
+def test_stated_skin_is_what_a_fit_does_when_its_cluster_goes_so(power: float) -> None:
+    """Turned and shifted along the worst of the courses, whichever that is where the joint stays longest."""
+    hinge = Hinge(top_deg=70.0, still=True)
+    angle = np.radians(70.0) * np.linspace(0.0, 1.0, hinge.frames) ** power
+    exact = joint_poses(angle, np.zeros(hinge.frames))
+    covariance = np.broadcast_to(covariance_from_markers(hinge.shapes[1], 2e-4), (hinge.frames, 6, 6))
+    fit = fit_joint(exact, covariance, LINE, NEAR)
+    influence = influence_of_fit(fit, exact, covariance)
+    u = angle / angle[-1]
+    size, shift = 1e-4, 1e-5
+    told = []
+    for course in (u, np.sin(0.5 * np.pi * u), u**2, np.sin(np.pi * u)):
+        square = np.zeros(2)
+        for twist in np.diag([size] * 3 + [shift] * 3):
+            moved = dq.multiply(exact, dq.exp(0.5 * course[:, None] * twist))
+            after = fit_joint(moved, covariance, LINE, NEAR, start=fit)
+            for k, (one, other) in enumerate(((fit.proximal, after.proximal), (fit.distal, after.distal))):
+                direction = dq.transform_lines(dq.conjugate(one), dq.transform_lines(other, Z_LINE))
+                square[k] += np.sum(direction[:2] ** 2)
+        told.append(square / 3.0)
+    found = skin_covariance(influence, (SkinMotion(segment="distal", turn=size, shift=shift),))
+    tilts = np.array([np.trace(rows @ found @ rows.T) for rows in (ROWS[0], ROWS[2])])
+    assert tilts == pytest.approx(np.max(told, axis=0), rel=1e-3)

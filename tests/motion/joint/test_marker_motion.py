@@ -36,6 +36,25 @@ def test_an_analysis_knows_of_the_markers_what_there_is_to_know(noise: Noise, ga
     assert interval_of(alone, fitted(alone)[1]).radius(rows) > gain * 0.95 * wanted
 
 
+@pytest.mark.parametrize("moving", [0, 1])
+def test_each_body_is_judged_by_its_own_markers(moving: int) -> None:
+    """Skin of one cluster alone: the proximal body's, or the distal one's."""
+    hinge = Hinge(top_deg=60.0, cycles=2)
+    rng = np.random.default_rng(7)
+    off = [white()(hinge, rng), skin(4e-3)(hinge, rng)]
+    pair = (off[moving == 0][0], off[moving == 1][1])
+    found = hinge_of(recording_of(hinge, pair))
+    case = seen(hinge, pair)
+    case = case._replace(clusters=tuple(replace(cluster, own_shape=True) for cluster in case.clusters))
+    wanted = interval_of(case, fitted(case)[1])
+    assert found.decided_by == "A"
+    assert found.axis_cone == pytest.approx(wanted.radius(np.eye(9)[:2]), rel=0.05)
+    first, second = case.clusters
+    exchanged = (replace(first, nonrigid=second.nonrigid), replace(second, nonrigid=first.nonrigid))
+    wrong = interval_of(case._replace(clusters=exchanged), fitted(case)[1])
+    assert abs(wrong.radius(np.eye(9)[:2]) / found.axis_cone - 1.0) > 0.1  # it matters whose markers move
+
+
 @pytest.mark.parametrize("frames", [8, 12, 16])
 def test_markers_at_rest_to_the_last_digit_have_no_spectrum(frames: int) -> None:
     shape = np.array([[0.0, 0.0, 0.001], [0.09, 0.0, 0.0], [0.0, 0.06, 0.0]])

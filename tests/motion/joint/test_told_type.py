@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from trials import joint_poses
 
-from elbowscrew import Settings, analyze, read_recording, simulate_trial
+from elbowscrew import Recording, RigidBody, Settings, analyze, read_recording, simulate_trial
 from elbowscrew.cli.render import analysis_table
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.motion.joint.typed import identify_joint
@@ -173,3 +173,22 @@ def test_a_joint_that_hardly_moves_has_no_axis() -> None:
     for known in (True, False):
         found = identify_joint(seen, covariance, seen[0], noise_known=known)
         assert (found.type, found.status) == ("rigid", "determined")
+
+
+def test_axes_that_turn_one_at_a_time_are_warned_of() -> None:
+    """Both orders of the two axes make the same poses, and what can be done about it is said."""
+    rng = np.random.default_rng(31)
+    exact = mj.two_axes(2, (90.0, 90.0), 80.0, 0.03, rng)
+    sway = np.radians(80.0) * (0.5 - 0.5 * np.cos(np.linspace(0.0, 4.0 * np.pi, 120)))
+    one, two = exact.truth["axis1"], exact.truth["axis2"]
+    first, second = np.concatenate([sway, 0.0 * sway]), np.concatenate([0.0 * sway, sway])
+    poses = dq.multiply(dq.multiply(mj.turned(first, one), exact.poses[0]), mj.turned(second, two))
+    seen, _ = mj.noisy(poses, rng, 0.1, 2e-4)
+    body = RigidBody(name="forearm", dual_quat_lab_body=seen, loss=np.zeros(240, dtype=np.uint8))
+    analysis = analyze(Recording.from_bodies([body], rate_hz=100.0))
+    assert [warning.message for warning in analysis.warnings if warning.code == "axes-order"] == [
+        "the joint has two axes, but hardly turns about both at once, so that it does not tell which one is that of "
+        "the proximal body: axes and angles may be the other way round; turn about each at several angles of the other"
+    ]
+    told = joint_summary(analysis)["joint_type"]
+    assert (told["type"], told["status"]) == ("two_axes", "approximate")

@@ -9,11 +9,13 @@ from trials import LINE
 
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry.arrays import Float
-from elbowscrew.motion.joint.influence import Influence
+from elbowscrew.motion.joint.direction_fit import fit_direction
+from elbowscrew.motion.joint.influence import Influence, influence_of_fit
 from elbowscrew.motion.joint.interval import joint_interval
-from elbowscrew.motion.joint.joint_fit import LineFit
+from elbowscrew.motion.joint.joint_fit import HINGE_NUMBERS, LineFit
 from elbowscrew.motion.joint.lines import line_twist
 from elbowscrew.motion.joint.wander import Wander, wander_of_axis
+from elbowscrew.motion.screws.uncertainty import joint_covariance
 
 
 def found(hinge: Hinge, noise: Noise, rng: np.random.Generator) -> tuple[LineFit, Influence, Wander]:
@@ -79,3 +81,26 @@ def test_noise_is_no_wander(noise: Noise) -> None:
     rng = np.random.default_rng(4)
     alarms = [found(Hinge(), noise, rng)[2].significant for _ in range(30)]
     assert np.mean(alarms) <= 0.07
+
+
+def test_of_orientations_alone_the_tilts_are_found_and_no_places() -> None:
+    hinge = wandering(120.0, np.radians(6.0), 0.0)
+    case = seen(hinge, white(2e-5)(hinge, np.random.default_rng(5)))
+    covariance = joint_covariance(case.joint, *case.noise).copy()
+    covariance[:, :3, 3:] = covariance[:, 3:, :3] = 0.0
+    covariance[:, 3:, 3:] = np.inf
+    turned = dq.dual_quat_from_pose(case.joint[:, :4], np.zeros((hinge.frames, 3)))
+    fit = fit_direction(turned, covariance)
+    result = wander_of_axis(fit, influence_of_fit(fit, turned, covariance), ())
+    assert result is not None
+    assert result.significant
+    assert np.degrees(result.tilt) == pytest.approx(6.0, abs=0.3)
+    numbers = HINGE_NUMBERS + 4
+    tilts = [0, 1, 4, 5, HINGE_NUMBERS, HINGE_NUMBERS + 1]
+    places = [k for k in range(numbers) if k not in tilts]
+    assert (result.step.shape, result.inverse.shape) == ((numbers,), (numbers, numbers))
+    assert not result.step[places].any()
+    assert not result.inverse[places].any()
+    assert (np.linalg.eigvalsh(result.inverse[np.ix_(tilts, tilts)]) > 0.0).all()
+    rows = result.error_rows(np.array(result.middle + result.half_range))
+    assert (rows.shape, result.mean_rows.shape) == ((4, numbers), (4, numbers))
