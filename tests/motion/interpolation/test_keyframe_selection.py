@@ -9,46 +9,19 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from wandering import BETWEEN, MARKERS, POINTS, marker_errors, wandering
 
 import elbowscrew.motion.interpolation.keyframe_selection as selection_module
 from elbowscrew import Settings, analyze, simulate_trial
 from elbowscrew.configuring import settings_from
 from elbowscrew.errors import SettingError, UsageError
-from elbowscrew.geometry import dual_quat_from_screw, sclerp, sdlb
+from elbowscrew.geometry import dual_quat_from_screw, sclerp
 from elbowscrew.geometry import dual_quaternion as dq
-from elbowscrew.geometry import quaternion as qn
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.model.joint_coordinates import JointCoordinates
-from elbowscrew.motion.difference import points_from_markers
 from elbowscrew.motion.interpolation.keyframe_selection import select_keyframes
 from elbowscrew.motion.interpolation.segment_errors import BASES, JointSeries, PoseTrack
 from elbowscrew.motion.joint.coordinates import joint_poses
-
-MARKERS = np.array([[38, 12, 31], [-41, 27, 8], [9, -44, -28], [-6, 5, -47], [60, 3, 10]]) * 1e-3
-POINTS = points_from_markers(MARKERS)
-BETWEEN: dict[str, Any] = {"sclerp": sclerp, "sdlb": sdlb}
-
-
-def wandering(count: int, seed: int, step: float = 0.15) -> Float:
-    """A motion without an axis: sums of small random turns and shifts."""
-    rng = np.random.default_rng(seed)
-    turn = np.cumsum(rng.normal(scale=step, size=(count, 3)), axis=0)
-    place = np.cumsum(rng.normal(scale=0.1 * step, size=(count, 3)), axis=0)
-    return dq.continuous_signs(dq.dual_quat_from_pose(qn.quat_from_rotation_vector(turn), place))
-
-
-def marker_errors(pose: Float, parameter: Float, keys: tuple[int, ...], method: str) -> Float:
-    """RMS distance of the markers in every frame, from the markers themselves."""
-    model = np.empty_like(pose)
-    for first, last in itertools.pairwise(keys):
-        rows = np.arange(first, last + 1)
-        span = parameter[last] - parameter[first]
-        share = (parameter[rows] - parameter[first]) / span if span > 0 else np.zeros(rows.size)
-        model[rows] = BETWEEN[method](pose[first], pose[last], share, way="as given")
-        model[last] = pose[last]
-    apart = dq.transform_points(pose[:, None], MARKERS) - dq.transform_points(model[:, None], MARKERS)
-    distance: Float = np.sqrt(np.mean(np.sum(apart**2, axis=-1), axis=1))
-    return distance
 
 
 def errors_of_sets(

@@ -12,6 +12,7 @@ from elbowscrew.errors import SettingError
 from elbowscrew.geometry.arrays import Bool, Float, Index
 from elbowscrew.model import BodyPoints, Selection
 from elbowscrew.motion.difference import displacement_of_error, told_error
+from elbowscrew.motion.interpolation.segment_cone import Cone
 from elbowscrew.motion.interpolation.segment_errors import JointSeries, PoseTrack
 from elbowscrew.quantities import in_digits
 
@@ -241,24 +242,37 @@ def _fewest(track: _Track, tolerance: float) -> Index:
     before = np.full(count, -1, dtype=np.int64)
     before[0] = 0
     frontier: Index = np.zeros(1, dtype=np.int64)
-    screen = _Screen.of(track, tolerance)
+    screen, cone = _Screen.of(track, tolerance), _cone(track, tolerance)
     while before[-1] < 0:
         reached = []
         for first in frontier[::-1].tolist():  # the farthest first: it reaches most of what there is to reach
             open_rows = np.flatnonzero(before[first + 1 : track.reach(first) + 1] < 0) + first + 1
             open_rows = open_rows[track.parameter[open_rows] > track.parameter[first]]
+            if cone is not None and open_rows.size:
+                open_rows = open_rows[cone.may_hold(first, open_rows)]
+            if not open_rows.size:
+                continue
             new = _reached_from(track, screen, first, open_rows, tolerance)
             before[new] = first
             reached.append(new)
             if before[-1] >= 0:
                 break
-        frontier = np.sort(np.concatenate(reached))
+        frontier = np.sort(np.concatenate([np.zeros(0, dtype=np.int64), *reached]))
         if not frontier.size:
             raise _no_set(track, tolerance)
     rows = [count - 1]
     while rows[-1]:
         rows.append(int(before[rows[-1]]))
     return np.array(rows[::-1], dtype=np.int64)
+
+
+def _cone(track: _Track, tolerance: float) -> Cone | None:
+    """What tells most segments apart that cannot hold; None where a joint's own angles lead from pose to pose."""
+    if track.poses.series is not None:
+        return None
+    placed = np.ascontiguousarray(track.poses.placed.reshape(-1, 12))
+    quat = np.ascontiguousarray(track.poses.pose[:, :4])
+    return Cone(placed, quat, track.parameter, tolerance, track.method == "sclerp")
 
 
 def _reached_from(track: _Track, screen: _Screen, first: int, ends: Index, tolerance: float) -> Index:
