@@ -10,7 +10,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from elbowscrew.errors import AnalysisError, ElbowscrewError
+from elbowscrew.errors import AnalysisError, ElbowscrewError, UsageError, shown
 from elbowscrew.model import ComparedModels, ComparedOverTrials, Comparison, TrialsComparison
 from elbowscrew.motion.interpolation.comparison import compare
 from elbowscrew.motion.interpolation.keyframe_sources import ComparisonPlan
@@ -40,6 +40,10 @@ def compare_trials(
     found: list[Comparison] = []
     failures: list[tuple[str, ElbowscrewError]] = []
     given = [paths] if isinstance(paths, str | os.PathLike) else list(paths)
+    strange = next((one for one in given if not isinstance(one, str | os.PathLike)), None)
+    if strange is not None:
+        msg = f"compare_trials: paths: expected the paths of recordings, found {shown(strange)}"
+        raise UsageError(msg)
     for number, path in enumerate(given, start=1):
         try:
             recording = read_recording(path, markers=wanted.markers, **wanted.statements)

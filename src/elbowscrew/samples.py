@@ -29,6 +29,17 @@ SAMPLES: Final[dict[str, str]] = {
 _HERE: Final = Path(__file__).parent
 
 
+def names() -> tuple[str, ...]:
+    """Names of all samples; `SAMPLES` says what each of them is.
+
+    Examples
+    --------
+    >>> names()[:2]
+    ('elbow_paper', 'elbow_natural')
+    """
+    return tuple(SAMPLES)
+
+
 def path(name: str = "") -> Path:
     """Give the file of a sample, or its folder.
 

@@ -372,3 +372,9 @@ def test_landmarks_of_markers_that_are_not_there_are_told_beside_those_that_are(
     assert code == 4
     assert_one_line(err)
     assert "give landmarks as coordinates" in err
+
+
+def test_a_list_of_a_comparison_is_told_as_an_option(capsys: pytest.CaptureFixture[str], take: Path) -> None:
+    code, _, err = run(capsys, "compare", take, "--data", "low-pass")
+    assert code == 2
+    assert "error: --data: expected some of raw, lowpass, decimated, found low-pass; did you mean 'lowpass'?" in err

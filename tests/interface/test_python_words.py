@@ -120,6 +120,8 @@ def test_a_comparison_takes_its_plan_as_keywords(elbow: Analysis) -> None:
     assert set(found.models.law) == {"harmonic"}
     assert set(found.models.method) == {"sclerp"}
     assert set(found.models.data) == {"raw"}
+    with pytest.raises(UsageError, match="compare_trials: paths: expected the paths of recordings, found 0"):
+        elbowscrew.compare_trials(range(2))  # type: ignore[arg-type]
     with pytest.raises(UsageError, match=r"laws: expected some of .*did you mean 'linear'"):
         elbowscrew.compare(elbow.recording, laws=["linaer"])  # type: ignore[list-item]
 

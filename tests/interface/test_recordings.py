@@ -10,6 +10,7 @@ import pytest
 
 import elbowscrew
 from elbowscrew import Recording, RigidBody
+from elbowscrew.errors import UsageError
 from elbowscrew.model import Marker
 
 HALF = np.sqrt(0.5)
@@ -82,3 +83,23 @@ def test_a_notebook_shows_what_was_tracked_and_what_was_not(samples: Path) -> No
     read = elbowscrew.read_recording(samples / "elbow_natural.csv")._repr_html_()
     assert "elbow_natural.csv (Motive columns 1.23)" in read
     assert "300 at 100 Hz, numbered 0 to 299" in read
+
+
+def test_bodies_and_markers_by_name(samples: Path) -> None:
+    read = elbowscrew.read_recording(samples / "elbow_moving_arm_mm.csv", markers=("*",))
+    assert all(read[body.name] is body for body in read.bodies)
+    assert all(read[marker.name] is marker for marker in read.markers)
+    with pytest.raises(KeyError, match="no body or marker 'Fore arm'; did you mean 'Forearm'"):
+        read["Fore arm"]
+    with pytest.raises(KeyError, match="no body or marker 'q'; there are 'Upper Arm', 'Forearm'"):
+        read["q"]
+    twice = Recording.from_bodies([read.bodies[0], read.bodies[0]], rate_hz=100.0)
+    with pytest.raises(KeyError, match="2 are called 'Upper Arm'"):
+        twice["Upper Arm"]
+    assert read.duration_s == read.time_s[-1] - read.time_s[0] > 0.0
+    assert recording().duration_s == 0.04
+
+
+def test_what_is_no_body_makes_no_recording() -> None:
+    with pytest.raises(UsageError, match=r"expected bodies, from RigidBody.* found 3"):
+        Recording.from_bodies([3], rate_hz=100.0)  # type: ignore[list-item]

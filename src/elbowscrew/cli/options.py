@@ -139,4 +139,8 @@ def comparison_plan(
         **{name: parts(name, one) for name, one in words.items()},
         **{name: whole_numbers(name, parts(name, one)) for name, one in numbers.items()},
     }
-    return ComparisonPlan(**{name: one for name, one in given.items() if one is not None})  # type: ignore[arg-type]
+    try:
+        return ComparisonPlan(**{name: one for name, one in given.items() if one is not None})  # type: ignore[arg-type]
+    except UsageError as error:  # in the fields' names, which the options have
+        msg = f"--{error}"
+        raise UsageError(msg) from error

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from elbowscrew.choices import LengthUnit
 from elbowscrew.column_file import ColumnFile
+from elbowscrew.errors import UsageError, did_you_mean, shown
 from elbowscrew.geometry import dual_quaternion, nonrigid_coordinates, quaternion
 from elbowscrew.geometry._blocks import evenly_thinned
 from elbowscrew.geometry.arrays import Bool, Float, Index
@@ -366,6 +367,29 @@ class Recording(ArrayRecord):
     warnings: tuple[QualityWarning, ...] = ()
     ordered: bool = False
 
+    @property
+    def duration_s(self) -> float:
+        """Seconds from the first frame to the last."""
+        return float(self.time_s[-1] - self.time_s[0]) if self.time_s.size else 0.0
+
+    def __getitem__(self, name: str) -> RigidBody | Marker:
+        """Give a body or a marker by its name.
+
+        Raises
+        ------
+        KeyError
+            If there is none of that name, or several; it asks back, or names those that there are.
+        """
+        every: list[RigidBody | Marker] = [*self.bodies, *self.markers]
+        found = [one for one in every if one.name == name]
+        if len(found) == 1:
+            return found[0]
+        if found:
+            raise KeyError(f"{len(found)} are called {name!r}: take them from bodies and markers")
+        names = [one.name for one in every]
+        hint = did_you_mean(name, names) or f"; there are {', '.join(map(repr, names)) or 'none'}"
+        raise KeyError(f"no body or marker {name!r}{hint}")
+
     def __repr__(self) -> str:
         named = ", ".join(repr(body.name) for body in self.bodies)
         return f"Recording({self.frame.size} frames at {self.rate_hz:g} Hz; bodies {named})"
@@ -408,6 +432,10 @@ class Recording(ArrayRecord):
     @classmethod
     def from_bodies(cls, bodies: Sequence[RigidBody], *, rate_hz: float) -> Recording:
         """Build a recording from bodies of equally many frames, numbered from 0 at a fixed rate."""
+        strange = next((one for one in bodies if not isinstance(one, RigidBody)), None)
+        if strange is not None:
+            msg = f"expected bodies, from RigidBody.from_quaternions or RigidBody.from_matrices, found {shown(strange)}"
+            raise UsageError(msg)
         lengths = {body.loss.shape[0] for body in bodies}
         if len(lengths) != 1 or not rate_hz > 0.0:
             msg = f"expected bodies of equally many frames and a positive rate, found {sorted(lengths)} and {rate_hz}"
