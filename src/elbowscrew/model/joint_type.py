@@ -99,7 +99,9 @@ class TwoAxes(ArrayRecord):
     axis1, axis2 : JointLine
     covariance : ndarray, shape (12, 12)
         Of tilts and shifts of axis 1, four numbers between the axes, and tilts and shifts of axis 2, under noise of the
-        residuals' size and autocorrelation; cones, radii and deviations have all that tells of errors in them.
+        residuals' size and autocorrelation; cones, radii and deviations have all that tells of errors in them. The four
+        between are along any basis of the twists across both axes, which only this joint has: they compare with no
+        other joint's.
     angle_between : Measure
         Folded to 90 deg at most, rad.
     distance, foot1, foot2 : Measure or None
