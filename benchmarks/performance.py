@@ -22,6 +22,7 @@ from typing import Any
 import batch
 import kernels
 import keyframes
+import pages
 import start_up
 import tables
 import trial
@@ -68,6 +69,11 @@ PARTS: dict[str, Part] = {
         "The best of several runs.",
         lambda folder, quick: keyframes.measure(quick=quick),
     ),
+    "pages": (
+        "Pages",
+        "Loaded to the end of the load event, where playwright and Chromium are there.",
+        lambda folder, quick: pages.measure(folder / "pages"),
+    ),
 }
 
 
@@ -107,6 +113,7 @@ def machine() -> dict[str, Any]:
     """What the numbers were measured with."""
     return {
         "cores": os.cpu_count(),
+        "load": os.getloadavg()[0],
         "system": platform.system(),
         "python": platform.python_version(),
         "elbowscrew": version("elbowscrew"),
@@ -129,6 +136,7 @@ def page(results: dict[str, Any]) -> str:
         INTRODUCTION.format(
             elbowscrew=about["elbowscrew"],
             cores=about["cores"],
+            load=about["load"],
             system=about["system"],
             python=about["python"],
             libraries=libraries,
@@ -153,6 +161,8 @@ Made by `python benchmarks/performance.py --docs docs/explanation/performance.md
 beside what a user would take instead.
 
 elbowscrew {elbowscrew}, {cores} cores, {system}, Python {python}, {libraries}.
+When it began, {load:.1f} other processes ran in the mean of a minute; where that is much over 0, times are too long
+and ratios rough.
 Tasks take turns with their yardsticks; a ratio is that of the
 medians, its range that of the rounds. Read the ratios: the times are those of one machine.
 
