@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+import io
+import re
 from dataclasses import replace
+from importlib import resources
 
 import numpy as np
 import pytest
 from drawn_trials import drawn_trial
+from PIL import Image
 from read_charts import keys_in, panels_in, picture_in
 
 from elbowscrew.geometry.arrays import Float
+from elbowscrew.plots.style import AXES
+from elbowscrew.report.clip import clip_of
 from elbowscrew.report.joint_charts import angles_chart, wander_chart
 from elbowscrew.view.long_trials import stretch_of
 
@@ -149,3 +155,16 @@ def test_of_orientations_the_axis_tilts_and_has_no_place() -> None:
     assert html is not None
     assert [panel.words[1] for panel in panels_in(html)] == ["Tilt from the mean axis (deg)"]
     assert picture_in(html)[1].text == "Tilt of the joint's axis from its mean."
+
+
+def test_axes_have_one_color_in_figures_on_the_page_and_in_its_view() -> None:
+    page = (resources.files("elbowscrew.report") / "static" / "page.css").read_text()
+    colors = [str(look["color"]).lower() for look in AXES]
+    light = page[: page.index("@media")]
+    assert re.findall(r"--axis[123]: (#[0-9a-f]{6})", light) == colors
+    dark = re.findall(r"--axis[123]: (#[0-9a-f]{6})", page[len(light) :])
+    assert len(set(dark)) == 3
+    still = np.asarray(Image.open(io.BytesIO(clip_of(drawn_trial("two axes"), ".png"))).convert("RGB")).astype(int)
+    for color in colors[:2]:
+        wanted = [int(color[k : k + 2], 16) for k in (1, 3, 5)]
+        assert (np.abs(still - wanted).max(axis=2) < 3).sum() > 20, color  # the first is seen nearly end-on

@@ -18,6 +18,7 @@ from elbowscrew.errors import OutputError, UsageError
 from elbowscrew.geometry.arrays import Bool, Float
 from elbowscrew.geometry.quaternion import quat_from_rotation_vector, rotate, rotation_matrix_from_quat
 from elbowscrew.model.mesh import Mesh
+from elbowscrew.plots.style import AXES
 from elbowscrew.report.scene import scene_of
 from elbowscrew.results.meshes_file import placed_meshes
 from elbowscrew.results.staging import settle, write_files
@@ -225,13 +226,13 @@ class _Stage:
     def _axes(self, drawn: _Drawing, row: int) -> None:
         """Draw the joint's own axes or center, else its one axis."""
         scene = self.scene
-        for axis, end in zip(scene["joint"]["axes"], ("proximal", "distal"), strict=False):
+        for axis, look in zip(scene["joint"]["axes"], AXES, strict=False):
             along = axis["half"] * np.array(axis["direction"])
             ends = np.array([axis["center"] - along, axis["center"] + along])
             if axis["moves"]:
                 ends = self._moved(row, ends)
-            drawn.line(ends, _COLORS[end], 2.6)
-            drawn.label(ends[1], axis["name"], _COLORS[end])
+            drawn.line(ends, look["color"], 2.6)
+            drawn.label(ends[1], axis["name"], _INK)
         if scene["joint"]["center"] is not None:
             drawn.disc(np.array(scene["joint"]["center"]), 5.0, _INK)
         elif not scene["joint"]["axes"]:
