@@ -105,7 +105,7 @@ def plot_joint_in_body(ax: Axes3D, analysis: Analysis | TrialView, body: JointIn
         shown += plot_body(ax, origin, markers, unit, look, word)
     equal_aspect(ax, np.concatenate(shown))
     label_space(ax, unit)
-    ax.set_title(f"{body.word}'s frame", fontweight="normal", loc="center")
+    ax.set_title(f"{body.word}'s frame", fontweight="normal", loc="center", y=1.06)  # clear of the box's corner
     return ax
 
 
