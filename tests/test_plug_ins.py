@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import html
 import importlib
+import json
 import re
 import sys
 from collections.abc import Iterator
@@ -20,6 +21,7 @@ from elbowscrew.errors import OutputError, RecordingError, SettingError, UsageEr
 from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat
 from elbowscrew.reading import plugged
 from elbowscrew.reading.registry import recordings_in
+from elbowscrew.results.summary import are_installed, library_versions, summary_from_analysis
 from elbowscrew.study.resume import standing_of
 from elbowscrew.study.task import TrialTask, analyze_trial, versions_here
 from elbowscrew.study.trials import find_trials
@@ -70,6 +72,13 @@ def test_the_plug_in_of_the_documentation_reads_its_format(installed: Path) -> N
     assert source is not None
     assert source.layout == "My lab's poses"
     assert len(source.sha256) == 64
+    versions = summary_from_analysis(found)["versions"]
+    assert versions == {**library_versions(), "mylab_elbowscrew": "1.0"}
+    # A batch keeps what was made with the plug-in that is installed, and only that.
+    assert are_installed(versions)
+    assert not are_installed({**versions, "mylab_elbowscrew": "1.1"})
+    assert not are_installed({**versions, "another": "1.0"})
+    assert not are_installed({"mylab_elbowscrew": "1.0"})
 
 
 def test_its_files_are_found_in_folders(installed: Path) -> None:
@@ -132,6 +141,7 @@ def test_a_law_of_a_plug_in_is_taken_kept_and_rebuilt(law: Path, tmp_path: Path,
     np.testing.assert_allclose(found.interpolated.angle, known.interpolated.angle, atol=1e-12)
     folder = elbowscrew.save_analysis(found, tmp_path / "result", figure_formats=())
     assert elbowscrew.read_result(folder).settings.law == "my-law"
+    assert json.loads((folder / "summary.json").read_text())["versions"]["mylab_laws"] == "1.0"
     rebuilt = elbowscrew.interpolate(folder / "keyframes.csv", frames=80)
     np.testing.assert_allclose(rebuilt.angle, found.interpolated.angle, atol=1e-9)
 
@@ -175,6 +185,7 @@ def short_trial() -> elbowscrew.Analysis:
 def test_the_exporter_of_the_documentation_writes_into_the_result(exporter: Path, tmp_path: Path) -> None:
     analysis = short_trial()
     folder = elbowscrew.save_analysis(analysis, tmp_path / "result", figure_formats=(), report=False)
+    assert json.loads((folder / "summary.json").read_text())["versions"]["mylab_export"] == "1.0"
     placed = folder / "exports" / "mylab-angle"
     assert sorted(path.name for path in placed.iterdir()) == ["angle.txt", "joint.txt"]
     angle = np.loadtxt(placed / "angle.txt", skiprows=1)[:, 1]

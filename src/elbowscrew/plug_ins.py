@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from functools import cache
 from typing import TYPE_CHECKING, Any, Final, TypeVar
 
@@ -68,6 +69,12 @@ def told(group: str, name: str) -> str:
 def _told(group: str, point: EntryPoint) -> str:
     owner = "an unknown distribution" if point.dist is None else f"the distribution {point.dist.name!r}"
     return f"the {group.rpartition('.')[2].removesuffix('s')} {point.name!r} of {owner} ({point.value})"
+
+
+def versions(group: str, wanted: Iterable[str]) -> dict[str, str]:
+    """Give the versions of the distributions that bring entry points of these names, as far as there are any."""
+    dists = [point.dist for name in wanted for point in _points(group).get(name, ())]
+    return {dist.name: dist.version for dist in dists if dist is not None}
 
 
 def brief(error: BaseException) -> str:

@@ -332,6 +332,8 @@ class Source:
     """Names of all markers in the file, read or not."""
     bones: tuple[str, ...] = ()
     """Names of all bones of skeletons in the file, read or not."""
+    plug_in: Mapping[str, str] = field(default_factory=dict)
+    """The distribution that brought the reader, if it was not one of ours, and its version."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)

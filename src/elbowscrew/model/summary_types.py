@@ -408,7 +408,7 @@ class Summary(TypedDict):
     interpolation: ModelSummary
     warnings: list[WarningSummary]
     versions: dict[str, str]
-    """Versions of Python and of the libraries that the results depend on."""
+    """Versions of Python, of the libraries that the results depend on, and of plug-ins that were asked for."""
 
 
 class FileClock(TypedDict):

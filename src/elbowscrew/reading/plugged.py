@@ -89,9 +89,9 @@ def read_by(reader: Reader, file: Path, options: ReadOptions) -> Recording:
     if not isinstance(found, Recording):
         msg = f"{file}: the reader {reader.name!r}: expected a Recording, found {type(found).__name__}"
         raise RecordingError(msg)
-    if found.source is not None:
-        return found
-    return replace(found, source=Source(path=str(file), sha256=sha256_of(file), layout=reader.name))
+    source = found.source or Source(path=str(file), sha256=sha256_of(file), layout=reader.name)
+    names = [name for name, one in zip(plug_ins.names(plug_ins.READERS), readers(), strict=True) if one is reader]
+    return replace(found, source=replace(source, plug_in=plug_ins.versions(plug_ins.READERS, names)))
 
 
 def _failed(file: Path, reader: Reader, error: BaseException) -> RecordingError:

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import platform
+from collections.abc import Mapping
 from functools import cache
-from importlib.metadata import version
+from importlib.metadata import PackageNotFoundError, version
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowscrew import plug_ins
 from elbowscrew._version import __version__
+from elbowscrew.choices import EXPORT_NAMES, LAW_NAMES
 from elbowscrew.configuring import options_from_settings
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.joints import side_between
@@ -70,7 +73,7 @@ def summary_from_analysis(analysis: Analysis) -> Summary:
         "motion": _motion(analysis),
         "interpolation": _interpolation(analysis),
         "warnings": warnings_summary(analysis.warnings),
-        "versions": library_versions(),
+        "versions": {**library_versions(), **_plug_in_versions(analysis)},
     }
 
 
@@ -100,10 +103,31 @@ def library_versions() -> dict[str, str]:
     return {"python": platform.python_version(), **{name: _version_of(name) for name in _LIBRARIES}}
 
 
+def are_installed(versions: Mapping[str, str]) -> bool:
+    """Whether the versions that a result tells, of plug-ins too, are those that are installed."""
+    known = library_versions()
+    others = {name: _version_of(name) for name in versions if name not in known}
+    return dict(versions) == {**known, **others}
+
+
+def _plug_in_versions(analysis: Analysis) -> dict[str, str]:
+    """Versions of the distributions whose reader, law or exports were asked for."""
+    source, settings = analysis.recording.source, analysis.settings
+    exports = [name for name in settings.export if name not in EXPORT_NAMES]
+    return {
+        **(source.plug_in if source is not None else {}),
+        **(plug_ins.versions(plug_ins.LAWS, [settings.model_law]) if settings.model_law not in LAW_NAMES else {}),
+        **(plug_ins.versions(plug_ins.EXPORTERS, exports) if exports else {}),
+    }
+
+
 @cache
 def _version_of(library: str) -> str:
-    """Looked up once: a fifth of the time of a short trial would go into it."""
-    return version(library)
+    """Looked up once: a fifth of the time of a short trial would go into it. Empty where it is not installed."""
+    try:
+        return version(library)
+    except PackageNotFoundError:
+        return ""
 
 
 def _trial(analysis: Analysis) -> TrialSummary:

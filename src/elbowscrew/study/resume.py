@@ -15,7 +15,7 @@ from elbowscrew.results.exporting import EXPORTS
 from elbowscrew.results.plugged import missing
 from elbowscrew.results.proof import proof_of
 from elbowscrew.results.staging import settle
-from elbowscrew.results.summary import landmarks_summary, library_versions, settings_summary
+from elbowscrew.results.summary import are_installed, landmarks_summary, settings_summary
 from elbowscrew.results.summary_reading import read_summary
 from elbowscrew.study.task import TrialTask
 
@@ -48,7 +48,7 @@ def _is_of(task: TrialTask, summary: Summary, files: Collection[str]) -> bool:
     try:
         return (
             summary["elbowscrew"] == __version__
-            and summary["versions"] == library_versions()
+            and are_installed(summary["versions"])
             and summary["settings"] == _settings(task, summary)
             and summary["landmarks"] == landmarks_summary(task.landmarks)
             and summary["source"]["sha256"] == sha256_of(task.path)
