@@ -15,7 +15,7 @@ import numpy as np
 
 # Sound files take up to 0.1 s and 25 bytes for each megabyte and byte of theirs, and as much again to be given on.
 _MEMORY: Final = (1 << 30, 100)
-_SECONDS: Final = (10, 2e-6)
+_SECONDS: Final = (4, 2e-6)
 
 
 def main(path: str) -> None:
