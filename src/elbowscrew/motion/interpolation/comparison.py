@@ -32,7 +32,7 @@ from elbowscrew.motion.interpolation.keyframes_at_gaps import keyframe_doubts
 from elbowscrew.motion.interpolation.law_fit import FittedLaw, laws_of
 from elbowscrew.motion.interpolation.model_building import body_points, phases_of
 from elbowscrew.motion.interpolation.model_errors import model_errors
-from elbowscrew.motion.interpolation.modeling import FROM_NEIGHBORS, ModeledPoses, model_motion
+from elbowscrew.motion.interpolation.modeling import FROM_NEIGHBORS, model_motion
 from elbowscrew.motion.interpolation.segment_errors import BASES, JointSeries
 from elbowscrew.motion.joint.measured import measured_joint_axis, measured_joint_type
 from elbowscrew.motion.movements.course import course_of_frames
@@ -40,8 +40,6 @@ from elbowscrew.motion.movements.measured import measured_cuts
 from elbowscrew.motion.screws.measurement import Measurement, measure
 from elbowscrew.settings import Settings
 
-_TIMED: Final = 3
-_LONG_ENOUGH_S: Final = 0.003
 _DEFAULT_TOLERANCE: Final = {True: 2e-3, False: float(np.radians(2.0))}  # m, or of orientations alone rad
 
 
@@ -201,9 +199,9 @@ def _row(
             laws=functions,
             piecewise=model.blend == "piecewise",
         )
-        modeled, seconds = _timed(
-            lambda: model_motion(way.coordinates, measured.elapsed, keyframes, way.method, functions)
-        )
+        start = time.perf_counter()
+        modeled = model_motion(way.coordinates, measured.elapsed, keyframes, way.method, functions)
+        seconds = time.perf_counter() - start
     except SettingError as error:
         return {**row, "note": str(error)}
     if not np.isfinite(modeled.dual_quat[~modeled.phase.mask]).all():
@@ -224,19 +222,6 @@ def _row(
         row["max_displacement_frame"] = int(measured.screw.frame[int(np.nanargmax(errors["displacement"]))])
     row["ns_per_frame"] = 1e9 * seconds / int((~modeled.phase.mask).sum())
     return row
-
-
-def _timed(make: Callable[[], ModeledPoses]) -> tuple[ModeledPoses, float]:
-    """Result, and the shortest of some times (s) that making it takes."""
-    best = total = 0.0
-    for run in range(_TIMED):
-        start = time.perf_counter()
-        result = make()
-        seconds = time.perf_counter() - start
-        best, total = seconds if run == 0 else min(best, seconds), total + seconds
-        if total > _LONG_ENOUGH_S:
-            break
-    return result, best
 
 
 def _ranked(rows: list[dict[str, Any]], error: str) -> ComparedModels:
