@@ -301,7 +301,8 @@ def test_a_motion_without_a_single_axis_is_said_to_have_none(ball_result: Path) 
     text = Seen(trial_page(trial, ball_result)).text
     assert "the motion has no single axis" in text
     assert "The motion has no single axis" in methods_of(trial)
-    assert "maximum likelihood" not in methods_of(trial)
+    assert "None of them is reported" in methods_of(trial)
+    assert "95 % cone" not in methods_of(trial)
     assert "95 % confidence of the joint axis" not in text
 
 
