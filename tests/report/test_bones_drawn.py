@@ -157,3 +157,14 @@ def test_webm_needs_ffmpeg(monkeypatch: pytest.MonkeyPatch) -> None:
         UsageError, match=r"needs the program ffmpeg, which is not installed; give a name that ends in \.gif"
     ):
         kind_of(Path("view.webm"))
+
+
+def test_a_page_is_the_same_the_first_time_and_again(bones: Path, result: Path, tmp_path: Path) -> None:
+    """So that one that was interrupted is made as if nothing had been."""
+    copy = Path(shutil.copytree(result, tmp_path / "result"))
+    meshes = {"distal": read_mesh(bones / "femur.obj")}
+    first = write_trial_page(copy, meshes).read_bytes()
+    sums = (copy / "SHA256SUMS").read_bytes()
+    assert b"meshes.json" in first
+    assert write_trial_page(copy, meshes).read_bytes() == first
+    assert (copy / "SHA256SUMS").read_bytes() == sums

@@ -156,7 +156,12 @@ def trial_page(trial: TrialView, folder: Path, *, place: Path | None = None) -> 
             if (folder / "figures" / caption_file(name)).is_file()
         ],
         "study": _study_page(place or folder),
-        "files": [(name, text) for name, text in _FILES if (folder / name).is_file()],
+        # Bones that are given with the page are written together with it.
+        "files": [
+            (name, text)
+            for name, text in _FILES
+            if (folder / name).is_file() or (name == MESHES and bool(trial.meshes))
+        ],
     }
     scene = scene_of(trial) if trial.located else None
     return render("trial.html", styles=("page.css",), scripts=_SCRIPTS, data=scene, content=content)
