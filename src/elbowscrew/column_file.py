@@ -143,7 +143,7 @@ class BodyColumns(_Part):
             "sequence and degrees are of euler; leave them out": (
                 self.euler is None and (self.sequence is not None or self.degrees is not None)
             ),
-            f"sequence: expected XYZ, xyz, YXY or another order in which no axis follows itself, "
+            "sequence: expected XYZ, xyz, YXY or another order in which no axis follows itself, "
             f"found {shown(self.sequence)}": (self.sequence is not None and self.sequence not in _SEQUENCES),
         }
         fault = next((text for text, present in faults.items() if present), None)

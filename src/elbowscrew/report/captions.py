@@ -75,10 +75,8 @@ def comparison_caption(found: Comparison | TrialsComparison) -> str:
     )
     return (
         f"Error of models of {of}: {error}. (a) "
-        "Each "
-        "interpolation method under its best law of motion, over the number of keyframes in each phase. (b) Each law "
-        "under "
-        "its best method. (c) Keyframes from the recording as it is, filtered and thinned. (d) Largest error "
+        "Each interpolation method under its best law of motion, over the number of keyframes in each phase. (b) Each "
+        "law under its best method. (c) Keyframes from the recording as it is, filtered and thinned. (d) Largest error "
         "over the number of keyframes where these are chosen best.\n"
     )
 
@@ -203,8 +201,7 @@ def _velocity(view: TrialView) -> Iterator[str]:
 def _instantaneous_axes(view: TrialView) -> Iterator[str]:
     yield (
         f"Instantaneous axes in the {view.settings.express_in} frame: (a) in space; (b) tilt and (c) position across "
-        "their "
-        "mean, which weights each by the square of its angular velocity; color: θ."
+        "their mean, which weights each by the square of its angular velocity; color: θ."
     )
     yield filtered(view)
     yield f"No axis is given below {view.settings.min_rate_rad_s:g} rad/s."
@@ -239,8 +236,7 @@ def _quality(view: TrialView) -> Iterator[str]:
 def _axis(view: TrialView) -> Iterator[str]:
     yield (
         f"Finite screw axes in the {view.settings.express_in} frame: (a) in space, with their weighted mean; (b) "
-        "tilt and "
-        "(c) position across the mean; color: θ."
+        "tilt and (c) position across the mean; color: θ."
     )
 
 
@@ -277,8 +273,7 @@ def _joint_angles(view: TrialView) -> Iterator[str]:
 def _axis_path(view: TrialView) -> Iterator[str]:
     yield (
         f"The joint's axis against its angle, in the {view.settings.express_in} frame: (a) tilt and (b) shift from "
-        "the mean "
-        "axis in two directions across it; bands: 95 % of each."
+        "the mean axis in two directions across it; bands: 95 % of each."
     )
 
 

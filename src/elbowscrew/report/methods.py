@@ -226,7 +226,7 @@ def _joint_axis(trial: TrialView) -> Iterator[str]:
                 f"Its 95 % cone and radius, {rounded(told['axis_cone95_deg'])}° and "
                 f"{rounded(told['point_radius95_mm'])} mm, are those of the marker clusters' frames, "
                 f"{told['interval_method']}. They hold if the clusters move on the bone no more as a whole than their "
-                f"markers among themselves; each degree that a cluster turns with the motion turns the axis by up to "
+                "markers among themselves; each degree that a cluster turns with the motion turns the axis by up to "
                 f"{rounded(fit['sensitivity_deg_per_deg'])}°."
             )
             if skin is not None:

@@ -65,7 +65,7 @@ def _turns_in_gaps(phases: ModelPhases, course: Float, measured: Measurement) ->
             lost = f"frames {frame[gaps.before[gap] + 1]} to {frame[gaps.after[gap] - 1]}"
             found[k] = (
                 f"keyframe {frame[rows[k]]} stands for a turn in {lost}, where the joint may go farther by about "
-                f"{in_digits(np.degrees(0.5 * tip.max()), 2)} deg, and up to {in_digits(np.degrees(tip.max()), 2)}"
+                f"{in_digits(np.degrees(0.5 * tip.max()))} deg, and up to {in_digits(np.degrees(tip.max()))}"
             )
     return found
 
