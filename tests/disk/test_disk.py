@@ -10,11 +10,11 @@ from pathlib import Path
 
 import pytest
 
-from elbowscrew.disk import folders, placing
+from elbowscrew.disk import file_sets, folders, placing
 from elbowscrew.disk.file_sets import write_set
 from elbowscrew.disk.folders import new_folder, sweep
 from elbowscrew.disk.placing import put, recover
-from elbowscrew.disk.syncing import exchange, signals_held
+from elbowscrew.disk.syncing import exchange, signals_held, sync
 from elbowscrew.disk.temporary import held_folder, partial_of, replaced_of
 from elbowscrew.errors import OutputError
 from elbowscrew.results.staging import check_result_folder, result_folder, write_files
@@ -264,7 +264,7 @@ def test_files_of_a_run_that_was_killed_are_the_former_ones_again(tmp_path: Path
 def test_a_file_that_somebody_put_in_the_place_of_a_former_one_stays_and_so_does_that(tmp_path: Path) -> None:
     staged = partial_of(tmp_path, "a/b")
     staged.mkdir()
-    (staged / "plan").write_text('{"a": "0", "b": "0"}')
+    (staged / "plan").write_text('{"new": {"a": "0", "b": "0"}, "former": ["a", "b"]}')
     (staged / "former").mkdir()
     for name in "ab":
         (staged / "former" / name).write_text(f"former {name}")
@@ -282,7 +282,8 @@ def test_a_plan_that_is_none_and_a_name_that_leads_elsewhere_are_not_followed(tm
     precious = tmp_path / "precious"
     precious.write_text("mine")
     inner = tmp_path / "out"
-    for k, plan in enumerate(('{"../precious": "0"}', "[", "[1]", '{"a": 1}', "")):
+    led = '{"new": {"../precious": "0"}, "former": ["../precious"]}'
+    for k, plan in enumerate((led, "[", "[1]", '{"a": 1}', '{"new": {"a": 1}, "former": [1]}', "")):
         staged = inner / f".elbowscrew-{k:016x}.partial"
         (staged / "former").mkdir(parents=True)
         (staged / "plan").write_text(plan)
@@ -290,6 +291,89 @@ def test_a_plan_that_is_none_and_a_name_that_leads_elsewhere_are_not_followed(tm
             (staged / "former" / name).write_text("other")
     sweep(inner, held=True)
     assert precious.read_text() == "mine"
+    assert len(list(inner.rglob("former/a"))) == 6, "former files go with no plan that nobody understands"
+
+
+class Cut(BaseException):
+    """The run ends here, and nothing of it is run any more."""
+
+
+@pytest.mark.parametrize("text", ["old", "new"])
+def test_files_are_put_back_once_when_the_disk_stays_full_be_they_the_same_or_not(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, text: str
+) -> None:
+    """The names are back, their folder cannot be synced, and so the next run finds the plan again."""
+    for name in "ab":
+        (tmp_path / name).write_text(text)
+    before, count = contents(tmp_path), 0
+
+    def filling(path: Path) -> None:
+        nonlocal count
+        count += 1
+        if count >= 4:  # the former ones have gone, and the new ones come
+            raise OSError(28, "No space left on device")
+        sync(path)
+
+    monkeypatch.setattr(file_sets, "sync", filling)
+    with pytest.raises(OutputError, match=r"No space left on device; not all that was begun could be undone"):
+        write_files(tmp_path, {"a": b"new", "b": b"new"}, replaceable=("",))
+    monkeypatch.undo()
+    left = partial_of(tmp_path, "a/b")
+    assert (left / "plan").exists()
+    sweep(tmp_path)
+    assert contents(tmp_path) == before
+
+
+def test_a_file_that_was_not_there_goes_again_though_power_left_it_in_both_places(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    before = former_files(tmp_path)
+    new = partial_of(tmp_path, "a/x") / "new"
+
+    def cutting(path: Path) -> None:
+        sync(path)
+        if path == tmp_path and (tmp_path / "x").exists():
+            (new / "x").write_text("new")  # that it went from there had not been synced
+            raise Cut
+
+    monkeypatch.setattr(file_sets, "sync", cutting)
+    monkeypatch.setattr(file_sets, "roll_back", lambda _staged: False)
+    with pytest.raises(Cut):
+        write_set(tmp_path, dict.fromkeys("ax", b"new"), any_folder)
+    monkeypatch.undo()
+    sweep(tmp_path)
+    assert contents(tmp_path) == before
+
+
+def test_that_nothing_was_left_behind_is_said_only_where_it_is_so(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, way: str
+) -> None:
+    """The new file is in its place, which cannot be synced; it stays there if the old one is gone."""
+
+    def failing(_path: Path) -> None:
+        raise OSError(5, "Input/output error")
+
+    (tmp_path / "a").write_text("old")
+    monkeypatch.setattr(placing, "sync", failing)
+    with pytest.raises(OutputError) as caught:
+        write_files(tmp_path, {"a": b"new"}, replaceable=("",))
+    undone = way == "exchange" and sys.platform.startswith("linux")
+    after = "nothing was left behind" if undone else "not all that was begun could be undone, so run it again"
+    assert str(caught.value).endswith(f"cannot be written: Input/output error; {after}")
+    assert contents(tmp_path) == {"a": "old" if undone else "new"}
+
+
+def test_a_lock_that_cannot_be_closed_is_no_error_of_what_was_written(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    close = os.close
+
+    def failing(handle: int) -> None:
+        close(handle)
+        raise OSError(5, "Input/output error")
+
+    with held_folder(tmp_path, "a"):
+        monkeypatch.setattr(os, "close", failing)
 
 
 def test_everything_is_synced_before_it_takes_its_place_and_the_place_after(

@@ -14,11 +14,11 @@ import os
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from pathlib import Path
-from typing import Final
+from typing import Final, NamedTuple
 
 from elbowscrew.disk.placing import put
 from elbowscrew.disk.syncing import signals_held, sync, sync_tree
-from elbowscrew.disk.temporary import PLAN, held_folder, remove
+from elbowscrew.disk.temporary import PLAN, UNSETTLED, held_folder, remove
 from elbowscrew.opening import create, open_bytes, sha256_of, write_new
 
 _NEW: Final = "new"
@@ -91,12 +91,13 @@ def move_in(staged: Path, names: Iterable[str], check: Callable[[Path], None]) -
     with signals_held():
         try:
             former.mkdir()
-            write_new(staged / PLAN, json.dumps({name: _digest(new / name) for name in names}).encode())
+            there = [name for name in names if os.path.lexists(folder / name)]
+            plan = _Plan({name: _digest(new / name) for name in names}, there)
+            write_new(staged / PLAN, json.dumps(plan._asdict()).encode())
             sync_tree(staged)
             sync(folder)
-            for name in names:
-                if os.path.lexists(folder / name):
-                    (folder / name).rename(former / name)
+            for name in there:
+                (folder / name).rename(former / name)
             check(former)
             sync(former)
             sync(folder)
@@ -106,16 +107,23 @@ def move_in(staged: Path, names: Iterable[str], check: Callable[[Path], None]) -
                 if os.path.lexists(new / name):
                     (new / name).rename(folder / name)
             sync(folder)
-            (staged / PLAN).unlink()  # from here on there is nothing to undo
-            sync(staged)
+            (staged / PLAN).unlink()
         except BaseException:
             with suppress(OSError):  # the next run has the plan
                 roll_back(staged)
+            raise
+        try:
+            sync(staged)
+        except OSError as error:  # there is nothing to undo it by
+            error.add_note(UNSETTLED)
             raise
 
 
 def roll_back(staged: Path) -> bool:
     """Put former files and folders back as the plan in a temporary folder says; one without a plan has none.
+
+    May be cut and done again at any moment: what is back is known by having left its place in the temporary folder,
+    never by its content, which may be that of the new one.
 
     Returns
     -------
@@ -128,34 +136,49 @@ def roll_back(staged: Path) -> bool:
     OSError
         If the disk does not take it.
     """
-    plan, new, former = _plan_of(staged), new_of(staged), staged / _FORMER
-    for name, digest in plan.items():
+    new, former = new_of(staged), staged / _FORMER
+    if not os.path.lexists(staged / PLAN):
+        return True
+    plan = _plan_of(staged)
+    if plan is None:
+        return not (former.is_dir() and any(former.iterdir()))
+    for name, digest in plan.new.items():
         target = staged.parent / name
-        moved = os.path.lexists(former / name) or not os.path.lexists(new / name)
-        if moved and digest is not None and _digest(target) == digest:
-            remove(target)
+        stepped = name not in plan.former or os.path.lexists(former / name)
+        if stepped and digest is not None and _digest(target) == digest:
+            remove(new / name)
+            target.rename(new / name)
     stranded = False
-    for name in plan:
+    for name in plan.former:
         target = staged.parent / name
         if os.path.lexists(former / name):
             if not os.path.lexists(target):
                 (former / name).rename(target)
             elif _digest(target) != _digest(former / name):
                 stranded = True
-    if plan and not stranded:
+    if not stranded:
         sync(staged.parent)
         (staged / PLAN).unlink()
     return not stranded
 
 
-def _plan_of(staged: Path) -> dict[str, str | None]:
+class _Plan(NamedTuple):
+    """What is to be where: digests of what is new by names, None for what only goes, and names of what was there."""
+
+    new: Mapping[str, str | None]
+    former: Iterable[str]
+
+
+def _plan_of(staged: Path) -> _Plan | None:
+    """Read the plan in a temporary folder; None if it is none, or would lead out of the folder."""
     try:
         with open_bytes(staged / PLAN) as stream:
-            plan = json.load(stream)
-    except (OSError, ValueError):
-        return {}
-    names = isinstance(plan, dict) and all(isinstance(name, str) and Path(name).name == name for name in plan)
-    return plan if names else {}
+            told = json.load(stream)
+        plan = _Plan(dict(told["new"]), list(told["former"]))
+    except (OSError, ValueError, TypeError, LookupError, RecursionError):
+        return None
+    inside = all(isinstance(name, str) and Path(name).name == name for name in (*plan.new, *plan.former))
+    return plan if inside else None
 
 
 def _digest(path: Path) -> str | None:

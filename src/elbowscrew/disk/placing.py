@@ -9,6 +9,7 @@ from pathlib import Path
 
 from elbowscrew.disk.syncing import exchange, signals_held, sync
 from elbowscrew.disk.temporary import (
+    UNSETTLED,
     Holder,
     opened_and_locked,
     partial_of,
@@ -41,37 +42,43 @@ def put(staged: Path, destination: Path, check: Callable[[Path], None]) -> None:
             if former is not None:
                 check(former)
             sync(destination.parent)
-        except BaseException:
+        except BaseException as error:
+            undone = False
             with suppress(OSError):
-                back()
+                undone = back()
+            if not undone:
+                error.add_note(UNSETTLED)
             raise
         if former is not None:
             remove(former)
 
 
-def _swap(staged: Path, destination: Path) -> tuple[Path | None, Callable[[], object]]:
-    """Swap in as few steps as can be; give where the former state is, if there still is one, and what undoes it."""
+def _swap(staged: Path, destination: Path) -> tuple[Path | None, Callable[[], bool]]:
+    """Swap in as few steps as can be; give where the former state is, if there still is one, and what can undo it."""
     if not os.path.lexists(destination):
         staged.rename(destination)
-        return None, lambda: destination.rename(staged)
+        return None, lambda: _moved(destination, staged)
     if exchange(staged, destination):
         return staged, lambda: exchange(staged, destination)
     if not destination.is_dir():
         staged.replace(destination)
-        return None, lambda: None
+        return None, lambda: False
     aside = replaced_of(destination.parent, destination.name)
     destination.rename(aside)
     try:
         staged.rename(destination)
-    except BaseException:
-        aside.rename(destination)
+    except BaseException as error:
+        if not _moved(aside, destination):
+            error.add_note(UNSETTLED)
         raise
+    return aside, lambda: _moved(destination, staged) and _moved(aside, destination)
 
-    def back() -> None:
-        destination.rename(staged)
-        aside.rename(destination)
 
-    return aside, back
+def _moved(one: Path, other: Path) -> bool:
+    with suppress(OSError):
+        one.rename(other)
+        return True
+    return False
 
 
 def recover(destination: Path) -> None:

@@ -26,6 +26,8 @@ PREFIX: Final = ".elbowscrew-"
 PARTIAL, REPLACED = ".partial", ".replaced"
 PLAN: Final = "plan"
 """A file in a temporary folder that has former files to put back."""
+UNSETTLED: Final = "not all that was begun could be undone, so run it again"
+"""Note on an error after which something is left, or not as it was."""
 
 _OURS: Final = re.compile(re.escape(PREFIX) + r"[0-9a-f]{16}\.(partial|replaced)")
 
@@ -85,11 +87,23 @@ def held_folder(folder: Path, key: str) -> Iterator[Path]:
                 handle = _made_and_held(staged)
             known = True
         yield staged
+    except OSError as error:
+        if known and not _cleared(staged):
+            error.add_note(UNSETTLED)
+        raise
     finally:
-        if known and not os.path.lexists(staged / PLAN):
-            remove(staged)
+        if known:
+            _cleared(staged)
         if handle is not None and handle >= 0:
-            os.close(handle)
+            with suppress(OSError):  # nothing was written by it
+                os.close(handle)
+
+
+def _cleared(staged: Path) -> bool:
+    """Remove a temporary folder that has nothing to put back, and say whether it is gone."""
+    if os.path.lexists(staged) and not os.path.lexists(staged / PLAN):
+        remove(staged)
+    return not os.path.lexists(staged)
 
 
 def _made_and_held(staged: Path) -> int | None:

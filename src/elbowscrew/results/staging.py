@@ -194,5 +194,6 @@ def _check_file(target: Path, path: Path, replaceable: Collection[str] | None) -
 
 
 def output_error(target: Path, error: OSError) -> OutputError:
-    """Say that the disk did not take something."""
-    return OutputError(f"{target}: cannot be written: {error.strerror or error}; nothing was left behind")
+    """Say that the disk did not take something, and whether all is as it was."""
+    after = " ".join(getattr(error, "__notes__", ())[:1]) or "nothing was left behind"
+    return OutputError(f"{target}: cannot be written: {error.strerror or error}; {after}")
