@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import io
 import os
 import socket
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from elbowscrew.cli import main
 from elbowscrew.errors import OutputError
 from elbowscrew.opening import create, open_bytes, open_own, open_text, read_text, read_toml
+from elbowscrew.reading import source
 from elbowscrew.results.result_files import BATCH_MARK
 from elbowscrew.results.staging import write_files
 from elbowscrew.study.folder import at_work, batch_folder
@@ -35,6 +38,30 @@ def listener(path: Path) -> None:
 
 def device(path: Path) -> None:
     path.symlink_to("/dev/zero")
+
+
+class Failing(io.TextIOWrapper):
+    """A text whose disk fails when it is closed."""
+
+    def close(self) -> None:
+        was_open = not self.closed
+        super().close()
+        if was_open:
+            raise OSError(5, "Input/output error")
+
+
+def test_a_recording_that_cannot_be_closed_was_read_all_the_same(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "take.csv"
+    path.write_text("a,b\n1,2\n")
+    recording = source.open_source(path)
+    monkeypatch.setattr(source, "open_text", lambda path, encoding: Failing(open_bytes(path), encoding=encoding))
+    begun: Any = recording.lines()
+    assert next(begun) == "a,b"
+    begun.close()  # as Python does to lines that nobody asks for any more, and there nobody could be told
+    assert list(recording.lines()) == ["a,b", "1,2"]
+    assert list(recording.blocks(1)) == [["1,2"]]
 
 
 STRANGE = pytest.mark.parametrize("make", [pipe, listener, device])

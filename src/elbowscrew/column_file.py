@@ -14,7 +14,7 @@ from typing import Any, Final, Literal
 from pydantic import BaseModel, ConfigDict, Field, StrictBool, ValidationError, model_validator
 
 from elbowscrew.choices import FileUnit
-from elbowscrew.errors import shown, why_unreadable
+from elbowscrew.errors import shown, unreadable
 from elbowscrew.opening import read_toml_and_digest
 
 SECONDS: Final = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
@@ -213,8 +213,7 @@ def read_column_file(path: Path) -> ColumnFile:
     try:
         given, digest = read_toml_and_digest(path)
     except OSError as error:
-        msg = f"{path}: cannot be read as a file of columns: {why_unreadable(path, error)}"
-        raise ValueError(msg) from error
+        raise unreadable(path, "a file of columns", error, ValueError) from error
     except ValueError as error:
         msg = f"{path}: not TOML: {error}"
         raise ValueError(msg) from error

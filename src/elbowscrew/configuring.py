@@ -9,7 +9,7 @@ from typing import Any, Final
 from pydantic import ValidationError
 
 from elbowscrew.declaring import FORMER_NAMES, option_name
-from elbowscrew.errors import UsageError, why_unreadable
+from elbowscrew.errors import UsageError, unreadable
 from elbowscrew.opening import read_toml
 from elbowscrew.setting_faults import told_faults
 from elbowscrew.setting_values import BY_OPTIONS, READ_BACK
@@ -44,8 +44,7 @@ def _read_toml(config: Path) -> dict[str, Any]:
     try:
         given = read_toml(config)
     except OSError as error:
-        msg = f"{config}: cannot be read as a settings file: {why_unreadable(config, error)}"
-        raise UsageError(msg) from error
+        raise unreadable(config, "a settings file", error) from error
     except ValueError as error:
         msg = f"{config}: not TOML: {error}. Write one `key = value` a line, text in quotes"
         raise UsageError(msg) from error

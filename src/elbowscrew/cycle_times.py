@@ -7,7 +7,7 @@ import math
 from pathlib import Path
 from typing import Final
 
-from elbowscrew.errors import why_unreadable
+from elbowscrew.errors import unreadable
 from elbowscrew.opening import open_text
 
 _COLUMNS: Final = ("start_time_s", "end_time_s")
@@ -25,8 +25,7 @@ def read_cycle_times(path: Path) -> list[tuple[float, float]]:
         with open_text(path, encoding="utf-8-sig", newline="") as stream:
             times = _times(csv.DictReader(stream), path)
     except OSError as error:
-        msg = f"{path}: cannot be read as a file of cycles: {why_unreadable(path, error)}"
-        raise ValueError(msg) from error
+        raise unreadable(path, "a file of cycles", error, ValueError) from error
     except (csv.Error, UnicodeDecodeError) as error:
         msg = f"{path}: not a CSV file in UTF-8: {error}"
         raise ValueError(msg) from error

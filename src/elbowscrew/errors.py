@@ -4,7 +4,7 @@
 
     ElbowscrewError
     ├── UsageError       2  a setting is not a possible one, whatever the recording
-    ├── RecordingError   3  the recording cannot be read
+    ├── RecordingError   3  the recording cannot be read, or the disk does not give what stands beside it
     │   ├── NoBodiesError   it has no rigid bodies, but maybe markers
     │   └── ResultError     a folder that should hold a finished result does not, or a damaged one
     │       └── NotKeptError   what is asked of a result is not in its files
@@ -20,6 +20,7 @@ found and what to do next.
 from __future__ import annotations
 
 import difflib
+import errno
 import os
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
@@ -28,6 +29,8 @@ from typing import NamedTuple
 _LONGEST_VALUE = 80
 _LONGEST_MESSAGE = 2000
 _NAMES_TOLD = 24
+_OF_THE_SYSTEM = frozenset({errno.EIO, errno.ENOSPC, errno.ENOMEM, errno.EMFILE, errno.ENFILE})
+"""Errors that no other name or file would have spared."""
 
 
 def shown(value: object) -> str:
@@ -179,6 +182,12 @@ class MissingStatementError(SettingError):
         """Say what a file lacks and what gives it."""
         lacks, give = ([one[k] for one in missing] for k in (1, 2))
         return cls(f"{path}: the file {' and '.join(lacks)}; give {', and '.join(give)}", *missing)
+
+
+def unreadable(path: object, wanted: str, error: OSError, wrong: type[Exception] = UsageError) -> Exception:
+    """Say that a file beside the recording cannot be read: a wrong one was given, or the disk does not give it."""
+    told = RecordingError if error.errno in _OF_THE_SYSTEM else wrong
+    return told(f"{path}: cannot be read as {wanted}: {why_unreadable(str(path), error)}")
 
 
 class AnalysisError(ElbowscrewError):

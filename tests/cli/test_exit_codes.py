@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 import signal
@@ -16,6 +17,7 @@ from motive_files import bodies_of, write_columns, write_row_tagged
 from oracles import known_trial
 from trials import LANDMARKS
 
+from elbowscrew import opening
 from elbowscrew.cli import main
 
 TRIAL = known_trial(120.0, frames=120, inversion=60, seed=1, gentle=True)
@@ -168,6 +170,44 @@ def test_bad_settings(
     assert_one_line(err)
     assert says in err
     assert sorted(path.name for path in take.parent.iterdir()) == ["take.csv"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "name"),
+    [
+        (("analyze", "take.csv", "--config"), "a.toml"),
+        (("analyze", "take.csv", "--landmarks"), "a.toml"),
+        (("analyze", "take.csv", "--columns"), "a.toml"),
+        (("analyze", "take.csv", "--cycles"), "a.csv"),
+        (("batch",), "a.csv"),
+        (("report", "results", "--mesh"), "a.stl"),
+    ],
+)
+@pytest.mark.parametrize(("number", "code"), [(errno.EIO, 3), (errno.ENOSPC, 3), (errno.EACCES, 2)])
+def test_a_disk_that_does_not_give_a_file_is_no_wrong_usage(
+    take: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+    arguments: tuple[str, ...],
+    name: str,
+    number: int,
+    code: int,
+) -> None:
+    (take.parent / name).write_text("path\n")
+    real = opening.open_bytes
+
+    def failing(path: Path) -> Any:
+        if path.name == name:
+            raise OSError(number, os.strerror(number))
+        return real(path)
+
+    monkeypatch.setattr(opening, "open_bytes", failing)
+    given = f"arm={name}" if "--mesh" in arguments else name
+    found, out, err = run(capsys, *arguments, given)
+    assert (found, out) == (code, "")
+    assert_one_line(err)
+    assert f"{name}: cannot be read as a" in err
+    assert os.strerror(number) in err
 
 
 def test_all_frames_blank_cannot_be_analyzed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

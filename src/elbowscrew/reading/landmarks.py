@@ -10,7 +10,7 @@ from typing import Any, Final, get_args
 
 import numpy as np
 
-from elbowscrew.errors import UsageError, shown, why_unreadable
+from elbowscrew.errors import UsageError, shown, unreadable
 from elbowscrew.joints import joints_of
 from elbowscrew.model.anatomy import LANDMARKS, LANDMARKS_OF, BonyJoint, Landmark, LandmarkFrame, Landmarks, Side
 from elbowscrew.opening import read_toml
@@ -81,8 +81,7 @@ def _read_toml(file: Path) -> dict[str, Any]:
     try:
         return read_toml(file)
     except OSError as error:
-        msg = f"{file}: cannot be read as a file of landmarks: {why_unreadable(file, error)}"
-        raise UsageError(msg) from error
+        raise unreadable(file, "a file of landmarks", error) from error
     except ValueError as error:
         msg = f"{file}: not TOML: {error}. Write one `key = value` a line, text in quotes"
         raise UsageError(msg) from error

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowscrew.choices import LengthUnit
-from elbowscrew.errors import UsageError, why_unreadable
+from elbowscrew.errors import UsageError, unreadable
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.model.mesh import Mesh
 from elbowscrew.opening import read_bytes
@@ -64,6 +64,8 @@ def read_mesh(path: str | os.PathLike[str], unit: LengthUnit = "mm") -> Mesh:
     ------
     UsageError
         If the file cannot be read, is no such file, or its triangles are none of a bone.
+    RecordingError
+        If the disk does not give it.
 
     Examples
     --------
@@ -82,8 +84,7 @@ def read_mesh(path: str | os.PathLike[str], unit: LengthUnit = "mm") -> Mesh:
     try:
         content = read_bytes(file, _LARGEST)
     except OSError as error:
-        msg = f"{file}: cannot be read as a mesh: {why_unreadable(file, error)}"
-        raise UsageError(msg) from error
+        raise unreadable(file, "a mesh", error) from error
     try:
         vertices, faces = reader(content)
         vertices = _checked(vertices, faces) * METERS[unit]

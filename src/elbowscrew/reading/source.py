@@ -140,8 +140,15 @@ class TextSource:
         msg = f"{self.path}: the file changes while it is read; wait until it is written"
         raise RecordingError(msg)
 
-    def _open(self) -> TextIO:
-        return open_text(self.path, encoding=self.encoding)
+    @contextmanager
+    def _open(self) -> Iterator[TextIO]:
+        """Open the text. A disk that fails at its closing takes nothing from what was read, be it all or the begin."""
+        stream = open_text(self.path, encoding=self.encoding)
+        try:
+            yield stream
+        finally:
+            with suppress(OSError):
+                stream.close()
 
 
 @contextmanager

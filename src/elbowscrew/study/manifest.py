@@ -12,7 +12,7 @@ from typing import Final
 
 from elbowscrew.configuring import settings_from
 from elbowscrew.declaring import option_name
-from elbowscrew.errors import UsageError, why_unreadable
+from elbowscrew.errors import UsageError, unreadable
 from elbowscrew.opening import read_text
 from elbowscrew.reading.source import first_bytes
 from elbowscrew.settings import FILES, LISTS, Settings
@@ -127,8 +127,7 @@ def _read(path: Path) -> tuple[list[str], list[tuple[int, list[str]]], str]:
     try:
         text = read_text(path, encoding="utf-8-sig")
     except OSError as error:
-        msg = f"{path}: cannot be read as a manifest: {why_unreadable(path, error)}"
-        raise UsageError(msg) from error
+        raise unreadable(path, "a manifest", error) from error
     except UnicodeDecodeError as error:
         msg = f"{path}: not UTF-8 text; save the manifest as CSV in UTF-8"
         raise UsageError(msg) from error
