@@ -56,7 +56,7 @@ class Double:
 
     def record(self, call: str, one: str, other: str = "", data: bytes = b"") -> None:
         if self.journal >= 0 and self.root and one.startswith(self.root):
-            self._write(self.journal, f"{call}\t{one}\t{other}\t{len(data)}\n".encode() + data)
+            self._write(self.journal, f"{call}\t{one}\t{other}\t{self.count}\t{len(data)}\n".encode() + data)
 
     def _put_in(self) -> None:
         system: Any = os

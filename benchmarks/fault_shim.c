@@ -1,7 +1,8 @@
 /* Calls that change a disk, counted below one folder: the one with a given number fails or ends the process.
 
    Built as a shared library and put before the C library (LD_PRELOAD); `fault_arm` is called from the process itself.
-   With a log, every call that succeeded is written down, with the data of writes, so that they can be played again. */
+   With a log, every call that succeeded is written down with its number, and with the data of writes, so that they can
+   be played again. */
 
 #define _GNU_SOURCE
 #include <dlfcn.h>
@@ -106,7 +107,7 @@ static void record(const char *call, const char *one, const char *other, const v
     if (journal < 0 || !root[0] || strncmp(one, root, strlen(root))) return;
     REAL(write);
     char line[9000];
-    int length = snprintf(line, sizeof line, "%s\t%s\t%s\t%zu\n", call, one, other, size);
+    int length = snprintf(line, sizeof line, "%s\t%s\t%s\t%ld\t%zu\n", call, one, other, count, size);
     real(journal, line, length);
     if (size) real(journal, data, size);
 }

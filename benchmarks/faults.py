@@ -14,6 +14,7 @@ import io
 import json
 import math
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -21,6 +22,7 @@ import sys
 import tempfile
 import time
 from collections import Counter
+from collections.abc import Iterator
 from contextlib import redirect_stdout
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -57,6 +59,7 @@ CODES = {FAIL: {0, 3, 6, 7}, signal.SIGTERM: {0, 3, 6, 7, 143}, signal.SIGINT: {
 TABLES = ("summary.csv", "failures.csv", "cycles.csv", "repetitions.csv", "index.html")
 TELLING = (3, 7)
 _QUICK_STEP = 194
+_UNTOUCHED = re.compile(r"^elbowscrew: error: (.*): cannot be written: .*; nothing was left behind$", re.MULTILINE)
 DISKS = {NO_EXCHANGE: "no exchange", CLOSED_ABOVE: "closed above", MOUNTED: "mounted"}
 
 
@@ -112,6 +115,7 @@ class Bench:
 
     def __init__(self, name: str, scratch: Path, cannot: int = 0) -> None:
         from fault_scenarios import SCENARIOS, tree_of
+        from power_loss import steps_in
 
         self.scenario: Scenario = next(one for one in SCENARIOS if one.name == name)
         self.cannot = cannot
@@ -123,8 +127,11 @@ class Bench:
         warm_up(self.scenario.arguments, self.before, self.work)
         self.begin()
         freeze()
-        self.undisturbed = self.run()
+        journal = scratch / "journal"
+        self.undisturbed = self.run(journal=journal)
         assert self.undisturbed.code == 0, self.undisturbed.said
+        self.steps = steps_in(journal)
+        """Calls at which there is something to undo, or to recover."""
         self.old, self.new = tree_of(self.before), tree_of(self.work)
         assert self.new != self.old
         check_sums(self.work)
@@ -159,7 +166,7 @@ class Bench:
 
 def disturb(bench: Bench, tally: Tally, *, step: int) -> None:
     """Disturb one scenario at every `step`-th call, each fault at calls of its own where steps are long."""
-    from fault_scenarios import part_of, temporaries_of, tree_of
+    from fault_scenarios import UNSETTLED, part_of, temporaries_of, tree_of
 
     scenario, old, new = bench.scenario, bench.old, bench.new
     moves = bench.cannot & (CLOSED_ABOVE | MOUNTED)  # all that is in a folder that stays, by several renames
@@ -188,20 +195,41 @@ def disturb(bench: Bench, tally: Tally, *, step: int) -> None:
             found.append(f"ended with {ended.code}: {ended.said[-2000:]}")
         return found
 
-    calls = bench.undisturbed.calls
+    def told_wrong(tree: Tree, ended: Ended) -> list[str]:
+        """Say what is not as it was although the command failed, or said that nothing was left behind."""
+        told = [Path(path).as_posix() for path in _UNTOUCHED.findall(ended.said)]
+        parts = [part for part in scenario.parts if any(part_of(dict.fromkeys(told, ""), (one,)) for one in part)]
+        alone = len(scenario.parts) == 1
+        if alone and ended.code > 0 and UNSETTLED not in ended.said:
+            parts = [*scenario.parts]
+        found = [f"{part[0]} is not as it was" for part in parts if part_of(tree, part) != part_of(old, part)]
+        if told and alone and temporaries_of(bench.work):
+            found.append("something was left behind")
+        return [f"{one} though the command failed" for one in found]
+
+    for fault, call in points_of(bench, step):
+        place = f"{fault.name} at call {call}"
+        if tally.is_known(bench.name, place):
+            continue
+        bench.begin()
+        ended = bench.run(fault, call)
+        tree = tree_of(bench.work)
+        found = faults_of(tree, fault, ended)
+        if fault.action == FAIL:
+            found += told_wrong(tree, ended)
+        if temporaries_of(bench.work) and ended.code >= 0:
+            tally.left[f"{fault.name} {bench.name}"] += 1
+        tally.add(bench.name, place, found + bench.faults_of_next_run(tree))
+
+
+def points_of(bench: Bench, step: int) -> Iterator[tuple[Fault, int]]:
+    """Yield every `step`-th call for each fault; of those left out, some at which there is something to undo."""
+    calls, steps = bench.undisturbed.calls, bench.steps
     for k, fault in enumerate(FAULTS):
         first = k * min(step, calls) // len(FAULTS)
-        for call in range(1 + first, calls + 1, step):
-            place = f"{fault.name} at call {call}"
-            if tally.is_known(bench.name, place):
-                continue
-            bench.begin()
-            ended = bench.run(fault, call)
-            tree = tree_of(bench.work)
-            found = faults_of(tree, fault, ended)
-            if temporaries_of(bench.work) and ended.code >= 0:
-                tally.left[f"{fault.name} {bench.name}"] += 1
-            tally.add(bench.name, place, found + bench.faults_of_next_run(tree))
+        yield from ((fault, call) for call in range(1 + first, calls + 1, step))
+    if step > 1 and bench.scenario.disks:
+        yield from ((fault, call) for fault in FAULTS if fault.name in ("EIO", "SIGKILL") for call in steps)
 
 
 def warm_up(arguments: tuple[str, ...], before: Path, work: Path) -> None:

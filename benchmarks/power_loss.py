@@ -106,10 +106,23 @@ def _put(folder: Folder, place: Path, strict: bool) -> None:
 
 def calls_in(journal: Path) -> Iterator[tuple[str, str, str, bytes]]:
     """Read the calls that were written down."""
+    for call, one, other, _, data in _lines_of(journal):
+        yield call, one, other, data
+
+
+def steps_in(journal: Path) -> list[int]:
+    """Numbers of some calls by which something took its place, the last one among them, and of the next sync."""
+    calls = [(call, number) for call, _, _, number, _ in _lines_of(journal)]
+    moves = [number for call, number in calls if call in ("rename", "exchange")]
+    synced = next(number for call, number in calls if call == "fsync" and number > moves[-1])
+    return [moves[0], moves[len(moves) // 2], moves[-1], synced]
+
+
+def _lines_of(journal: Path) -> Iterator[tuple[str, str, str, int, bytes]]:
     with journal.open("rb") as stream:
         while line := stream.readline():
-            call, one, other, size = line.decode().rstrip("\n").split("\t")
-            yield call, one, other, stream.read(int(size))
+            call, one, other, number, size = line.decode().rstrip("\n").split("\t")
+            yield call, one, other, int(number), stream.read(int(size))
 
 
 def cut_power(bench: Bench, scratch: Path, tally: Tally, *, step: int, sync_step: int) -> None:
