@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -361,6 +362,27 @@ def test_that_nothing_was_left_behind_is_said_only_where_it_is_so(
     after = "nothing was left behind" if undone else "not all that was begun could be undone, so run it again"
     assert str(caught.value).endswith(f"cannot be written: Input/output error; {after}")
     assert contents(tmp_path) == {"a": "old" if undone else "new"}
+
+
+@posix
+def test_an_interruption_while_the_temporary_folder_goes_waits_until_it_is_gone(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    unlink = os.unlink
+
+    def interrupted(*given: Any, **more: Any) -> None:
+        unlink(*given, **more)
+        os.kill(os.getpid(), signal.SIGINT)
+
+    def run() -> None:
+        with held_folder(tmp_path, "a") as staged:
+            for name in "abc":
+                (staged / name).touch()
+            monkeypatch.setattr(os, "unlink", interrupted)
+
+    with pytest.raises(KeyboardInterrupt):
+        run()
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_lock_that_cannot_be_closed_is_no_error_of_what_was_written(

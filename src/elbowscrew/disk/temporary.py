@@ -101,9 +101,10 @@ def held_folder(folder: Path, key: str) -> Iterator[Path]:
 
 def _cleared(staged: Path) -> bool:
     """Remove a temporary folder that has nothing to put back, and say whether it is gone."""
-    if os.path.lexists(staged) and not os.path.lexists(staged / PLAN):
-        remove(staged)
-    return not os.path.lexists(staged)
+    with signals_held():
+        if os.path.lexists(staged) and not os.path.lexists(staged / PLAN):
+            remove(staged)
+        return not os.path.lexists(staged)
 
 
 def _made_and_held(staged: Path) -> int | None:
