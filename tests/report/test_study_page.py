@@ -19,6 +19,8 @@ from sealed import resealed
 from elbowscrew import analyze, save_analysis, simulate_trial
 from elbowscrew.choices import JointName
 from elbowscrew.cli import main
+from elbowscrew.disk import file_sets
+from elbowscrew.disk.file_sets import write_set
 from elbowscrew.errors import OutputError, ResultError
 from elbowscrew.report import remake_pages, results_in, write_study_page
 from elbowscrew.report.study import read_study
@@ -161,6 +163,27 @@ def test_what_could_not_be_read_for_the_page_alone_is_an_error(
     monkeypatch.undo()
     assert main(["report", str(tmp_path), "-q"]) == 0
     assert "failed" not in text_of(tmp_path)
+
+
+def test_what_a_killed_run_has_begun_is_undone_before_anything_is_read(
+    result: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("one", "two"):
+        shutil.copytree(result, tmp_path / name)
+    before = {path.name: path.read_bytes() for path in (tmp_path / "two").iterdir() if path.is_file()}
+
+    def die(_former: Path) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(file_sets, "roll_back", lambda _staged: False)
+    with pytest.raises(KeyboardInterrupt):
+        write_set(tmp_path / "two", {"report.html": b"new", "SHA256SUMS": b"new"}, die)
+    monkeypatch.undo()
+    assert not (tmp_path / "two" / "SHA256SUMS").exists()
+    write_study_page(tmp_path)
+    assert links(text_of(tmp_path)) == ["one/report.html", "two/report.html"]
+    assert "failed" not in text_of(tmp_path)
+    assert {path.name: path.read_bytes() for path in (tmp_path / "two").iterdir() if path.is_file()} == before
 
 
 def test_a_folder_without_results_is_told(tmp_path: Path) -> None:

@@ -3,26 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Final, NamedTuple, TypedDict
 
 import numpy as np
 from markupsafe import Markup
 
+from elbowscrew.errors import OutputError
 from elbowscrew.group.curves import LEAST_FOR_BAND
 from elbowscrew.group.outliers import FALSE_ALARMS, LEAST, Outliers
 from elbowscrew.report.checklist import MISSING
 from elbowscrew.report.distributions import MOST_POINTS, strip_chart
 from elbowscrew.report.measures import MEASURES
 from elbowscrew.report.pages import INDEX, MARK, render
-from elbowscrew.report.study import Failure, Study, StudyTrial, read_study
+from elbowscrew.report.study import Failure, Study, StudyTrial, read_study, result_folders
 from elbowscrew.report.study_checklist import Findings, study_checklist
 from elbowscrew.report.study_curves import curve_charts, curves_of, left_out_text
 from elbowscrew.report.study_differences import MOST_COMPARED, differences_of
 from elbowscrew.report.study_groups import Group, axis_rows, groups_of, number_rows, outlying, values_of
 from elbowscrew.report.study_tables import STUDY_TABLES, TABLE_MARK, study_tables
 from elbowscrew.report.trials_table import marks_of, shown_columns, table_data, table_rows
-from elbowscrew.results.staging import write_files
+from elbowscrew.results.staging import settle, write_files
 
 _MOST_STRIPS: Final = 24
 _MOST_FAILURES: Final = 200
@@ -46,6 +48,9 @@ class Factor(TypedDict):
 
 def write_study_page(folder: Path, factors: Sequence[str] | None = None) -> WrittenStudy:
     """Write ``index.html``, ``cycles.csv`` and ``repetitions.csv`` over the results in a folder."""
+    for result in result_folders(folder):  # all of them, before any is read
+        with suppress(OutputError):  # reading it tells what is wrong with that one
+            settle(result)
     study = read_study(folder, factors)
     told = {name for name in ("summary.csv", "failures.csv") if (folder / name).is_file()}
     page = study_page(study, [*sorted(told, reverse=True), *STUDY_TABLES])
