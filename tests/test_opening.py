@@ -12,6 +12,7 @@ from typing import Any
 
 import pytest
 
+from elbowscrew import read_recording, samples
 from elbowscrew.cli import main
 from elbowscrew.errors import OutputError
 from elbowscrew.opening import create, open_bytes, open_own, open_text, read_text, read_toml
@@ -62,6 +63,30 @@ def test_a_recording_that_cannot_be_closed_was_read_all_the_same(
     begun.close()  # as Python does to lines that nobody asks for any more, and there nobody could be told
     assert list(recording.lines()) == ["a,b", "1,2"]
     assert list(recording.blocks(1)) == [["1,2"]]
+
+
+@pytest.mark.parametrize("name", ["elbow_natural", "elbow_row_tagged", "knee"])
+def test_an_interruption_while_a_recording_is_closed_is_not_lost(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Python passes over what comes while a generator is closed that nobody holds any more."""
+    closed, when = 0, -1
+
+    class Interrupted(io.TextIOWrapper):
+        def close(self) -> None:
+            nonlocal closed
+            was_open = not self.closed
+            super().close()
+            closed += was_open
+            if was_open and closed == when:
+                raise KeyboardInterrupt
+
+    monkeypatch.setattr(source, "open_text", lambda path, encoding: Interrupted(open_bytes(path), encoding=encoding))
+    read_recording(samples.path(name))
+    times = closed
+    assert times > 1
+    for number in range(1, times + 1):
+        closed, when = 0, number
+        with pytest.raises(KeyboardInterrupt):
+            read_recording(samples.path(name))
 
 
 STRANGE = pytest.mark.parametrize("make", [pipe, listener, device])

@@ -30,7 +30,7 @@ def first_row(source: TextSource, group: int) -> list[str]:
 
     Blank groups at its end are bodies that are lost in this row, other blank cells there are none.
     """
-    cells = source.cells(next(line for line in source.lines() if line.strip(", ;\t")))
+    cells = source.cells(source.first_filled()[1])
     count = len(cells)
     while not cells[count - 1]:
         count -= 1

@@ -121,7 +121,7 @@ def _part(title: str) -> str:
 
 def _titled(source: TextSource, titles: list[str]) -> _Table:
     """Take the names of bodies from their titles; each must have its sixteen."""
-    line = 1 + next(k for k, text in enumerate(source.lines()) if text.strip(", ;\t"))
+    line = source.first_filled()[0]
     own = titles[len(titles) % _CELLS :]
     found = [(_TITLE.fullmatch(title) or {"name": "", "part": ""}) for title in own]
     names = [str(one["name"]) for one in found[::_CELLS]]

@@ -7,7 +7,6 @@ import re
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import islice
 from typing import Final
 
 from elbowscrew.errors import ElbowscrewError, NoBodiesError, RecordingError
@@ -77,7 +76,7 @@ def parse_header(source: TextSource) -> Header:
     The axis row is the first whose first cell is `Frame`; the field row stands above it; the rows before that hold
     types, names, ids and perhaps parents, in this order or as tagged in their second cell.
     """
-    rows = [_cells(source, number, line) for number, line in enumerate(islice(source.lines(), _HEADER_LINES), start=1)]
+    rows = [_cells(source, number, line) for number, line in enumerate(source.head(_HEADER_LINES), start=1)]
     lines = [number for number, row in enumerate(rows, start=1) if any(row)]
     rows = [row for row in rows if any(row)]
     axis_row = next((k for k, row in enumerate(rows) if row[0].casefold() == "frame"), None)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import re
+from contextlib import closing
 from dataclasses import replace
 from itertools import islice
 from typing import Final, NamedTuple
@@ -141,7 +142,7 @@ def _best_line(source: TextSource, names: set[str]) -> tuple[list[str], int]:
     """Give the line that has most of the names, and its number."""
     best: tuple[list[str], int] = ([], 0)
     most = -1
-    for number, line in enumerate(islice(source.lines(), _HEADER_WITHIN), start=1):
+    for number, line in enumerate(source.head(_HEADER_WITHIN), start=1):
         try:
             cells = source.cells(line)
         except csv.Error:
@@ -156,7 +157,8 @@ def _best_line(source: TextSource, names: set[str]) -> tuple[list[str], int]:
 
 def _cells(source: TextSource, number: int, *, whole: bool = False) -> list[str]:
     """Cells of a line, without blank ones at its end if not whole."""
-    line = next(islice(source.lines(), number - 1, None), "")
+    with closing(source.lines()) as lines:
+        line = next(islice(lines, number - 1, None), "")
     try:
         return source.cells(line) if whole else _without_end(source.cells(line))
     except csv.Error as error:

@@ -73,17 +73,15 @@ def _check_rate(source: TextSource, clock: list[str], options: ReadOptions) -> N
 
 
 def _header(source: TextSource) -> tuple[list[str], int]:
-    for number, text in enumerate(source.lines(), start=1):
-        try:
-            cells = source.cells(text)
-        except csv.Error as error:
-            msg = f"{source.path}:{number}: not a line of a CSV file: {error}"
-            raise RecordingError(msg) from error
-        if any(cells):
-            while cells and not cells[-1]:
-                cells.pop()
-            return cells, number
-    raise AssertionError  # the file was recognized by this very line
+    number, text = source.first_filled()
+    try:
+        cells = source.cells(text)
+    except csv.Error as error:
+        msg = f"{source.path}:{number}: not a line of a CSV file: {error}"
+        raise RecordingError(msg) from error
+    while cells and not cells[-1]:
+        cells.pop()
+    return cells, number
 
 
 def _columns_by_body(

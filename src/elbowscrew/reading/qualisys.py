@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import csv
 import re
-from itertools import islice
 from typing import Final
 
 import numpy as np
@@ -103,7 +102,7 @@ def _header(source: TextSource) -> tuple[dict[str, str], list[str], list[str], i
     """Give what the file states, the bodies' names, the titles of the columns, and how many lines that is."""
     stated: dict[str, str] = {}
     names: list[str] = []
-    for number, text in enumerate(islice(source.lines(), HEADER_LINES), start=1):
+    for number, text in enumerate(source.head(HEADER_LINES), start=1):
         try:
             cells = source.cells(text)
         except csv.Error as error:

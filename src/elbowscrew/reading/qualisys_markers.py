@@ -7,7 +7,6 @@ frames, at the frequency. Blanks and zeros are markers that were not seen.
 from __future__ import annotations
 
 from dataclasses import replace
-from itertools import islice
 from typing import Final, NamedTuple
 
 from elbowscrew.errors import RecordingError
@@ -36,7 +35,7 @@ def marker_header(source: TextSource) -> MarkerHeader | None:
     """Give the header of an export of markers; None of another one."""
     stated: dict[str, str] = {}
     names: list[str] = []
-    for number, text in enumerate(islice(source.lines(), HEADER_LINES)):
+    for number, text in enumerate(source.head(HEADER_LINES)):
         cells = [cell.strip() for cell in text.split("\t")]
         while cells and not cells[-1]:
             cells.pop()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from itertools import chain, islice
+from itertools import chain
 from pathlib import Path
 from typing import Final, Generic, TypeVar
 
@@ -245,7 +245,7 @@ def _read(file: Path, options: ReadOptions) -> Recording:
         if found is None:
             raise
         return found
-    first_line = next((line for line in islice(source.lines(), 20) if line.strip(", ;\t")), "")
+    first_line = next((line for line in source.head(20) if line.strip(", ;\t")), "")
     cells = [cell.strip().strip('"').strip().casefold() for cell in first_line.split(source.delimiter)]
     for entry in FORMATS:
         if entry.recognizes(cells) and file.suffix.casefold().endswith(entry.only_ending):

@@ -6,9 +6,10 @@ import codecs
 import csv
 import re
 import threading
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Generator, Iterator
+from contextlib import closing, contextmanager, suppress
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 from typing import Final, TextIO
 
@@ -24,6 +25,7 @@ _NUMBERS: Final = re.compile(rb"(?:[-+.\deE]+|nan)(?: (?:[-+.\deE]+|nan))+", re.
 
 _UTF_8: Final = "utf-8-sig"
 _WINDOWS: Final = "cp1252"
+_BLANK: Final = ", ;\t"
 
 END_OF_STORAGE_HEADER: Final = "endheader"
 """The line behind which OpenSim's storages have their table."""
@@ -86,7 +88,21 @@ class TextSource:
                 row = next(reader, [])
         return [cell.strip() for cell in row]
 
-    def lines(self) -> Iterator[str]:
+    def head(self, count: int) -> list[str]:
+        """Give the first lines, at most so many; as `lines`.
+
+        Whoever does not want all lines takes them here: a generator that is left to Python to be closed swallows the
+        signal that comes just then.
+        """
+        with closing(self.lines()) as lines:
+            return list(islice(lines, count))
+
+    def first_filled(self) -> tuple[int, str]:
+        """Give number and text of the first line with any content, which every source has; as `lines`."""
+        with closing(self.lines()) as lines:
+            return next((k, line) for k, line in enumerate(lines, start=1) if line.strip(_BLANK))
+
+    def lines(self) -> Generator[str, None, None]:
         """Yield the lines without their ends, be these LF, CRLF or CR.
 
         Raises

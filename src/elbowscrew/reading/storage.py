@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import fields
-from itertools import islice
 from typing import Final
 
 import numpy as np
@@ -35,7 +34,7 @@ def recognizes(cells: list[str]) -> bool:
 
 def has_header(source: TextSource) -> bool:
     """Tell by the line that ends a storage's header; what stands before it may begin with any name."""
-    return any(line.strip().casefold() == END_OF_STORAGE_HEADER for line in islice(source.lines(), _HEADER_LINES))
+    return any(line.strip().casefold() == END_OF_STORAGE_HEADER for line in source.head(_HEADER_LINES))
 
 
 def read(source: TextSource, _options: ReadOptions) -> Recording:
@@ -105,7 +104,7 @@ def _flat(line: str) -> str:
 def _header(source: TextSource) -> tuple[dict[str, str], list[str], int]:
     """Give what the file states, the segments' names, and how many lines that is."""
     stated: dict[str, str] = {}
-    lines = enumerate(islice(source.lines(), _HEADER_LINES), start=1)
+    lines = enumerate(source.head(_HEADER_LINES), start=1)
     for _, text in lines:
         if text.strip().casefold() == END_OF_STORAGE_HEADER:
             break

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import csv
 from collections import Counter
-from itertools import islice
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -92,7 +91,7 @@ def read(source: TextSource, options: ReadOptions) -> Recording:
 def _header(source: TextSource) -> _Header:
     """Find the line of names by its first cell; the axes follow it, what the file states of itself stands above it."""
     rows = []
-    for number, line in enumerate(islice(source.lines(), _HEADER_LINES), start=1):
+    for number, line in enumerate(source.head(_HEADER_LINES), start=1):
         try:
             rows.append(source.cells(line))
         except csv.Error as error:
