@@ -6,11 +6,14 @@ Each figure is drawn as narrow as it may be and at two other widths, of trials o
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 from drawn_trials import KINDS, drawn_trial
 from ink import faults_of
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 
 from elbowscrew import compare, simulate_trial
 from elbowscrew.group.curves import PERCENT, group_curve
@@ -103,9 +106,51 @@ def test_what_is_wrong_is_seen() -> None:
         ax.text(0.8, 0.2, "———————————————— a text that is too long")
         assert "is cut off" in drawn(figure)
         assert "ink at the right edge" in drawn(figure)
+        ax.text(-0.05, 0.6, "across the axis")
+        assert "'across the axis' runs out of its panel" in drawn(figure)
         ax.legend(loc="center")
         assert "legend over line 'line'" in drawn(figure)
         figure.legend(["line"], loc="lower left")
         assert "legend over an axes" in drawn(figure)
         ax.axhspan(0.1, 0.2, color=(1.0, 0.0, 0.0, 0.5))
         assert "is transparent" in drawn(figure)
+
+
+def test_what_is_wrong_in_a_space_is_seen() -> None:
+    """Matplotlib's own places for its words: over each other where a space is small."""
+    with publication_style():
+        figure = new_figure(60.0, 60.0)
+        space = figure.add_subplot(2, 1, 1, projection="3d")
+        space.set_xlim(-0.16, 0.16)
+        assert "'−0.1' over '0.0'" in drawn(figure)
+        settle(figure)
+        assert faults_of(figure) == []
+
+
+def test_words_in_a_space_clear_their_axis_and_each_other() -> None:
+    with publication_style():
+        figure = new_figure(60.0, 60.0)
+        space = figure.add_subplot(projection="3d")
+        for limits, name in ((space.set_xlim, "x"), (space.set_ylim, "y"), (space.set_zlim, "z")):
+            limits(-1200.0, 1200.0)
+            getattr(space, f"set_{name}label")(f"{name} (mm)")
+        settle(figure)
+        assert faults_of(figure) == []
+        for axis in (space.xaxis, space.yaxis, space.zaxis):
+            line = axis.line.get_transform().transform(np.column_stack(axis.line.get_data()))
+            along = (line[1] - line[0]) / np.linalg.norm(line[1] - line[0])
+            out = np.array([along[1], -along[0]])
+            marks = axis.get_major_ticks(len(axis.get_majorticklocs()))
+            labels = [tick.label1 for tick in marks if -1200.0 <= tick.get_loc() <= 1200.0]
+            assert len(labels) >= 2
+            ways = [corners @ out - line[0] @ out for corners in map(corners_of, labels)]
+            points = figure.dpi / 72.0
+            assert all((way > 2.0 * points).all() or (way < -2.0 * points).all() for way in ways)
+            assert np.abs(ways).min() < 6.0 * points  # and not far off either
+            name = abs((corners_of(axis.label).mean(axis=0) - line[0]) @ out) - np.abs(ways).max()
+            assert 4.0 * points < name < 9.0 * points  # its middle
+
+
+def corners_of(text: Text) -> Any:
+    box = text.get_window_extent()
+    return np.array([(x, y) for x in (box.x0, box.x1) for y in (box.y0, box.y1)])

@@ -98,7 +98,7 @@ def test_the_band_of_an_axis_is_what_holds_95_percent(elbow: Analysis) -> None:
         reach = np.hypot(known.point_radius, np.tan(known.axis_cone) * body.half)
         assert np.abs(corners[:, 1]).max() == pytest.approx(1000.0 * reach)
         (text,) = (one.get_text() for one in ax.texts)
-        assert text == f"95 %: {np.degrees(known.axis_cone):.2g} deg, {1000.0 * known.point_radius:.2g} mm"
+        assert text == f"95 %: {np.degrees(known.axis_cone):.2g} deg\n{1000.0 * known.point_radius:.2g} mm"
 
 
 def test_an_axis_that_is_not_determined_has_no_band(elbow: Analysis) -> None:

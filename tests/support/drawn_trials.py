@@ -21,11 +21,14 @@ SIMULATED: dict[str, dict[str, Any]] = {
     "two axes": {"frames": 240, "inversion": 110, "repetitions": 3, "joint_type": "two-axes", "proximal": "moving"},
     "wandering": {"frames": 150, "inversion": 70, "joint_type": "hinge", "wander_deg": 12.0, "proximal": "moving"},
     "noise-free": {"frames": 120, "inversion": 55, "joint_type": "hinge", "marker_noise_mm": 0.0},
+    "still": {"frames": 120, "inversion": 55, "joint_type": "hinge", "top_deg": 0.01},
+    "exact": {"frames": 120, "inversion": 55, "joint_type": "two-axes", "marker_noise_mm": 0.0},
     "orientations": {"frames": 150, "inversion": 70, "joint_type": "two-axes", "proximal": "moving"},
     "ball": {"frames": 200, "inversion": 90, "joint_type": "ball", "joint": "hip", "top_deg": 70.0},
 }
 SETTINGS: dict[str, dict[str, Any]] = {
     "flat": {"min_angle_deg": 1.0, "tolerance_mm": 0.1},
+    "still": {"min_angle_deg": 0.3, "tolerance_mm": 0.1},
     "gappy": {"angle_unit": "rad", "length_unit": "m", "tolerance_mm": 2.0},
     "multi-cycle": {"express_in": "lab"},
     "wandering": {"express_in": "proximal"},

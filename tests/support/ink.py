@@ -41,6 +41,10 @@ def faults_of(figure: Figure) -> list[str]:
             found.append(f"{_named(one)} over {_named(other)}")
     for legend in _legends(figure):
         found += _under(legend, figure)
+    for ax in figure.axes:
+        for text in [] if isinstance(ax, Axes3D) or not ax.get_visible() else ax.texts:
+            if text.get_visible() and text.get_text().strip() and not _within(text.get_window_extent(), ax.bbox):
+                found.append(f"{_named(text)} runs out of its panel")
     return found + [f"{artist} is transparent" for artist in figure.findobj() if _is_transparent(artist)]
 
 
@@ -69,7 +73,8 @@ def _texts(figure: Figure) -> list[Text]:
     for ax in figure.axes:
         if ax.get_visible():
             titles = [getattr(ax, name) for name in ("title", "_left_title", "_right_title")]
-            found += [*ax.texts, *titles, *(_axis_texts(ax) if ax.axison else ())]
+            has_axes = getattr(ax, "_axis3don", ax.axison)  # a view in space has its own word for it
+            found += [*ax.texts, *titles, *(_axis_texts(ax) if has_axes else ())]
     return list(dict.fromkeys(text for text in found if text.get_visible() and text.get_text().strip()))
 
 
@@ -77,23 +82,30 @@ def _axis_texts(ax: Any) -> list[Text]:
     found: list[Text] = []
     for axis in (ax.xaxis, ax.yaxis, *((ax.zaxis,) if isinstance(ax, Axes3D) else ())):
         if axis.get_visible():
-            ticks = axis._update_ticks()
-            labels = [label for tick in ticks for label in (tick.label1, tick.label2)]
+            labels = [label for tick in _ticks(axis) for label in (tick.label1, tick.label2)]
             found += [axis.label, axis.get_offset_text(), *labels]
     return [text for text in found if text.get_visible()]
+
+
+def _ticks(axis: Any) -> list[Any]:
+    """Ticks within the limits; those in space where they were drawn, as matplotlib's own list would move them."""
+    if axis.axis_name == "z" or isinstance(axis.axes, Axes3D):
+        low, high = sorted(axis.get_view_interval())
+        close = 1e-9 * (high - low)
+        made = axis.majorTicks[: len(axis.get_majorticklocs())]
+        return [tick for tick in made if low - close <= tick.get_loc() <= high + close]
+    return list(axis._update_ticks())
 
 
 def _corners(text: Text, dpi: float) -> Corners:
     """Four corners of a text, turned as it is, a little inside of its box."""
     box = text.get_window_extent()
     center = 0.5 * (np.array(box.min) + np.array(box.max))
-    turn = np.radians(text.get_rotation())
-    cosine, sine = abs(np.cos(turn)), abs(np.sin(turn))
-    if abs(cosine**2 - sine**2) < 0.2:
-        width, height = box.width, box.height
-        turn = 0.0
-    else:  # the box about a turned rectangle, the other way round
-        width, height = np.linalg.solve([[cosine, sine], [sine, cosine]], [box.width, box.height])
+    rotation = text.get_rotation()
+    text.set_rotation(0.0)
+    width, height = text.get_window_extent().size
+    text.set_rotation(rotation)
+    turn = np.radians(rotation)
     loose = _LOOSE_POINTS * dpi / 72.0
     half = 0.5 * np.array([width, height - 2.0 * loose])
     corners = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * np.maximum(half, 0.5)

@@ -135,9 +135,9 @@ def plot_axis_known(ax: Axes, analysis: Analysis | TrialView, body: JointInBody,
     else:
         reach = length_in(axis.known.reach(along), unit)
         ax.fill_between(length_in(along, unit), -reach, reach, label=_KNOWN, **style.BAND)
-        ax.set_ylim(*(1.7 * float(reach.max()) * np.array([-1.0, 1.0])))
-        text = (
-            f"95 %: {rounded(float(angle_in(np.array(axis.known.angle), angle_unit)), 2)} {angle_unit}, "
+        ax.set_ylim(*(2.2 * float(reach.max()) * np.array([-1.0, 1.0])))
+        text = (  # a line each, as small numbers are long
+            f"95 %: {rounded(float(angle_in(np.array(axis.known.angle), angle_unit)), 2)} {angle_unit}\n"
             f"{rounded(float(length_in(np.array(axis.known.radius), unit)), 2)} {unit}"
         )
     ax.text(0.5, 0.97, text, transform=ax.transAxes, ha="center", va="top")

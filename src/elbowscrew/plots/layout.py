@@ -13,11 +13,12 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.gridspec import SubplotSpec
-from matplotlib.ticker import MaxNLocator
+from matplotlib.ticker import FixedLocator, MaxNLocator
 from matplotlib.transforms import Bbox
 
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.plots.scale import Scale, scales_of
+from elbowscrew.plots.space_labels import place_labels
 from elbowscrew.plots.style import TEXT
 from elbowscrew.quantities import power_of_ten
 
@@ -182,10 +183,12 @@ def _place_space(ax: Axes, cell: _Cell, renderer: Any) -> None:
     room = cell.outer.padded(-_LEAST_AIR)
     kept = _LABELS * ax.figure.dpi / 72.0
     _place(ax, cell.inner)
+    scale = 1.0
     for _ in range(_ROUNDS):
-        box = ax.get_tightbbox(renderer)
+        place_labels(ax, renderer)
         if _multiplied(ax):
-            box = ax.get_tightbbox(renderer)
+            place_labels(ax, renderer)
+        box = ax.get_tightbbox(renderer)
         if box is None:
             return
         scale = min(1.0, *((np.array(room.size) - kept) / (np.array(box.size) - kept)).tolist())
@@ -194,7 +197,9 @@ def _place_space(ax: Axes, cell: _Cell, renderer: Any) -> None:
         half = 0.5 * scale * np.array(old.size)
         _place(ax, Bbox([moved - half, moved + half]))
         if scale > _LITTLE:  # the labels are as large as was thought, or it hardly matters
-            return
+            break
+    if scale < 1.0:
+        place_labels(ax, renderer)  # which may touch, now that it is smaller
 
 
 def _middle(box: Bbox) -> Float:
@@ -231,7 +236,9 @@ def _thinned(scales: Sequence[Scale], boxes: Sequence[Float]) -> bool:
     found = False
     for scale, labels in zip(scales, boxes, strict=True):
         if scale.is_free and _touch(labels, scale):
-            scale.axis.set_major_locator(MaxNLocator(max(len(labels) - 2, 2), steps=[1, 2, 2.5, 5, 10]))
+            few = len(labels) < 4  # fewer than three, one of them 0, no rule for round numbers gives
+            ends = FixedLocator(scale.places[[0, -1]].tolist())
+            scale.axis.set_major_locator(ends if few else MaxNLocator(len(labels) - 2, steps=[1, 2, 2.5, 5, 10]))
             found = True
     return found
 

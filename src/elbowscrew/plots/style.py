@@ -88,6 +88,7 @@ _RC: Final[dict[Any, Any]] = {
     "axes.spines.top": False,
     "axes.spines.right": False,
     "axes.formatter.useoffset": False,
+    "axes.formatter.limits": (-3, 6),  # 0.00025 at a tick takes the room of three
     "xtick.labelsize": TEXT,
     "ytick.labelsize": TEXT,
     "xtick.major.width": 0.7,
