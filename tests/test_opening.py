@@ -14,7 +14,7 @@ import pytest
 
 from elbowscrew import read_recording, samples
 from elbowscrew.cli import main
-from elbowscrew.errors import OutputError
+from elbowscrew.errors import OutputError, RecordingError
 from elbowscrew.opening import create, open_bytes, open_own, open_text, read_text, read_toml
 from elbowscrew.reading import source
 from elbowscrew.results.result_files import BATCH_MARK
@@ -63,6 +63,25 @@ def test_a_recording_that_cannot_be_closed_was_read_all_the_same(
     begun.close()  # as Python does to lines that nobody asks for any more, and there nobody could be told
     assert list(recording.lines()) == ["a,b", "1,2"]
     assert list(recording.blocks(1)) == [["1,2"]]
+
+
+def test_a_disk_that_fails_once_is_told_and_no_file_that_changes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "take.csv"
+    path.write_text("a,b\n1,2\n")
+    recording = source.open_source(path)
+    calls = []
+
+    def once(path: Path, encoding: str) -> io.TextIOWrapper:
+        calls.append(path)
+        if len(calls) == 1:
+            raise OSError(5, "Input/output error")
+        return open_text(path, encoding=encoding)
+
+    monkeypatch.setattr(source, "open_text", once)
+    with pytest.raises(RecordingError, match=r"take.csv: cannot be read: Input/output error$"):
+        list(recording.blocks(0))
 
 
 @pytest.mark.parametrize("name", ["elbow_natural", "elbow_row_tagged", "knee"])

@@ -126,8 +126,7 @@ class TextSource:
             )
             raise RecordingError(msg) from error
         except OSError as error:
-            msg = f"{self.path}: cannot be read: {error.strerror}"
-            raise RecordingError(msg) from error
+            raise self._unread(error) from error
 
     def blocks(self, first_line: int) -> Iterator[list[str]]:
         """Yield the lines from `first_line` on, counted from 0, many at a time: the same as `lines`, but faster.
@@ -149,12 +148,17 @@ class TextSource:
                     yield block
                 else:
                     return
-        except (UnicodeDecodeError, OSError):
+        except UnicodeDecodeError:
             pass
+        except OSError as error:
+            raise self._unread(error) from error
         for _ in self.lines():  # which tells what is wrong, and where
             pass
         msg = f"{self.path}: the file changes while it is read; wait until it is written"
         raise RecordingError(msg)
+
+    def _unread(self, error: OSError) -> RecordingError:
+        return RecordingError(f"{self.path}: cannot be read: {error.strerror}")
 
     @contextmanager
     def _open(self) -> Iterator[TextIO]:
