@@ -237,7 +237,7 @@ SCENARIOS = (
     Scenario("compare", ("compare", "t.csv", *PLAN), _trial, (("t_compare",),), quick=False),  # type: ignore[arg-type]
     Scenario("compare --force", ("compare", "t.csv", *PLAN, "--force"), _compared, (("t_compare",),),
              disks=frozenset({NO_EXCHANGE, CLOSED_ABOVE, MOUNTED})),
-    Scenario("compare of a folder", ("compare", "in", *PLAN), _study, (("in_compare",),), quick=False),
+    Scenario("compare of a folder", ("compare", "in", *PLAN, "--force"), _study, (("in_compare",),), quick=False),
     Scenario("interpolate", ("interpolate", "r/keyframes.csv", "--frames", "30", "-o", "m.csv"), _motion,
              (("m.csv",),), quick=False),
     Scenario("interpolate --force", ("interpolate", "r/keyframes.csv", "--frames", "30", "--force"), _motion,

@@ -56,7 +56,8 @@ FAULTS = (
     Fault("SIGINT again and again", KILL_ON, signal.SIGINT),
 )
 CODES = {FAIL: {0, 3, 6, 7}, signal.SIGTERM: {0, 3, 6, 7, 143}, signal.SIGINT: {0, 3, 6, 7, 130}, signal.SIGKILL: {-9}}
-TABLES = ("summary.csv", "failures.csv", "cycles.csv", "repetitions.csv", "index.html")
+OVER_TRIALS = ("summary.csv", "failures.csv", "cycles.csv", "repetitions.csv", "index.html", "in_compare")
+"""What tells of a trial that could not be read or written, and is made of the others."""
 TELLING = (3, 7)
 _QUICK_STEP = 194
 _UNTOUCHED = re.compile(r"^elbowscrew: error: (.*): cannot be written: .*; nothing was left behind$", re.MULTILINE)
@@ -180,8 +181,9 @@ def disturb(bench: Bench, tally: Tally, *, step: int) -> None:
             several = len(part) > 1 or moves
             pending = dead and several and (now.items() <= was.items() or now.items() <= will.items())
             moving = dead and bench.cannot & NO_EXCHANGE and not now  # the next run puts it back
-            if fault.action == FAIL and ended.code in TELLING and Path(part[0]).name in TABLES:
-                continue  # they tell of a trial that could not be read or written
+            if is_told(part, fault, ended):
+                check_sums(bench.work)
+                continue
             if not known and not pending and not moving:
                 found.append(f"{part[0]} is neither the old one nor the new one")
             if ended.code == 0 and now != will:
@@ -200,9 +202,13 @@ def disturb(bench: Bench, tally: Tally, *, step: int) -> None:
         told = [Path(path).as_posix() for path in _UNTOUCHED.findall(ended.said)]
         parts = [part for part in scenario.parts if any(part_of(dict.fromkeys(told, ""), (one,)) for one in part)]
         alone = len(scenario.parts) == 1
-        if alone and ended.code > 0 and UNSETTLED not in ended.said:
+        if alone and ended.code not in (0, *TELLING) and UNSETTLED not in ended.said:
             parts = [*scenario.parts]
-        found = [f"{part[0]} is not as it was" for part in parts if part_of(tree, part) != part_of(old, part)]
+        found = [
+            f"{part[0]} is not as it was"
+            for part in parts
+            if part_of(tree, part) not in ({} if part[0] in scenario.passing else None, part_of(old, part))
+        ]
         if told and alone and temporaries_of(bench.work):
             found.append("something was left behind")
         return [f"{one} though the command failed" for one in found]
@@ -220,6 +226,11 @@ def disturb(bench: Bench, tally: Tally, *, step: int) -> None:
         if temporaries_of(bench.work) and ended.code >= 0:
             tally.left[f"{fault.name} {bench.name}"] += 1
         tally.add(bench.name, place, found + bench.faults_of_next_run(tree))
+
+
+def is_told(part: tuple[str, ...], fault: Fault, ended: Ended) -> bool:
+    """Whether a part need not be the old or the new one, as it tells of a trial that could not be read or written."""
+    return fault.action == FAIL and ended.code in TELLING and Path(part[0]).name in OVER_TRIALS
 
 
 def points_of(bench: Bench, step: int) -> Iterator[tuple[Fault, int]]:
