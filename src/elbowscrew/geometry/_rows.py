@@ -178,7 +178,7 @@ def logarithm(Q: Rows) -> tuple[list[Float], Float]:
     sine = row_length(v)
     half = np.arctan2(sine, w)
     ratio = ratio_of_equals(half, sine)
-    if not np.fmin.reduce(sine) > 0.0:
+    if not np.fmin.reduce(sine, axis=None) > 0.0:
         undefined = (sine == 0.0) & (w < 0.0)
         ratio[undefined] = half[undefined] = np.nan
     # d(half/sine) = w0 sinc_slope(half) ratio^3 for a unit Q, where <v, v0> = -w w0.

@@ -59,7 +59,7 @@ def ratio_of_equals(numerator: Float, denominator: Float) -> Float:
     They are equal to the last digit long before; among the smallest numbers there is, halves are lost in between.
     """
     ratio: Float = numerator / denominator
-    if not np.fmin.reduce(denominator) > _EQUAL_BELOW:
+    if not np.fmin.reduce(denominator, axis=None) > _EQUAL_BELOW:
         small = (np.abs(numerator) < _EQUAL_BELOW) & (denominator < _EQUAL_BELOW)
         ratio[small | (denominator == 0.0)] = 1.0
     return ratio

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from elbowscrew.geometry import _rows, dual_quaternion
-from elbowscrew.geometry._blocks import in_blocks, is_single
+from elbowscrew.geometry._blocks import BLOCK, in_blocks, is_single
 from elbowscrew.geometry._small_angle import VANISHING_NORM, length, row_length
 from elbowscrew.geometry._ways import WayRound, check_way, choose_signs
 from elbowscrew.geometry.arrays import Float
@@ -143,16 +143,22 @@ class _Keys(NamedTuple):
         total = _rows.weighted(weights, self.rows(flat)) if self.columns is None else self.columns @ weights
         return _rows.normalized(total, VANISHING_NORM)
 
-    def steps(self, flat: Float) -> Callable[[_rows.Rows], Iterator[_rows.Rows]]:
-        """Give a function of poses B that gives the steps from there to each keyframe, ``B* Q_i``."""
-        if self.columns is None:
-            keys = self.rows(flat)
-            return lambda B: (_rows.dual_product(_rows.conjugate(B), key) for key in keys)
-        maps = [_rows.right_maps(key) for key in self.columns.T]
+    def steps(self, flat: Float, frames: int) -> Callable[[_rows.Rows], Iterator[tuple[slice, _rows.Rows]]]:
+        """Give a function of poses B that gives the steps from there to keyframes, ``B* Q_i``, and which these are.
 
-        def steps(B: _rows.Rows) -> Iterator[_rows.Rows]:
+        Of short series it gives many at once, rows (n, m): there, each call of NumPy takes longer than its numbers do.
+        """
+        at_once = max(BLOCK // frames, 1)
+        parts = [slice(start, start + at_once) for start in range(0, len(flat) // 8, at_once)]
+        if self.columns is None:
+            keys = np.swapaxes(np.array(self.rows(flat)), 0, 1)
+            return lambda B: ((part, _rows.dual_product(_rows.conjugate(B), keys[:, part])) for part in parts)
+        real, dual = (np.stack(maps) for maps in zip(*map(_rows.right_maps, self.columns.T), strict=True))
+
+        def steps(B: _rows.Rows) -> Iterator[tuple[slice, _rows.Rows]]:
             back = np.stack(_rows.conjugate(B))
-            return (_rows.mapped(one, back) for one in maps)
+            for part in parts:
+                yield part, [*np.moveaxis(real[part] @ back[:4], 1, 0), *np.moveaxis(dual[part] @ back, 1, 0)]
 
         return steps
 
@@ -231,11 +237,15 @@ def dib(
 
     def kernel(flat: Float, weights: Float, reach: Float) -> list[Float]:
         nonlocal iterations
-        blend, steps = keys.blend(flat, weights), keys.steps(flat)
+        blend = keys.blend(flat, weights)
         residual = np.full(blend[0].shape, np.inf)
+        steps = keys.steps(flat, residual.size)
         done = 0
         while done < max_iterations and np.any(residual > tolerance):
-            step = _rows.weighted(weights, [_rows.logarithm(step)[0] for step in steps(blend)])
+            step = np.zeros((6, residual.size))
+            for part, rows in steps(blend):
+                for total, row in zip(step, _rows.logarithm(rows)[0], strict=True):
+                    total += np.sum(weights[part] * row, axis=0)
             blend = _rows.normalized(_rows.dual_product(blend, _rows.exponential(step)))
             residual = np.maximum(row_length(step[:3]), row_length(step[3:]) / (1.0 + reach[0]))
             done += 1
