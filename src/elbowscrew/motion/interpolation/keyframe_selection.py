@@ -24,6 +24,8 @@ _PROBES: Final = (0.5, 0.25, 0.75, 0.125, 0.375, 0.625, 0.875)
 _ROUND_OFF: Final = 1e-9
 # To this (m) the sums of squares over all pairs are exact.
 _NANOMETERS: Final = 2e-8
+# Sets of which one has an error that all larger ones mostly keep to.
+_TRIED: Final = 32
 # Frames among which the smaller sets of a long recording are looked for.
 _THINNED: Final = 400
 
@@ -158,30 +160,53 @@ def _best_of_each_size(track: _Track, tolerance: float, most: int) -> list[Index
 
     Each size costs what its longest segment spans, so that all of them together cost little more than the pairs do.
     """
-    largest, total = _all_pairs(track)
-    reached = [largest[0]]  # least largest error of a way to each row in so many segments
-    last = track.parameter.size - 1
-    while reached[-1][last] > tolerance and len(reached) < most - 1:
-        reached.append(np.maximum(reached[-1][:, None], largest).min(axis=0))
+    limit = _easily_kept(track)
+    largest, total = _all_pairs(track, limit)
+    reached = _least_largest(largest, tolerance, most)
+    if any(errors[-1] > limit for errors in reached[track.stops.size - 1 :]):
+        largest, total = _all_pairs(track, np.inf)
+        reached = _least_largest(largest, tolerance, most)
     found = []
     for segments, errors in enumerate(reached, start=1):
-        if np.isfinite(errors[last]):
-            limit = errors[last] * (1.0 + _ROUND_OFF) + _ROUND_OFF**2
-            found.append(_least_total(np.where(largest <= limit, total, np.inf), segments))
+        if np.isfinite(errors[-1]):
+            bound = errors[-1] * (1.0 + _ROUND_OFF) + _ROUND_OFF**2
+            found.append(_least_total(np.where(largest <= bound, total, np.inf), segments))
     return found
 
 
-def _all_pairs(track: _Track) -> tuple[Float, Float]:
-    """Largest error and sum of squared errors of the frames between every two rows, shape (N, N); inf backward."""
+def _least_largest(largest: Float, tolerance: float, most: int) -> list[Float]:
+    """Least largest error of a way to each row in one segment, in two, and so on, until it is within the tolerance."""
+    reached = [largest[0]]
+    while reached[-1][-1] > tolerance and len(reached) < most - 1:
+        reached.append(np.maximum(reached[-1][:, None], largest).min(axis=0))
+    return reached
+
+
+def _easily_kept(track: _Track) -> float:
+    """Largest error, of some sets with one row more than those that must be keyframes the least."""
+    some = np.linspace(0, track.parameter.size - 1, _TRIED).round().astype(np.int64)
+    known: dict[tuple[int, int], Float] = {}
+    errors = [_errors(track, np.union1d(track.stops, row), known).max() for row in np.setdiff1d(some, track.stops)]
+    return min(errors, default=np.inf) * (1.0 + _ROUND_OFF) + _NANOMETERS
+
+
+def _all_pairs(track: _Track, limit: float) -> tuple[Float, Float]:
+    """Largest error and sum of squared errors of the frames between every two rows, shape (N, N); inf backward.
+
+    Also inf where the largest error is over the limit; but to the next row that must be a keyframe it is told.
+    """
     count = track.parameter.size
     largest, total = np.full((count, count), np.inf), np.full((count, count), np.inf)
     left = track.left
     for first in range(count - 1):
-        reach = track.reach(first)
-        every = slice(first, reach + 1)
+        every = np.arange(first, track.reach(first) + 1)
         seen, segments = track.poses.seen_from(first, every), track.poses.segments_from(first, every)
-        for start in range(first + 1, reach + 1, _BLOCK):
-            ends = np.arange(start, min(start + _BLOCK, reach + 1))
+        middle = _row_at(track, first, every, 0.5)
+        within = segments.displacement(seen[middle - first], track.fraction(first, every, middle)) <= limit
+        within[[0, -1]] = False, True
+        possible = np.flatnonzero(within) + first
+        for start in range(0, possible.size, _BLOCK):
+            ends = possible[start : start + _BLOCK]
             rows = np.arange(first + 1, ends[-1])
             largest[first, ends], total[first, ends] = np.maximum(left[first], left[ends]), left[first] ** 2
             if not rows.size:
