@@ -65,10 +65,13 @@ def catmull_rom(
     t = np.concatenate([[2.0 * t[0] - t[1]], t, [2.0 * t[-1] - t[-2]]])
     x = np.asarray(parameter, dtype=np.float64)
     first = np.clip(np.searchsorted(t, x, side="right") - 1, 1, len(t) - 3) - 1
-    level = [Q[first + k] for k in range(4)]
+    level = np.stack([Q[first + k] for k in range(4)])
     for width in (1, 2, 3):
-        level = [_between(level[k], level[k + 1], x, *_span(t, first, k, width)) for k in range(len(level) - 1)]
-    return level[0]
+        spans = [_span(t, first, k, width) for k in range(4 - width)]
+        low, high = (np.stack(ends) for ends in zip(*spans, strict=True))
+        level = sclerp(level[:-1], level[1:], (x - low) / (high - low), way="as given")
+    blend: NDArray[np.float64] = level[0]
+    return blend
 
 
 def _span(
@@ -77,13 +80,3 @@ def _span(
     """Ends of the interval a node of the pyramid blends over: the middle one at the top, wider ones below."""
     low, high = (k, k + 1) if width == 1 else (k, k + 2) if width == 2 else (1, 2)
     return knots[first + low], knots[first + high]
-
-
-def _between(
-    start: NDArray[np.float64],
-    end: NDArray[np.float64],
-    x: NDArray[np.float64],
-    low: NDArray[np.float64],
-    high: NDArray[np.float64],
-) -> NDArray[np.float64]:
-    return sclerp(start, end, (x - low) / (high - low), way="as given")

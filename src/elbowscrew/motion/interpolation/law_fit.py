@@ -102,11 +102,15 @@ class _Phase(NamedTuple):
     points: BodyPoints
 
     def rms(self, law: LawFunction) -> float:
+        return float(self._rms(law(self.tau)))
+
+    def _rms(self, share: Float) -> Float:
+        """Of shares of the way (..., n), shape (...)."""
         if not self.tau.size:
-            return np.nan
-        modeled = sclerp(self.ends[0], self.ends[1], law(self.tau), way="as given")
+            return np.full(share.shape[:-1], np.nan)
+        modeled = sclerp(self.ends[0], self.ends[1], share, way="as given")
         error = told_error(rms_displacement(self.pose, modeled, self.points), self.points)
-        return float(np.sqrt(np.mean(error**2)))
+        return np.asarray(np.sqrt(np.mean(error**2, axis=-1)))
 
     def named(self, name: str, peak: float | None) -> FittedLaw:
         law = named_law(name, peak).position
@@ -120,8 +124,7 @@ class _Phase(NamedTuple):
         if name == "linear":
             return self.named(name, None)
         coarse = np.linspace(*_PEAKS, _COARSE)
-        errors = [self.rms(asymmetric(law, peak).position) for peak in coarse]
-        best = int(np.argmin(errors))
+        best = int(np.argmin(self._rms(np.stack([asymmetric(law, peak).position(self.tau) for peak in coarse]))))
         low, high = coarse[max(best - 1, 0)], coarse[min(best + 1, _COARSE - 1)]
         peak = _least(lambda peak: self.rms(asymmetric(law, peak).position), float(low), float(high))
         return self.named(name, round(float(peak), 4))
