@@ -16,7 +16,11 @@ from numpy.typing import NDArray
 from elbowscrew import Analysis, Settings, analyze, simulate_trial
 from elbowscrew.plots import FIGURES, anatomy, cycles, kinematics, quality
 from elbowscrew.plots.axis import with_instantaneous_axes
+from elbowscrew.plots.panels import panels_of
+from elbowscrew.plots.series import plot_overview
+from elbowscrew.report.captions import caption_of
 from elbowscrew.results.trial_views import view_of
+from elbowscrew.view.long_trials import Stretch
 
 Drawn = NDArray[np.float64]
 
@@ -121,13 +125,18 @@ def test_the_mean_of_the_instantaneous_axes_of_a_hinge_is_its_axis() -> None:
 
 
 def test_cycles_with_their_mean_and_deviation(trial: Analysis) -> None:
-    ax = cycles.plot_cycles(Figure().add_subplot(), trial)
     curves = trial.cycle_curves.angle.reshape(-1, 101)
-    drawn = [np.asarray(one.get_ydata()) for one in ax.get_lines()[: len(curves)]]
-    assert np.array(drawn) == pytest.approx(curves, nan_ok=True)
-    assert line(ax, "mean")[1] == pytest.approx(trial.repeatability.mean, nan_ok=True)
-    assert not ax.collections  # its deviation is too narrow to be seen
+    ax = cycles.plot_cycles(Figure().add_subplot(), trial)
+    assert line(ax, f"mean of {len(curves)} cycles")[1] == pytest.approx(trial.repeatability.mean, nan_ok=True)
+    assert len(ax.get_lines()) == 1  # it would hide the cycles
+    assert not ax.collections  # and its deviation is too narrow to be seen
     view = view_of(trial)
+    apart = view.extra["cycles"]["angle"] + 0.1 * (view.extra["cycles"]["cycle"] == 1)
+    spread = replace(view, extra={**view.extra, "cycles": {**view.extra["cycles"], "angle": apart}})
+    ax = cycles.plot_cycles(Figure().add_subplot(), spread)
+    drawn = [np.asarray(one.get_ydata()) for one in ax.get_lines()[: len(curves)]]
+    assert np.array(drawn) == pytest.approx(apart.reshape(-1, 101), nan_ok=True)
+    assert line(ax, "mean")[1] == pytest.approx(trial.repeatability.mean, nan_ok=True)
     assert view.repetition_curve is not None
     wide = replace(view, repetition_curve={**view.repetition_curve, "theta_sd": np.full(101, 0.2)})
     (band,) = cycles.plot_cycles(Figure().add_subplot(), wide).collections
@@ -150,7 +159,7 @@ def test_anatomical_angles_over_time_and_against_flexion(trial: Analysis) -> Non
 def test_losses_are_drawn_where_frames_were_lost(trial: Analysis) -> None:
     ax = quality.plot_losses(Figure().add_subplot(), trial)
     rows = [label.get_text() for label in ax.get_yticklabels()]
-    assert rows == ["upper arm: none lost", "forearm: blank"]
+    assert rows == ["upper arm:\nnone lost", "forearm:\nblank"]
     assert not ax.collections[0].get_paths()
     spans = [np.asarray(path.vertices)[:, 0] for path in ax.collections[1].get_paths()]
     time_s = trial.screw.time_s
@@ -158,11 +167,33 @@ def test_losses_are_drawn_where_frames_were_lost(trial: Analysis) -> None:
     assert (drawn == (trial.screw.distal_loss == "blank")).all()
     assert drawn.sum() == 30
     sd = quality.plot_angle_sd(Figure().add_subplot(), trial)
+    largest = np.nanmax(trial.screw.angle_sd)
+    assert sd.get_ylim() == pytest.approx((0.0, 1.08 * largest))  # clear of the edge, also where all are alike
     assert line(sd, "of each frame")[1] == pytest.approx(trial.screw.angle_sd, nan_ok=True)
 
 
+@pytest.mark.parametrize("frames", [2000, 2001])
+def test_what_jumps_from_frame_to_frame_is_no_solid_block(frames: int) -> None:
+    long = view_of(analyze(simulate_trial(frames=frames, inversion=900).recording))
+    for figure in ("quality", "joint_angles"):
+        labels = {label for ax in FIGURES[figure](long).axes for label in ax.get_legend_handles_labels()[1]}
+        assert ("of each frame" in labels) == (frames == 2000)
+        assert ("median of each part" in labels) == (frames == 2001)
+        told = "black: median, and grey: range of each part" in caption_of(figure, long).lower()
+        assert told == (frames == 2001)
+
+
 def test_the_quality_has_a_panel_for_all_that_is_known(trial: Analysis) -> None:
+    turning = drawn_trial("orientations")
+    assert len(panels_of("quality", turning)) == len(FIGURES["quality"](turning).axes)
     assert len(FIGURES["quality"](trial).axes) == 4
     assert [ax.get_ylabel() for ax in FIGURES["quality"](drawn_trial("orientations")).axes[1:]] == [
         "Residual\nrotation (deg)"
     ]
+
+
+@pytest.mark.parametrize(("share", "curves"), [(0.05, 0), (0.2, 1)])
+def test_a_short_stretch_of_a_long_trial_is_marked_and_not_blackened(share: float, curves: int) -> None:
+    view = drawn_trial("long")
+    ax = plot_overview(Figure().add_subplot(), view, Stretch(100, 100 + round(share * view.frame.size), ""))
+    assert len(ax.get_lines()) == curves

@@ -49,11 +49,26 @@ def test_the_deviation_of_cycles_is_drawn_where_it_can_be_seen_and_told_where_it
     view = drawn_trial("multi-cycle")
     curve = view.repetition_curve
     assert curve is not None
-    for sd, told in ((0.001, "standard deviation (0.057 deg at most, too narrow to be drawn)"), (0.1, "(grey band)")):
+    narrow = "the standard deviation is 0.057 deg at most"
+    for sd, told in (
+        (0.001, f"of each other, and {narrow}."),
+        (0.1, "one standard deviation to either side (grey band)"),
+    ):
         shown = replace(view, repetition_curve={**curve, "theta_sd": np.full(101, sd)})
         assert told in caption_of("cycles", shown)
         labels = [label for ax in FIGURES["cycles"](shown).axes for label in ax.get_legend_handles_labels()[1]]
         assert ("± standard deviation" in labels) == (sd == 0.1)
+
+
+def test_cycles_that_the_mean_would_hide_are_told_by_what_they_span() -> None:
+    view = drawn_trial("multi-cycle")
+    curves = np.degrees(view.extra["cycles"]["angle"].reshape(-1, 101))
+    most = f"{np.ptp(curves, axis=0).max():.2g}"
+    text = caption_of("cycles", view)
+    assert f"time: mean (black). Too narrow to be drawn: all cycles lie within {most} deg of each other, and" in text
+    apart = view.extra["cycles"]["angle"] + 0.1 * (view.extra["cycles"]["cycle"] == 1)
+    spread = replace(view, extra={**view.extra, "cycles": {**view.extra["cycles"], "angle": apart}})
+    assert "time: each (thin grey), mean (black). Too narrow to be drawn: the" in caption_of("cycles", spread)
 
 
 def test_captions_of_a_long_trial_count_what_its_stretch_has() -> None:
@@ -142,3 +157,16 @@ def test_captions_stand_beside_the_figures_and_on_the_page(tmp_path: Path) -> No
     bare = save_analysis(analysis, tmp_path / "bare", figure_formats=())
     assert not (bare / "figures").exists()
     assert text.strip() not in (bare / "report.html").read_text(encoding="utf-8")
+
+
+def test_frames_and_a_single_angle_are_named_in_the_joints_words() -> None:
+    for kind, told in (
+        ("short", "the forearm's frame at the reference"),
+        ("wandering", "the upper arm's frame"),
+        ("multi-cycle", "the laboratory frame, upper arm as at the reference"),
+    ):
+        for name in ("axis", "instantaneous_axes", "joint_axis"):
+            assert f"in {told}: (a) in space" in caption_of(name, drawn_trial(kind))
+    view = drawn_trial("short")
+    assert "Joint angle ±" in caption_of("joint_angles", view)
+    assert FIGURES["joint_angles"](view).axes[0].get_ylabel() == "Joint angle (deg)"

@@ -14,6 +14,7 @@ from elbowscrew.plots.figures import NARROW_MM, WIDTH_MM
 from elbowscrew.quantities import angle_in
 from elbowscrew.results.trial_views import view_of
 from elbowscrew.view.bands import is_seen
+from elbowscrew.view.cycle_curves import cycle_curves
 from elbowscrew.view.long_trials import MOST_CYCLES
 from elbowscrew.view.trial_view import TrialView
 
@@ -29,28 +30,30 @@ def cycles_figure(analysis: Analysis | TrialView, *, width_mm: float = WIDTH_MM)
 def plot_cycles(ax: Axes, analysis: Analysis | TrialView) -> Axes:
     """Draw each cycle, and the mean of all with one standard deviation to either side; of many the range alone.
 
-    As in ``repetition_curve.csv``, mean and deviation are over the cycles whose angle is known there.
+    Cycles that the mean would hide are not drawn. As in ``repetition_curve.csv``, mean and deviation are over the
+    cycles whose angle is known there.
     """
     view = view_of(analysis)
-    unit, table = view.settings.angle_unit, view.extra["cycles"]
-    count = np.unique(table["cycle"]).size
-    percent = table["percent"].reshape(count, -1)[0]
-    curves = angle_in(table["angle"].reshape(count, -1), unit)
+    unit, found = view.settings.angle_unit, cycle_curves(view)
+    percent, curves = found.percent, angle_in(found.curves, unit)
+    count = len(curves)
     name = f"{count} cycle{'s' if count > 1 else ''}"
-    if count > MOST_CYCLES:
+    mean = view.repetition_curve
+    shown = mean is None or found.is_seen
+    if shown and count > MOST_CYCLES:
         known = np.isfinite(curves).any(axis=0)
-        low, high = np.fmin.reduce(curves), np.fmax.reduce(curves)
+        low, high = (angle_in(one, unit) for one in found.span())
         ax.fill_between(percent[known], low[known], high[known], label=f"range of {name}", **_RANGE)
-    else:
+    elif shown:
         look = style.MEASURED if count == 1 else {"color": "#8C8C8C", "linewidth": 0.5, "zorder": 2}
         for k, curve in enumerate(curves):
             ax.plot(percent, curve, label=name if k == 0 else None, **look)
-    mean = view.repetition_curve
     if mean is not None:
         middle, sd = angle_in(mean["theta_mean"], unit), angle_in(mean["theta_sd"], unit)
         if is_seen(middle, sd):
             ax.fill_between(percent, middle - sd, middle + sd, label="± standard deviation", **style.SPREAD)
-        ax.plot(percent, middle, label="mean", zorder=3, **{**style.MEASURED, "linewidth": 1.6})
+        label = "mean" if shown else f"mean of {name}"
+        ax.plot(percent, middle, label=label, zorder=3, **{**style.MEASURED, "linewidth": 1.6})
     ax.set_xlim(0.0, 100.0)
     ax.set_xlabel("Time of the cycle (%)")
     ax.set_ylabel(f"Angle θ ({unit})")

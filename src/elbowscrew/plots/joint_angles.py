@@ -19,7 +19,7 @@ from elbowscrew.results.trial_views import view_of
 from elbowscrew.view.bands import span_of
 from elbowscrew.view.decimation import drawn_rows
 from elbowscrew.view.joint_space import ANGLE_NAMES
-from elbowscrew.view.long_trials import shown_part
+from elbowscrew.view.long_trials import is_dense, shown_part
 from elbowscrew.view.trial_view import TrialView
 from elbowscrew.view.wander import off_mean
 
@@ -92,16 +92,17 @@ def plot_residual_translation(ax: Axes, analysis: Analysis | TrialView) -> Axes:
 
 
 def _plot_residual(ax: Axes, view: TrialView, values: Float, name: str) -> Axes:
-    span_line(ax, view, values, label="of each frame")
-    mark_tracking(ax, view)
+    mark_tracking(span_of_frames(ax, view, values), view)
     ax.set_ylabel(name.replace(" ", "\n", 1))
-    ax.set_ylim(0.0, 1.08 * _largest(values))
     return over_time(ax, view.time_s)
 
 
-def _largest(values: Float) -> float:
+def span_of_frames(ax: Axes, view: TrialView, values: Float) -> Axes:
+    """Draw a number of each frame that is never negative, from zero on, its largest clear of the panel's edge."""
     found = float(np.nanmax(values, initial=0.0)) if np.isfinite(values).any() else 0.0
-    return found if found > 0.0 else 1.0
+    span_line(ax, view, values, label="of each frame", parted=is_dense(view))
+    ax.set_ylim(0.0, 1.08 * found or 1.0)
+    return ax
 
 
 def plot_angles_together(ax: Axes, analysis: Analysis | TrialView) -> Axes:

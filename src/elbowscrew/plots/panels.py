@@ -70,8 +70,9 @@ def _joint_angles(view: TrialView) -> tuple[Panel, ...]:
 
 def _quality(view: TrialView) -> tuple[Panel, ...]:
     known = (Panel(plot_angle_sd),) if np.isfinite(view.angle_sd).any() else ()
-    left = () if view.joint_angles is None else (Panel(plot_residual_rotation), Panel(plot_residual_translation))
-    return (Panel(plot_losses), *known, *left)
+    left = [] if view.joint_angles is None else [plot_residual_rotation]
+    left += [plot_residual_translation] if left and view.located else []
+    return (Panel(plot_losses), *known, *map(Panel, left))
 
 
 def _of_instantaneous_axes(draw: Callable[[Any, TrialView], Axes]) -> Callable[[Any, TrialView], Axes]:

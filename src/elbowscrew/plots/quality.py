@@ -14,13 +14,13 @@ from elbowscrew.model import Analysis
 from elbowscrew.motion.movements.phases import runs_of
 from elbowscrew.plots import style
 from elbowscrew.plots.figures import WIDTH_MM
-from elbowscrew.plots.joint_angles import plot_residual_rotation, plot_residual_translation
-from elbowscrew.plots.series import mark_tracking, over_time, span_line
+from elbowscrew.plots.joint_angles import plot_residual_rotation, plot_residual_translation, span_of_frames
+from elbowscrew.plots.series import mark_tracking, over_time
 from elbowscrew.quantities import angle_in
 from elbowscrew.results.trial_views import view_of
 from elbowscrew.view.trial_view import TrialView
 
-_ROW_MM: Final = 4.5
+_ROW_MM: Final = 8.0  # two lines of words
 _LOST: Final = "#B5533C"
 
 
@@ -54,7 +54,7 @@ def plot_losses(ax: Axes, analysis: Analysis | TrialView) -> Axes:
             for a, b in zip((view.time_s[first] - half).tolist(), (view.time_s[last] + half).tolist(), strict=True)
         ]
         ax.add_collection(PolyCollection(corners, facecolor=_LOST, edgecolor=_LOST, linewidth=0.3), autolim=False)
-    ax.set_yticks(range(len(rows)), list(rows))
+    ax.set_yticks(range(len(rows)), [name.replace(": ", ":\n") for name in rows])
     ax.set_ylim(len(rows) - 0.4, -0.6)
     return over_time(ax, view.time_s)
 
@@ -63,10 +63,8 @@ def plot_angle_sd(ax: Axes, analysis: Analysis | TrialView) -> Axes:
     """Draw the standard deviation of θ by the noise of the poses, over time."""
     view = view_of(analysis)
     unit = view.settings.angle_unit
-    span_line(ax, view, angle_in(view.angle_sd, unit), label="of each frame")
-    mark_tracking(ax, view)
+    mark_tracking(span_of_frames(ax, view, angle_in(view.angle_sd, unit)), view)
     ax.set_ylabel(f"SD of θ\n({unit})")
-    ax.set_ylim(bottom=0.0)
     return over_time(ax, view.time_s)
 
 

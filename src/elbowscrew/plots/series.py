@@ -25,6 +25,7 @@ from elbowscrew.view.trial_view import TrialView, model_label
 OVERVIEW_MM: Final = 24.0
 _KEYFRAMES: Final = 20  # more are drawn smaller
 _PIECE: Final = 500
+_LEAST_SHARE: Final = 0.08  # of a trial, that a stretch must be for its curve to be more than a bar in the overview
 
 
 def plot_theta(ax: Axes, analysis: Analysis | TrialView) -> Axes:
@@ -125,16 +126,17 @@ def plot_overview(ax: Axes, view: TrialView, stretch: Stretch) -> Axes:
     found = envelope(view, angle_in(view.angle, unit))
     ax.fill_between(found.time_s, found.low, found.high, label="range of each part", **style.SPREAD)
     ends = view.time_s[[stretch.first, stretch.end - 1]]
-    ax.axvspan(*ends, facecolor="white", edgecolor=style.BLACK, linewidth=1.0, zorder=2, label="part drawn in full")
-    rows = drawn_rows(angle_in(view.angle[stretch.first : stretch.end], unit)) + stretch.first
-    ax.plot(view.time_s[rows], angle_in(view.angle[rows], unit), **{**style.MEASURED, "linewidth": 0.6})
+    ax.axvspan(*ends, facecolor="white", edgecolor=style.BLACK, linewidth=0.7, zorder=2, label="part drawn in full")
+    if ends[1] - ends[0] > _LEAST_SHARE * (view.time_s[-1] - view.time_s[0]):
+        rows = drawn_rows(angle_in(view.angle[stretch.first : stretch.end], unit)) + stretch.first
+        ax.plot(view.time_s[rows], angle_in(view.angle[rows], unit), **{**style.MEASURED, "linewidth": 0.6})
     ax.set_ylabel(f"θ ({unit})")
     return over_time(ax, view.time_s)
 
 
-def span_line(ax: Axes, view: TrialView, values: Float, *, label: str) -> Axes:
-    """Draw a series that jumps from frame to frame; of a long trial the range and the median of each part."""
-    if stretch_of(view) is None:
+def span_line(ax: Axes, view: TrialView, values: Float, *, label: str, parted: bool) -> Axes:
+    """Draw a series that jumps from frame to frame, or the range and the median of each part of it."""
+    if not parted:
         return line(ax, view.time_s, values, label=label, **{**style.MEASURED, "linewidth": 0.6})
     found = envelope(view, values)
     ax.fill_between(found.time_s, found.low, found.high, label="range of each part", **style.SPREAD)
@@ -180,12 +182,13 @@ def _shade(ax: Axes, start: Float, end: Float, **look: Any) -> None:
 
 def _plot_error(ax: Axes, view: TrialView, values: Float, name: str, unit: str) -> Axes:
     time_s = view.time_s
-    span_line(ax, view, values, label="model against measurement")
+    parted = stretch_of(view) is not None
+    span_line(ax, view, values, label="model against measurement", parted=parted)
     if np.isfinite(values).any():
         level = float(np.sqrt(np.nanmean(values**2)))
         ax.axhline(level, **style.LEVEL)
         ax.set_title(f"RMS {rounded(level, 3)} {unit}", loc="right", fontweight="normal")
-    if stretch_of(view) is None:
+    if not parted:
         mark_keyframes(ax, view, values)
     mark_tracking(ax, view)
     ax.set_ylabel(f"{name} ({unit})")

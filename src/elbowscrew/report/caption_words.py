@@ -104,6 +104,16 @@ def _frames(count: int) -> str:
     return f"{count} frame{'' if count == 1 else 's'}"
 
 
+def frame_name(view: TrialView) -> str:
+    """Name the frame that screws are expressed in by the joint's own segments."""
+    words = view.named_joint
+    return {
+        "distal": f"{words.distal.name}'s frame at the reference",
+        "proximal": f"{words.proximal.name}'s frame",
+        "lab": f"laboratory frame, {words.proximal.name} as at the reference",
+    }[view.settings.express_in]
+
+
 def filtered(view: TrialView) -> str:
     """Tell the filter of the velocities, if any."""
     cutoff = view.summary["trial"]["instantaneous_lowpass_hz"]

@@ -10,13 +10,14 @@ import numpy as np
 from elbowscrew.choices import JOINT_TYPE_WORDS, AngleUnit
 from elbowscrew.geometry.sensitivity import NORMAL_95
 from elbowscrew.model import Comparison, TrialsComparison
-from elbowscrew.quantities import angle_in, rounded
+from elbowscrew.quantities import rounded
 from elbowscrew.report.bones_words import bone_words
 from elbowscrew.report.caption_words import (
     KEYFRAMES,
     PARTS,
     angle,
     filtered,
+    frame_name,
     interval,
     intervals_of_angles,
     length,
@@ -28,8 +29,9 @@ from elbowscrew.report.caption_words import (
 )
 from elbowscrew.view.bands import is_seen
 from elbowscrew.view.comparisons import has_displacements
+from elbowscrew.view.cycle_curves import cycle_curves
 from elbowscrew.view.joint_space import JointInBody, joint_in_body
-from elbowscrew.view.long_trials import MOST_CYCLES, shown_part, stretch_of
+from elbowscrew.view.long_trials import MOST_CYCLES, is_dense, shown_part, stretch_of
 from elbowscrew.view.trial_view import TrialView, fitted_pitch_mm, model_label
 
 
@@ -200,7 +202,7 @@ def _velocity(view: TrialView) -> Iterator[str]:
 
 def _instantaneous_axes(view: TrialView) -> Iterator[str]:
     yield (
-        f"Instantaneous axes in the {view.settings.express_in} frame: (a) in space; (b) tilt and (c) position across "
+        f"Instantaneous axes in the {frame_name(view)}: (a) in space; (b) tilt and (c) position across "
         "their mean, which weights each by the square of its angular velocity; color: θ."
     )
     yield filtered(view)
@@ -208,18 +210,24 @@ def _instantaneous_axes(view: TrialView) -> Iterator[str]:
 
 
 def _cycles(view: TrialView) -> Iterator[str]:
-    count = view.repetitions.number.size
-    each = "range of all (light grey)" if count > MOST_CYCLES else "each (thin grey)"
+    count, mean, found = view.repetitions.number.size, view.repetition_curve, cycle_curves(view)
     if count == 1:
         yield "Angle θ of the one cycle over its time."
-    else:
-        yield f"Angle θ of {count} cycles, each from 0 to 100 % of its own time: {each}, mean (black)"
-        mean, unit = view.repetition_curve, view.settings.angle_unit
-        if mean is None or is_seen(mean["theta_mean"], mean["theta_sd"]):
-            yield "and one standard deviation to either side (grey band)."
+        return
+    shown = ["range of all (light grey)" if count > MOST_CYCLES else "each (thin grey)"]
+    narrow = []
+    if mean is not None:
+        if not found.is_seen:
+            shown = []
+            narrow.append(f"all cycles lie within {angle(view, found.widest)} of each other")
+        shown.append("mean (black)")
+        if is_seen(mean["theta_mean"], mean["theta_sd"]):
+            shown.append("one standard deviation to either side (grey band)")
         else:
-            most = float(angle_in(np.nanmax(mean["theta_sd"]), unit))
-            yield f"and standard deviation ({rounded(most)} {unit} at most, too narrow to be drawn)."
+            narrow.append(f"the standard deviation is {angle(view, float(np.nanmax(mean['theta_sd'])))} at most")
+    yield f"Angle θ of {count} cycles, each from 0 to 100 % of its own time: {', '.join(shown)}."
+    if narrow:
+        yield f"Too narrow to be drawn: {', and '.join(narrow)}."
 
 
 def _quality(view: TrialView) -> Iterator[str]:
@@ -229,13 +237,13 @@ def _quality(view: TrialView) -> Iterator[str]:
     names += [] if view.joint_angles is None or not view.located else ["distance that it leaves"]
     letters = letters_of_panels(None, len(names))
     yield f"Quality over time: {'; '.join(f'{one}{name}' for one, name in zip(letters, names, strict=True))}."
-    if stretch_of(view) is not None and len(names) > 1:
+    if is_dense(view) and len(names) > 1:
         yield PARTS
 
 
 def _axis(view: TrialView) -> Iterator[str]:
     yield (
-        f"Finite screw axes in the {view.settings.express_in} frame: (a) in space, with their weighted mean; (b) "
+        f"Finite screw axes in the {frame_name(view)}: (a) in space, with their weighted mean; (b) "
         "tilt and (c) position across the mean; color: θ."
     )
 
@@ -243,7 +251,7 @@ def _axis(view: TrialView) -> Iterator[str]:
 def _joint_axis(view: TrialView) -> Iterator[str]:
     grey = "; grey: 95 % of the frames' axes" if np.isfinite(view.spread95).all() else ""
     yield (
-        f"The joint's axis among the axes of the frames, in the {view.settings.express_in} frame: (a) in space, (b) "
+        f"The joint's axis among the axes of the frames, in the {frame_name(view)}: (a) in space, (b) "
         f"end-on, (c, d) from two sides, enlarged across; color: θ{grey}."
     )
     if view.confidence95 is None:
@@ -265,6 +273,8 @@ def _joint_angles(view: TrialView) -> Iterator[str]:
     together = f"; {others[-1]}the second angle against the first (diamond: start)" if both else ""
     yield f"{a}The joint's own angles ({JOINT_TYPE_WORDS[view.joint_summary['joint_type']['type']]}) over time;"
     yield f"what it leaves of each pose: {b}rotation{position}{together}."
+    if is_dense(shown):
+        yield "Of what it leaves, black: median, and grey: range of each part of the time."
     yield from overview(stretch)
     yield from intervals_of_angles(shown)
     yield from shading(shown)
@@ -272,7 +282,7 @@ def _joint_angles(view: TrialView) -> Iterator[str]:
 
 def _axis_path(view: TrialView) -> Iterator[str]:
     yield (
-        f"The joint's axis against its angle, in the {view.settings.express_in} frame: (a) tilt and (b) shift from "
+        f"The joint's axis against its angle, in the {frame_name(view)}: (a) tilt and (b) shift from "
         "the mean axis in two directions across it; bands: 95 % of each."
     )
 

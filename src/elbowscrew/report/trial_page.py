@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 
 from elbowscrew.choices import JOINT_TYPE_WORDS
 from elbowscrew.geometry._blocks import evenly_thinned
-from elbowscrew.joints import Joint
 from elbowscrew.model.joint_summary_types import EstimateSummary, JointSummary
 from elbowscrew.model.mesh import Mesh
 from elbowscrew.report.bones_words import bone_angles, bone_words, bones_sentences
+from elbowscrew.report.caption_words import frame_name
 from elbowscrew.report.captions import caption_of
 from elbowscrew.report.checklist import MISSING, checklist_of
 from elbowscrew.report.joint_charts import angles_chart, wander_chart
@@ -70,13 +70,14 @@ _FILES: Final = (
 
 
 PAGE: Final = "report.html"
+_TOLD_BY_TABLES: Final = ("cycles",)  # figures whose captions need more than a page does
 
 
 def write_trial_page(folder: Path, meshes: Mapping[str, Mesh] | None = None) -> Path:
     """Write ``report.html`` into a result folder; see `elbowscrew.report.write_trial_page`."""
     settle(folder)
     proof = proof_of(folder)
-    view = view_of_proved(proof)
+    view = view_of_proved(proof, [name for name in _TOLD_BY_TABLES if _is_drawn(folder, name)])
     files: dict[str, bytes] = {}
     if meshes:
         view = replace(view, meshes=placed_meshes(view, meshes))
@@ -150,11 +151,7 @@ def trial_page(trial: TrialView, folder: Path, *, place: Path | None = None) -> 
         "citations": citations_of(trial),
         "checklist": checklist_of(trial),
         "missing": MISSING,
-        "captions": [
-            (name, caption_of(name, trial))
-            for name in FIGURE_ENTRIES
-            if (folder / "figures" / caption_file(name)).is_file()
-        ],
+        "captions": [(name, caption_of(name, trial)) for name in FIGURE_ENTRIES if _is_drawn(folder, name)],
         "study": _study_page(place or folder),
         # Bones that are given with the page are written together with it.
         "files": [
@@ -165,6 +162,10 @@ def trial_page(trial: TrialView, folder: Path, *, place: Path | None = None) -> 
     }
     scene = scene_of(trial) if trial.located else None
     return render("trial.html", styles=("page.css",), scripts=_SCRIPTS, data=scene, content=content)
+
+
+def _is_drawn(folder: Path, name: str) -> bool:
+    return (folder / "figures" / caption_file(name)).is_file()
 
 
 def _study_page(folder: Path) -> str | None:
@@ -194,17 +195,8 @@ def _about_space(trial: TrialView) -> dict[str, Any]:
             {"word": words.proximal.name if end == "proximal" else words.distal.name, "mesh": mesh}
             for end, mesh in trial.meshes.items()
         ],
-        "frame_name": _frame_names(words)[trial.settings.express_in],
+        "frame_name": frame_name(trial),
         "widest_deg": float(np.degrees(WIDEST)),
-    }
-
-
-def _frame_names(words: Joint) -> dict[str, str]:
-    """Name the frames that screws are expressed in by the joint's own segments."""
-    return {
-        "distal": f"{words.distal.name}’s frame at the reference",
-        "proximal": f"{words.proximal.name}’s frame",
-        "lab": f"laboratory frame, {words.proximal.name} as at the reference",
     }
 
 

@@ -19,7 +19,7 @@ _CARRIED: Final = 7
 _SHORTEST: Final = 0.03  # m
 
 ANGLE_NAMES: Final = {
-    1: ("Angle 1",),
+    1: ("Joint angle",),
     2: ("Angle 1", "Angle 2"),
     3: ("Rotation x", "Rotation y", "Rotation z"),
 }

@@ -15,11 +15,17 @@ from elbowscrew.view.trial_view import TrialView
 MOST_CYCLES: Final = 20
 """More are not drawn one by one."""
 _MOST_FRAMES: Final = 20_000
+_MOST_NOISY: Final = 2000  # frames that differ from one to the next: more blacken a column's width
 _CYCLES_SHOWN: Final = 3
 _FRAMES_SHOWN: Final = 2000
 _MOST_PARTS: Final = 150
 _LEAST_PARTS: Final = 10  # fewer would say little, and cycles that few and long can be followed
 _OF_FRAMES: Final = ("anatomy", "instantaneous", "losses")
+
+
+def is_dense(view: TrialView) -> bool:
+    """Tell whether what jumps from frame to frame would be drawn as a solid block."""
+    return view.frame.size > _MOST_NOISY or stretch_of(view) is not None
 
 
 class Stretch(NamedTuple):
