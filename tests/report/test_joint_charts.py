@@ -11,10 +11,13 @@ import numpy as np
 import pytest
 from drawn_trials import drawn_trial
 from PIL import Image
-from read_charts import keys_in, panels_in, picture_in
+from read_charts import keys_in, panels_in, picture_in, remarks_in
 
 from elbowscrew.geometry.arrays import Float
+from elbowscrew.plots import FIGURES
 from elbowscrew.plots.style import AXES
+from elbowscrew.quantities import rounded
+from elbowscrew.report.captions import caption_of
 from elbowscrew.report.clip import clip_of
 from elbowscrew.report.joint_charts import angles_chart, wander_chart
 from elbowscrew.view.long_trials import stretch_of
@@ -40,7 +43,7 @@ def test_own_angles_over_time(kind: str, names: list[str]) -> None:
         key
         for k, name in enumerate(names)
         for key in (
-            ("rect", "band-known", f"95 % interval of {name} (±{1.959964 * (k + 1):.2g})"),
+            ("rect", "band-known", f"95 % interval of {name} (±{1.959964 * (k + 1):.2g} deg)"),
             ("path", f"axis{k + 1}", name),
         )
     ]
@@ -54,6 +57,40 @@ def test_own_angles_over_time(kind: str, names: list[str]) -> None:
         assert bands[k][:, 1].max() == pytest.approx(angle.max() + 1.96 * (k + 1), abs=over_time.pixel)
         assert bands[k][:, 1].min() == pytest.approx(angle.min() - 1.96 * (k + 1), abs=over_time.pixel)
     assert len(beside) == (kind == "two axes")
+
+
+def test_intervals_that_nobody_would_see_are_told_and_not_drawn() -> None:
+    trial = drawn_trial("two axes")
+    own = trial.joint_angles
+    assert own is not None
+    narrow = replace(own, angle_sd=np.full(own.angle.shape, [1e-15, 0.1]))
+    html = angles_chart(replace(trial, joint_angles=narrow))
+    assert html is not None
+    labels = remarks_in(html)
+    assert labels == [f"95 % interval of Angle 1: ±{rounded(np.degrees(1.959964e-15))} deg, too narrow to be drawn"]
+    assert len(panels_in(html)[0].outline("band-known")) == 1
+    trial = drawn_trial("wandering")
+    path = trial.axis_path
+    assert path is not None
+    sharp = replace(path, axis_sd=np.full(path.axis_sd.shape, 1e-9), point_sd=np.full(path.point_sd.shape, 0.001))
+    html = wander_chart(replace(trial, axis_path=sharp))
+    assert html is not None
+    half = rounded(np.degrees(1.959964e-9 / np.sqrt(2.0)))
+    assert remarks_in(html) == [f"95 % of each tilt: ±{half} deg, too narrow to be drawn"]
+    tilts, shifts = panels_in(html)
+    assert len(tilts.outline("band-known")) == 0
+    assert len(shifts.outline("band-known")) == 2
+    assert ("rect", "band-known", "95 % of each") in keys_in(html)
+    unknown = replace(path, axis_sd=np.full(path.axis_sd.shape, np.nan), point_sd=np.full(path.point_sd.shape, np.nan))
+    html = wander_chart(replace(trial, axis_path=unknown))
+    assert html is not None
+    assert "95 %" not in html
+    millimeters = rounded(1.959964 / np.sqrt(2.0))
+    told = f"95 % of each (median): tilt ±{half} deg (too narrow to be drawn), shift ±{millimeters} mm (orange band)."
+    assert told in caption_of("axis_path", replace(trial, axis_path=sharp))
+    assert "tilt not known, shift not known" in caption_of("axis_path", replace(trial, axis_path=unknown))
+    bands = [len(ax.collections) for ax in FIGURES["axis_path"](replace(trial, axis_path=sharp)).axes]
+    assert bands == [0, 2]
 
 
 def test_the_second_angle_against_the_first() -> None:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from drawn_trials import drawn_trial
-from read_charts import Read, keys_in, numbers, panels_in, picture_in
+from read_charts import Read, keys_in, numbers, panels_in, picture_in, remarks_in
 
 from elbowscrew.choices import METHOD_LABELS
 from elbowscrew.geometry.arrays import Bool, Float
@@ -75,7 +75,7 @@ def test_angle_over_time(trial: TrialView) -> None:
     assert keys_in(html) == [
         ("rect", "fill-moving", "moving"),
         *TRACKING,
-        ("rect", "band-known", "95 % interval (±0.98)"),  # 1.96 standard deviations of 0.5 deg
+        ("rect", "band-known", "95 % interval (±0.98 deg)"),  # 1.96 standard deviations of 0.5 deg
         ("path", "measured", "measured"),
         ("path", "modeled", model_name(trial)),
         ("circle", "keyframe", "keyframes"),
@@ -346,3 +346,18 @@ def test_a_picture_of_each_chart_holds_its_parts(result: Path) -> None:
                 assert lower + float(text.get("y", "")) < bottom
         ids += [one.get("id", "") for one in root.iter() if one.get("id")]
     assert len(set(ids)) == len(ids)
+
+
+def test_an_interval_and_a_deviation_that_nobody_would_see_are_told_and_not_drawn(trial: TrialView) -> None:
+    sharp = replace(trial, angle_sd=np.full(trial.angle.shape, 1e-15))
+    html = theta_chart(sharp)
+    assert panels_in(html)[0].outline("band-known") == []
+    assert remarks_in(html) == ["95 % interval: ±1.1·10⁻¹³ deg, too narrow to be drawn"]
+    curve = {
+        "percent": np.arange(101.0),
+        "theta_mean": np.linspace(0.0, 2.0, 101),
+        "theta_sd": np.full(101, np.radians(0.02)),
+    }
+    html = repetition_chart(curve, 3)
+    assert panels_in(html)[0].outline("band-known") == []
+    assert remarks_in(html) == ["standard deviation: 0.02 deg at most, too narrow to be drawn"]

@@ -71,6 +71,11 @@ def keys_in(html: str) -> list[tuple[str, str, str]]:
     return re.findall(r'<span><svg[^>]*><(\w+) class="([^"]+)"[^>]*/></svg> ([^<]*)</span>', html)
 
 
+def remarks_in(html: str) -> list[str]:
+    """What is said among the keys of what is not drawn."""
+    return re.findall(r"<span>([^<]+)</span>", html)
+
+
 def panels_in(html: str) -> list[Read]:
     """The panels of the first picture there, as they lie in the page."""
     return [Read(part) for part in picture_in(html) if part.tag == "g"]

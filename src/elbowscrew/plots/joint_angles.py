@@ -16,7 +16,7 @@ from elbowscrew.plots.figures import NARROW_MM, WIDTH_MM
 from elbowscrew.plots.series import band, line, mark_tracking, over_time, overview_grid, span_line
 from elbowscrew.quantities import angle_in, length_in
 from elbowscrew.results.trial_views import view_of
-from elbowscrew.view.bands import span_of
+from elbowscrew.view.bands import is_seen, span_of
 from elbowscrew.view.decimation import drawn_rows
 from elbowscrew.view.joint_space import ANGLE_NAMES
 from elbowscrew.view.long_trials import is_dense, shown_part
@@ -129,7 +129,7 @@ def axis_path_figure(analysis: Analysis | TrialView, *, width_mm: float = WIDTH_
     for ax, shifted in zip(panels, (False, True), strict=True):
         plot_axis_path(ax, view, shifted=shifted)
     style.letter(*panels)
-    style.legend(figure, panels[0], below=True)
+    style.legend(figure, *panels, below=True)
     return figure
 
 
@@ -151,8 +151,9 @@ def plot_axis_path(ax: Axes, analysis: Analysis | TrialView, *, shifted: bool) -
         parts, reach = (length_in(values, settings.length_unit) for values in (found.shift, found.shift_reach))
     else:
         parts, reach = (angle_in(values, settings.angle_unit) for values in (found.tilt, found.tilt_reach))
+    seen = is_seen(parts[0], reach, span_of(parts))
     for k, (values, name) in enumerate(zip(parts, found.toward, strict=True)):
-        if np.isfinite(reach).any():
+        if seen:
             ax.fill_between(angle, values - reach, values + reach, label="95 % of each", **style.BAND)
         ax.plot(angle, values, label=f"toward {name}", linewidth=1.3, marker="o", markersize=2.5, **style.AXES[k])
     ax.axhline(0.0, **style.LEVEL)

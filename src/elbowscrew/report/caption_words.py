@@ -14,6 +14,7 @@ from elbowscrew.view.bands import is_seen, span_of
 from elbowscrew.view.joint_space import ANGLE_NAMES
 from elbowscrew.view.long_trials import Stretch
 from elbowscrew.view.trial_view import TrialView, model_label
+from elbowscrew.view.wander import off_mean
 
 KEYFRAMES: Final = "Circles: the poses that the model passes through."
 PARTS: Final = "Black: median, and grey: range of each part of the recording."
@@ -74,6 +75,24 @@ def intervals_of_angles(view: TrialView) -> Iterator[str]:
         else:
             told.append(f"{name} not known")
     yield f"95 % intervals (median): {', '.join(told)}."
+
+
+def intervals_of_path(view: TrialView) -> Iterator[str]:
+    """Tell what 95 % keeps within of an axis that wanders, and whether it is drawn."""
+    if view.axis_path is None:
+        return
+    found = off_mean(view, view.axis_path)
+    told = []
+    for what, parts, reach, write in (
+        ("tilt", found.tilt, found.tilt_reach, angle),
+        ("shift", found.shift, found.shift_reach, length),
+    ):
+        if np.isfinite(reach).any():
+            drawn = _how(parts[0], reach, span_of(parts))
+            told.append(f"{what} ±{write(view, float(np.nanmedian(reach)))} ({drawn})")
+        else:
+            told.append(f"{what} not known")
+    yield f"95 % of each (median): {', '.join(told)}."
 
 
 def _how(values: Float, reach: Float, span: float | None = None) -> str:

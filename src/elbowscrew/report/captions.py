@@ -20,6 +20,7 @@ from elbowscrew.report.caption_words import (
     frame_name,
     interval,
     intervals_of_angles,
+    intervals_of_path,
     length,
     letters_of_panels,
     measured_and_model,
@@ -283,8 +284,9 @@ def _joint_angles(view: TrialView) -> Iterator[str]:
 def _axis_path(view: TrialView) -> Iterator[str]:
     yield (
         f"The joint's axis against its angle, in the {frame_name(view)}: (a) tilt and (b) shift from "
-        "the mean axis in two directions across it; bands: 95 % of each."
+        "the mean axis in two directions across it."
     )
+    yield from intervals_of_path(view)
 
 
 def _paper(what: str, modeled: bool) -> Callable[[TrialView], Iterator[str]]:

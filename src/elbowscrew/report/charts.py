@@ -13,6 +13,8 @@ from markupsafe import Markup
 
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.motion.movements.phases import runs_of
+from elbowscrew.quantities import rounded
+from elbowscrew.view.bands import is_seen
 from elbowscrew.view.decimation import drawn_rows
 
 WIDTH: Final = 900.0
@@ -135,6 +137,26 @@ class Chart:
             self._keep(f"{label}, upper", x[rows], high[rows])
         self._note(look, label)
 
+    def reach(
+        self, x: Float, y: Float, reach: Float, look: str, name: str, unit: str, span: float | None = None
+    ) -> None:
+        """Fill what lies within `reach` (N,) of a curve, and tell its median; where it would not be seen, tell that.
+
+        `span` is what the chart's curves span where there are several; by default what this one does.
+        """
+        known = np.isfinite(reach) & np.isfinite(y)
+        if not known.any():
+            return
+        half = f"±{rounded(float(np.median(reach[known])))} {unit}"
+        if is_seen(y, reach, span):
+            self.band(x, y - reach, y + reach, look, f"{name} ({half})")
+        else:
+            self.remark(f"{name}: {half}, too narrow to be drawn")
+
+    def remark(self, text: str) -> None:
+        """Say among the keys what is not drawn."""
+        self._legend.append(("", text))
+
     def points(self, x: Float, y: Float, look: str, label: str = "", radius: float = 4.0) -> None:
         """Draw circles where the values are known."""
         for a, b in zip(self.x(x).tolist(), self.y(y).tolist(), strict=True):
@@ -191,9 +213,9 @@ class Chart:
             ]
         )
 
-    def keys(self) -> Markup:
-        """Say what is what, in a line that wraps where there is little room."""
-        return keys_of(self._legend)
+    def keys(self, *others: Chart) -> Markup:
+        """Say what is what, also on other charts beside it, in a line that wraps where there is little room."""
+        return keys_of(dict.fromkeys(key for chart in (self, *others) for key in chart._legend))
 
     def _grid(self) -> list[str]:
         left, _, right, _ = self._inner
@@ -251,9 +273,12 @@ def _numbers(values: Float) -> list[float | None]:
 
 
 def keys_of(legend: Iterable[tuple[str, str]]) -> Markup:
-    """Keys of a chart, from pairs of look and label."""
+    """Keys of a chart, from pairs of look and label; without a look, what there is to say of something not drawn."""
     parts = []
     for look, label in legend:
+        if not look:
+            parts.append(f"<span>{escape(label)}</span> ")
+            continue
         if look.startswith(("keyframe", "center")):
             shape = f'<circle class="{look}" cx="14" cy="7" r="4"/>'
         elif look.startswith(("fill", "band")):

@@ -12,6 +12,7 @@ from elbowscrew.geometry.sensitivity import NORMAL_95
 from elbowscrew.quantities import rounded
 from elbowscrew.report.charts import WIDTH, Chart, picture, range_of
 from elbowscrew.report.trial_charts import mark_tracking, over_time
+from elbowscrew.view.bands import is_seen, span_of
 from elbowscrew.view.joint_space import ANGLE_NAMES
 from elbowscrew.view.long_trials import shown_part
 from elbowscrew.view.trial_view import TrialView
@@ -35,9 +36,8 @@ def angles_chart(trial: TrialView) -> Markup | None:
     )
     mark_tracking(chart, shown)
     for k, name in enumerate(names):
-        if np.isfinite(reach[:, k]).any():
-            label = f"95 % interval of {name} (±{rounded(np.nanmedian(reach[:, k]))})"
-            chart.band(found.time_s, angles[:, k] - reach[:, k], angles[:, k] + reach[:, k], "band-known", label)
+        own = found.time_s, angles[:, k], reach[:, k]
+        chart.reach(*own, "band-known", f"95 % interval of {name}", "deg", span_of(angles))
         chart.line(found.time_s, angles[:, k], f"axis{k + 1}", name)
     panels = [chart.panel()]
     text = f"{', '.join(names)} over time{'' if stretch is None else f', of {stretch.told}'}"
@@ -74,7 +74,7 @@ def wander_chart(trial: TrialView) -> Markup | None:
     kinds = [("Tilt", "deg", np.degrees(found.tilt), np.degrees(found.tilt_reach))]
     if trial.located:
         kinds.append(("Shift", "mm", 1000.0 * found.shift, 1000.0 * found.shift_reach))
-    panels, keys = [], Markup()
+    charts = []
     for n, (what, unit, parts, reach) in enumerate(kinds):
         chart = Chart(
             f"wander{n}",
@@ -86,11 +86,15 @@ def wander_chart(trial: TrialView) -> Markup | None:
             y_label=f"{what} from the mean axis ({unit})",
             size=(0.5 * WIDTH, _TALL),
         )
-        for values in parts:
+        seen = is_seen(parts[0], reach, span_of(parts))
+        for values in parts if seen else ():
             chart.band(angle, values - reach, values + reach, "band-known", "95 % of each")
+        if np.isfinite(reach).any() and not seen:
+            half = f"±{rounded(float(np.nanmedian(reach)))} {unit}"
+            chart.remark(f"95 % of each {what.lower()}: {half}, too narrow to be drawn")
         for k, values in enumerate(parts):
             chart.line(angle, values, f"axis{k + 1}", f"toward {found.toward[k]}")
-        panels.append(chart.panel(0.5 * WIDTH * n))
-        keys = chart.keys()
+        charts.append(chart)
+    panels = [chart.panel(0.5 * WIDTH * n) for n, chart in enumerate(charts)]
     text = f"{' and '.join(kind[0].lower() for kind in kinds).capitalize()} of the joint's axis from its mean."
-    return keys + picture("wander", "The axis against the angle", text, WIDTH, _TALL, panels)
+    return charts[0].keys(*charts[1:]) + picture("wander", "The axis against the angle", text, WIDTH, _TALL, panels)

@@ -26,6 +26,7 @@ from elbowscrew.report.charts import (
     ticks_between,
 )
 from elbowscrew.report.scene import WIDEST
+from elbowscrew.view.bands import is_seen
 from elbowscrew.view.long_trials import Stretch, envelope, shown_part, stretch_of
 from elbowscrew.view.scene import directions_across, joint_bundle
 from elbowscrew.view.trial_view import TrialView
@@ -220,7 +221,11 @@ def repetition_chart(curve: Mapping[str, NDArray[Any]], count: int) -> Markup:
         y_label="Angle θ (deg)",
         size=(WIDTH, 250.0),
     )
-    chart.band(curve["percent"], mean - sd, mean + sd, "band-known", "± standard deviation")
+    if is_seen(mean, sd):
+        chart.band(curve["percent"], mean - sd, mean + sd, "band-known", "± standard deviation")
+    else:
+        most = f"{rounded(float(np.nanmax(sd)))} deg" if np.isfinite(sd).any() else "not known"
+        chart.remark(f"standard deviation: {most} at most, too narrow to be drawn")
     chart.line(curve["percent"], mean, "measured", f"mean of {count} repetitions")
     return chart.svg()
 
@@ -258,9 +263,7 @@ def over_time(
 
 def _mark_interval(chart: Chart, trial: TrialView) -> None:
     reach = NORMAL_95 * np.degrees(trial.angle_sd)
-    if np.isfinite(reach).any():
-        angle, label = np.degrees(trial.angle), f"95 % interval (±{rounded(np.nanmedian(reach))})"
-        chart.band(trial.time_s, angle - reach, angle + reach, "band-known", label)
+    chart.reach(trial.time_s, np.degrees(trial.angle), reach, "band-known", "95 % interval", "deg")
 
 
 def mark_tracking(chart: Chart, trial: TrialView) -> None:
