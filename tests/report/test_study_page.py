@@ -21,6 +21,7 @@ from elbowscrew.choices import JointName
 from elbowscrew.cli import main
 from elbowscrew.disk import file_sets
 from elbowscrew.disk.file_sets import write_set
+from elbowscrew.disk.temporary import replaced_of
 from elbowscrew.errors import OutputError, ResultError
 from elbowscrew.report import remake_pages, results_in, write_study_page
 from elbowscrew.report.study import read_study
@@ -184,6 +185,24 @@ def test_what_a_killed_run_has_begun_is_undone_before_anything_is_read(
     assert links(text_of(tmp_path)) == ["one/report.html", "two/report.html"]
     assert "failed" not in text_of(tmp_path)
     assert {path.name: path.read_bytes() for path in (tmp_path / "two").iterdir() if path.is_file()} == before
+
+
+def test_a_result_that_a_killed_run_has_moved_aside_is_not_passed_over(
+    result: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Where two folders cannot change places in one step; only a run to that place knows its name."""
+    for name in ("one", "in/two"):
+        shutil.copytree(result, tmp_path / name)
+    shutil.copytree(result, replaced_of(tmp_path, "one"))  # that run came to its end but for the removal
+    aside = replaced_of(tmp_path / "in", "two")
+    shutil.copytree(result, tmp_path / "in" / "three")
+    (tmp_path / "in" / "two").rename(aside)
+    assert main(["report", str(tmp_path), "-q"]) == 3
+    assert f"{aside}: an earlier result that a run which was killed has moved aside" in capsys.readouterr().err
+    assert "1 failed" in text_of(tmp_path)
+    aside.rename(tmp_path / "in" / "two")
+    assert main(["report", str(tmp_path), "-q"]) == 0
+    assert "failed" not in text_of(tmp_path)
 
 
 def test_a_folder_without_results_is_told(tmp_path: Path) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 from typing import Final, NamedTuple, TypedDict
 
@@ -24,7 +25,7 @@ from elbowscrew.report.study_differences import MOST_COMPARED, differences_of
 from elbowscrew.report.study_groups import Group, axis_rows, groups_of, number_rows, outlying, values_of
 from elbowscrew.report.study_tables import STUDY_TABLES, TABLE_MARK, study_tables
 from elbowscrew.report.trials_table import marks_of, shown_columns, table_data, table_rows
-from elbowscrew.results.staging import settle, write_files
+from elbowscrew.results.staging import moved_aside, settle, write_files
 
 _MOST_STRIPS: Final = 24
 _MOST_FAILURES: Final = 200
@@ -48,16 +49,25 @@ class Factor(TypedDict):
 
 def write_study_page(folder: Path, factors: Sequence[str] | None = None) -> WrittenStudy:
     """Write ``index.html``, ``cycles.csv`` and ``repetitions.csv`` over the results in a folder."""
+    places = {folder}
     for result in result_folders(folder):  # all of them, before any is read
+        places.add(result.parent)
         with suppress(OutputError):  # reading it tells what is wrong with that one
             settle(result)
     study = read_study(folder, factors)
+    missing = [_missing(folder, path) for place in sorted(places) for path in moved_aside(place)]
+    study = replace(study, unread=(*study.unread, *missing))
     told = {name for name in ("summary.csv", "failures.csv") if (folder / name).is_file()}
     page = study_page(study, [*sorted(told, reverse=True), *STUDY_TABLES])
     contents: dict[str, Iterable[str] | bytes] = {INDEX: page.encode("utf-8", "replace")}
     contents |= study_tables(folder, study)
     write_files(folder, contents, replaceable=(MARK, TABLE_MARK))
     return WrittenStudy(folder / INDEX, tuple(folder / name for name in STUDY_TABLES), study.unread)
+
+
+def _missing(folder: Path, aside: Path) -> Failure:
+    message = f"{aside}: an earlier result that a run which was killed has moved aside; do that run again"
+    return Failure(path=aside.relative_to(folder).as_posix(), kind="ResultError", message=message)
 
 
 def not_shown(page: Path, trial: Failure) -> str:

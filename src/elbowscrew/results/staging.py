@@ -11,6 +11,7 @@ from pathlib import Path
 from elbowscrew.disk.file_sets import write_set
 from elbowscrew.disk.folders import make_parents, new_folder, remove_empty, straight, sweep
 from elbowscrew.disk.placing import recover
+from elbowscrew.disk.temporary import REPLACED, is_temporary
 from elbowscrew.errors import OutputError
 from elbowscrew.opening import open_bytes
 from elbowscrew.results.proof import seal
@@ -67,6 +68,11 @@ def settle(folder: Path) -> None:
             sweep(folder)
     except OSError as error:
         raise output_error(folder, error) from error
+
+
+def moved_aside(folder: Path) -> list[Path]:
+    """Find results in a folder that a killed run has moved aside: only a run to the same place knows what it was."""
+    return sorted(path for path in folder.iterdir() if is_temporary(path.name) and path.name.endswith(REPLACED))
 
 
 def check_result_folder(target: Path, *, force: bool, kind: ResultKind = ANALYSIS) -> None:
