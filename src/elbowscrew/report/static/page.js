@@ -58,7 +58,8 @@ const page = (() => {
       const wide = 52 + 8 * words.length;
       if (x > 16 && x + wide > width) [x, y] = [16, y + 22];
       const place = element("g", { transform: `translate(${x} ${y})` });
-      place.append(...[...key.querySelector("svg").cloneNode(true).childNodes], element("text", { x: 36, y: 12 }, words));
+      const swatch = key.querySelector("svg"); // none beside what is said of something not drawn
+      place.append(...(swatch ? swatch.cloneNode(true).childNodes : []), element("text", { x: swatch ? 36 : 0, y: 12 }, words));
       keys.append(place);
       x += wide;
     });
