@@ -9,6 +9,7 @@ from html import unescape
 from pathlib import Path
 
 import pytest
+from plain_pages import plain
 
 from elbowscrew.report.checklist import MISSING, common_of
 from elbowscrew.report.facts import SummaryFacts
@@ -39,7 +40,7 @@ def read(study: Path) -> Study:
 
 def entries(study: Study) -> dict[str, str]:
     """What the page's checklist says."""
-    page = study_page(study)
+    page = plain(study_page(study))
     inside = page[page.index('id="h-checklist"') : page.index("<footer")]
     rows = re.findall(r'<tr><th scope="row">(.*?)</th><td>(.*?)</td></tr>', inside)
     assert f"{sum(MISSING not in text for _, text in rows)} of {len(rows)} entries are filled in" in inside

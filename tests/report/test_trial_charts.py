@@ -259,7 +259,7 @@ def test_axes_end_on_and_from_the_side(kind: str, request: pytest.FixtureRequest
         np.diff(np.polyval(end_on.x, numbers(end_on.every("path", "axis")[0])[::2]))[0]
     )
     name = "mean axis" if scene["confidence"] is None else "joint axis"
-    words = {"band-spread": "95 % of the frames’ axes", "band-confidence": "95 % confidence of the joint axis"}
+    words = {"band-spread": "95 % of the frames' axes", "band-confidence": "95 % confidence of the joint axis"}
     assert keys_in(html) == [*(("rect", look, words[look]) for look in looks), ("path", "joint", name)]
     toward = ["xyz"[int(np.argmax(np.abs(one)))] for one in across]
     for panel, along, up in (

@@ -7,6 +7,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from plain_pages import plain
 
 from elbowscrew.geometry.arrays import Float
 
@@ -68,12 +69,12 @@ def picture_in(html: str) -> ElementTree.Element:
 
 def keys_in(html: str) -> list[tuple[str, str, str]]:
     """Shape, look and words of each key of the legend."""
-    return re.findall(r'<span><svg[^>]*><(\w+) class="([^"]+)"[^>]*/></svg> ([^<]*)</span>', html)
+    return re.findall(r'<span><svg[^>]*><(\w+) class="([^"]+)"[^>]*/></svg> ([^<]*)</span>', plain(html))
 
 
 def remarks_in(html: str) -> list[str]:
     """What is said among the keys of what is not drawn."""
-    return re.findall(r"<span>([^<]+)</span>", html)
+    return re.findall(r"<span>([^<]+)</span>", plain(html))
 
 
 def panels_in(html: str) -> list[Read]:

@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
+from plain_pages import plain
 from scipy.spatial.transform import Rotation
 
 Float = NDArray[np.float64]
@@ -192,7 +193,7 @@ class Page(HTMLParser):
     def handle_data(self, data: str) -> None:
         if {"script", "style"} & set(self._open) or ("svg" in self._open and "desc" not in self._open):
             return
-        self._cell.append(data)
+        self._cell.append(plain(data))
 
     @property
     def text(self) -> str:

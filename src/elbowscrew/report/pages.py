@@ -14,11 +14,12 @@ from pathlib import Path
 from typing import Any, Final
 
 import jinja2
-from markupsafe import Markup
+from markupsafe import Markup, escape
 
 from elbowscrew._version import __version__
 from elbowscrew.errors import ResultError
 from elbowscrew.quantities import rounded
+from elbowscrew.report.typeset import typeset
 from elbowscrew.results.trial_views import UNREADABLE
 
 MARK: Final = 'name="generator" content="elbowscrew'
@@ -33,7 +34,13 @@ _HEADING: Final = re.compile(r'<h2 id="([^"]+)"[^>]*>([^<]*)</h2>')
 
 
 def render(
-    template: str, *, styles: Sequence[str], scripts: Sequence[str], data: Any, content: Mapping[str, Any]
+    template: str,
+    *,
+    styles: Sequence[str],
+    scripts: Sequence[str],
+    data: Any,
+    content: Mapping[str, Any],
+    names: Iterable[str | None] = (),
 ) -> str:
     """Fill a template.
 
@@ -47,6 +54,8 @@ def render(
         What the script works on, as JSON.
     content : mapping
         What the template shows; all of it is escaped.
+    names : iterable of str or None
+        What users and files gave, which stands in sentences letter by letter.
 
     Returns
     -------
@@ -60,7 +69,7 @@ def render(
         "base-uri 'none'; form-action 'none'"
     )
     page = _environment().get_template(template)
-    return page.render(
+    made = page.render(
         content,
         version=__version__,
         policy=policy,
@@ -68,6 +77,7 @@ def render(
         script=Markup(js),  # noqa: S704 - a file of this package
         data=json_for_script(data),
     )
+    return typeset(made, [str(escape(name)) for name in names if name])
 
 
 def json_for_script(data: Any) -> Markup:

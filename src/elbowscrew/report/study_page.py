@@ -130,7 +130,15 @@ def study_page(study: Study, tables: Sequence[str] = ()) -> str:
         "missing": MISSING,
     }
     data = table_data(trials, study.factors, marks)
-    return render("study.html", styles=("page.css", "study.css"), scripts=_SCRIPTS, data=data, content=content)
+    names = {name for trial in trials for name in (trial.folder, trial.subject, *trial.factors.values())}
+    return render(
+        "study.html",
+        styles=("page.css", "study.css"),
+        scripts=_SCRIPTS,
+        data=data,
+        content=content,
+        names={study.name, *names},
+    )
 
 
 def _one_group(groups: Sequence[Group]) -> list[Group]:

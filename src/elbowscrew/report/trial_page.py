@@ -161,7 +161,9 @@ def trial_page(trial: TrialView, folder: Path, *, place: Path | None = None) -> 
         ],
     }
     scene = scene_of(trial) if trial.located else None
-    return render("trial.html", styles=("page.css",), scripts=_SCRIPTS, data=scene, content=content)
+    source = summary["source"]
+    names = (source["name"], source["take"], *(body["name"] for body in summary["trial"]["bodies"]))
+    return render("trial.html", styles=("page.css",), scripts=_SCRIPTS, data=scene, content=content, names=names)
 
 
 def _is_drawn(folder: Path, name: str) -> bool:
