@@ -18,7 +18,7 @@ from elbowscrew.geometry.dual_quaternion import (
 )
 from elbowscrew.geometry.sensitivity import confidence_radius
 from elbowscrew.model import JointMotion, LineEstimate
-from elbowscrew.motion.joint.interval import JointInterval, pose_radii
+from elbowscrew.motion.joint.interval import JointInterval, Method, pose_radii
 from elbowscrew.motion.joint.lines import Z_LINE
 from elbowscrew.motion.screws.pose_noise import JointNoise
 
@@ -29,7 +29,8 @@ UNDETERMINED = 0.5 * np.pi
 class LineErrors(NamedTuple):
     """How far a line may be off: half-angle (rad) and radius (m) that hold 95 %, and both components' deviations.
 
-    The part of a stated skin motion in cone and radius adds in quadrature.
+    The part of a stated skin motion in cone and radius adds in quadrature. The cone is by that method of
+    `JointInterval` which gave the largest.
     """
 
     axis_cone: float
@@ -38,6 +39,7 @@ class LineErrors(NamedTuple):
     point_sd: float
     skin_cone: float
     skin_radius: float
+    decided_by: Method | None
 
 
 class Reach(NamedTuple):
@@ -138,13 +140,13 @@ def line_errors(
     along = (line.point - pose_from_dual_quat(frame)[1]) @ transform_lines(frame, Z_LINE)[:3]
     across = shift + along * np.stack([tilt[1], -tilt[0]])
     known = bool(np.isfinite(covariance).all())
-    cone = interval.radius(tilt) if known else float("nan")
+    cone, method = interval.radius_by(tilt) if known else (float("nan"), None)
     radius = interval.radius(across) if known else float("nan")
     if express_in == "lab" and noise.proximal is not None:
         carried = pose_radii(noise.proximal.covariance, line.direction_proximal, line.point_proximal)
         cone, radius = float(np.hypot(cone, carried[0])), float(np.hypot(radius, carried[1]))
     if not cone < UNDETERMINED:
-        cone = radius = float("nan")
+        cone, radius, method = float("nan"), float("nan"), None
     return LineErrors(
         axis_cone=cone,
         point_radius=radius,
@@ -152,6 +154,7 @@ def line_errors(
         point_sd=radius * _sd_of_radius(across @ covariance @ across.T),
         skin_cone=interval.skin_radius(tilt),
         skin_radius=interval.skin_radius(across),
+        decided_by=method,
     )
 
 

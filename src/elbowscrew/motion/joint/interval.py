@@ -146,8 +146,15 @@ class JointInterval:
 
     def radius(self, rows: Float, level: float = LEVEL) -> float:
         """Radius that holds the error of ``rows @ x``; NaN where the frames do not determine the joint."""
+        return self.radius_by(rows, level)[0]
+
+    def radius_by(self, rows: Float, level: float = LEVEL) -> tuple[float, Method | None]:
+        """Radius, and which method gave it."""
         found = self.radii(rows, level)
-        return float(np.hypot(max(found.values()), self.skin_radius(rows, level))) if found else float("nan")
+        if not found:
+            return float("nan"), None
+        method, largest = max(found.items(), key=lambda item: item[1])
+        return float(np.hypot(largest, self.skin_radius(rows, level))), method
 
     def spread(self, rows: Float) -> Spread:
         """What gives the deviations of many numbers at once, its factors being those of some rows (N, P) of them."""
@@ -181,8 +188,7 @@ class JointInterval:
 
     def decided_by(self, rows: Float) -> Method | None:
         """Which method gave the radius."""
-        found = self.radii(rows)
-        return max(found.items(), key=lambda item: item[1])[0] if found else None
+        return self.radius_by(rows)[1]
 
 
 def joint_interval(

@@ -205,7 +205,6 @@ def _fitted_joint(
         line=line,
         covariance=covariance,
         **errors._asdict(),
-        decided_by=interval.decided_by(tilt) if np.isfinite(errors.axis_cone) else None,
         pitch=fit.pitch,
         pitch_sd=interval.radius(pitch) / NORMAL_95 if pitched and known else 0.0 if not pitched else float("nan"),
         pitch_sure=interval.radius(pitch, SURE) if pitched and known else 0.0 if not pitched else float("nan"),

@@ -98,7 +98,6 @@ def told_wander(
     )
     mean, mean_errors = at(found.middle)
     own = sense * dq.transform_lines(_moved(fit.distal, found.mean_distal_rows @ found.step), Z_LINE)
-    tilt = (found.reference_rows(np.array(found.middle), reference_angle) if in_distal else found.mean_rows)[:2]
     known = bool(np.isfinite(mean_errors.axis_cone))
     rows = found.mean_rows
     return Told(
@@ -106,7 +105,6 @@ def told_wander(
         MeanLine(
             line=replace(mean, direction_distal=own[:3], point_distal=point_nearest_origin(own)),
             **mean_errors._asdict(),
-            decided_by=found.interval.decided_by(tilt) if known else None,
         ),
         path,
         ProximalErrors(found.interval, rows[:2], rows[2:], _moved(fit.proximal, rows @ found.step), known),
