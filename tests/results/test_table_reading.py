@@ -37,7 +37,7 @@ def read(path: Path, rows: list[str], *, long: bool, end: str = "\n") -> dict[st
     source = ProvedFile(path, sha256(path.read_bytes()).hexdigest())
     with pytest.MonkeyPatch.context() as patch:
         if long:
-            patch.setattr(table_reading, "_BLOCK_LETTERS", 16)
+            patch.setattr(table_reading, "_BLOCK_BYTES", 16)
         return read_columns(source, TABLE, "deg", "mm")
 
 
