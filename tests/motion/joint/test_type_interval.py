@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
-from cluster_noise import Hinge, Noise, seen, skin, turning, wander, white, with_rms_alone
-from trials import START
+from cluster_noise import Hinge, Noise, seen, skin, smooth_skin, turning, wander, white, with_rms_alone
+from trials import LINE, START
 from typed_noise import AXIS2, Kind, angles_held, fitted_type, joint_of, skin_of_both, typed_coverage
 
 from elbowscrew.geometry import dual_quaternion as dq
@@ -13,11 +15,11 @@ from elbowscrew.geometry.sensitivity import NORMAL_95
 from elbowscrew.motion.joint.influence import influence_of_fit
 from elbowscrew.motion.joint.interval import SkinMotion, joint_interval
 from elbowscrew.motion.joint.joint_fit import fit_joint
-from elbowscrew.motion.joint.likelihood import fit_mechanism
+from elbowscrew.motion.joint.likelihood import Fit, Mechanism, fit_mechanism
 from elbowscrew.motion.joint.lines import Z_LINE, about_z
 from elbowscrew.motion.joint.poses import Poses
 from elbowscrew.motion.joint.simple_types import OneAxis
-from elbowscrew.motion.joint.two_axes import TwoAxesMechanism, undone_share
+from elbowscrew.motion.joint.two_axes import SHIFTS, TILTS, TwoAxesMechanism, geometry_slopes, undone_share
 from elbowscrew.motion.joint.type_interval import Evidence, interval_of_type
 from elbowscrew.motion.joint.typed import identify_joint
 from elbowscrew.motion.screws.uncertainty import joint_covariance
@@ -41,6 +43,11 @@ def test_a_hinge_has_one_interval_in_both_searches() -> None:
         assert found.radius(rows) == pytest.approx(own.radius(rows), rel=1e-3)
         assert found.skin_radius(rows) == pytest.approx(own.skin_radius(rows), rel=1e-3)
         assert found.radii(rows).keys() == own.radii(rows).keys()
+
+
+def two_axes_of(fit: Fit[Mechanism]) -> TwoAxesMechanism:
+    assert isinstance(fit.mechanism, TwoAxesMechanism)
+    return fit.mechanism
 
 
 KINDS: list[tuple[Kind, Noise, float]] = [
@@ -129,8 +136,9 @@ def test_skin_taken_for_white_noise_would_not_hold() -> None:
 
 def test_deviations_of_many_numbers_are_those_of_their_radii() -> None:
     """Of each method and of stated skin motion, whatever the factors between variances and radii."""
-    joint, rng = joint_of("two_axes", 100.0), np.random.default_rng(8)
-    for noise in (white(), skin(5e-3), turning(np.radians(2.0))):
+    rng = np.random.default_rng(8)
+    for top_deg, noise in ((100.0, white()), (100.0, skin(5e-3)), (60.0, turning(np.radians(2.0)))):
+        joint = joint_of("two_axes", top_deg)
         case = seen(joint, noise(joint, rng))
         fit, interval = fitted_type("two_axes", case)
         poses = Poses.of(case.joint, joint_covariance(case.joint, *case.noise))
@@ -140,6 +148,52 @@ def test_deviations_of_many_numbers_are_those_of_their_radii() -> None:
             rows = (fit.own_by_shared - fit.own_by_shared[0])[20::60].reshape(-1, 12)
             exact = [one.radius(row[None]) / NORMAL_95 for row in rows]
             assert one.spread(rows[::4]).deviations(rows) == pytest.approx(exact, rel=0.03)
+
+
+def test_an_axis_is_within_its_interval_where_the_other_is_hardly_known() -> None:
+    """Where axis 2 may lie 40 deg off, an interval of axis 1 that is linear in the errors holds four in five."""
+    joint = joint_of("two_axes", 60.0)
+    held, linear = [], []
+    for noise in (smooth_skin(5e-3), turning(np.radians(2.0))):
+        rng = np.random.default_rng(21)
+        for _ in range(20):
+            fit, interval = fitted_type("two_axes", seen(joint, noise(joint, rng)))
+            off = dq.transform_lines(dq.conjugate(two_axes_of(fit).proximal), LINE)
+            error = float(np.hypot(off[0], off[1]))
+            held.append(error <= interval.radius(TILTS[0]))
+            linear.append(error <= replace(interval, nearby=()).radius(TILTS[0]))
+    assert np.mean(held) >= 0.9
+    assert np.mean(linear) <= 0.85
+
+
+def test_an_interval_with_ends_is_the_root_mean_square_of_theirs() -> None:
+    joint, rng = joint_of("two_axes", 60.0), np.random.default_rng(22)
+    noise = turning(np.radians(2.0))
+    fit, interval = fitted_type("two_axes", seen(joint, noise(joint, rng)))
+    assert len(interval.nearby) == 4
+    slopes = geometry_slopes(two_axes_of(fit))[:1]
+    for rows in (*TILTS, *SHIFTS, slopes):
+        each = [replace(interval, nearby=()).radius(rows)]
+        each += [one.interval.radius(rows @ one.back) for one in interval.nearby]
+        assert interval.radius(rows) == pytest.approx(np.sqrt(np.mean(np.square(each))), rel=1e-12)
+        assert interval.decided_by(rows) == replace(interval, nearby=()).decided_by(rows)
+
+
+def test_axes_known_well_are_linear_in_their_errors() -> None:
+    """And no time is spent on the ends of their intervals."""
+    joint, rng = joint_of("two_axes", 60.0), np.random.default_rng(23)
+    assert fitted_type("two_axes", seen(joint, white()(joint, rng)))[1].nearby == ()
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_numbers_of_axes_nearby_are_those_of_the_fit(seed: int) -> None:
+    """The angle between the axes changes by the numbers there as by those of the fit that they stand for."""
+    joint, rng = joint_of("two_axes", 60.0), np.random.default_rng(seed)
+    at = two_axes_of(fitted_type("two_axes", seen(joint, white()(joint, rng)))[0])
+    moved = at.moved(rng.normal(scale=0.1, size=12), np.zeros_like(at.frames))
+    carried = geometry_slopes(at)[0] @ at.numbers_by(moved)
+    assert carried == pytest.approx(geometry_slopes(moved)[0], abs=5e-3)
+    assert np.abs(geometry_slopes(at)[0] - geometry_slopes(moved)[0]).max() > 0.02
 
 
 def test_error_bars_of_angles_hold_what_the_axes_err() -> None:

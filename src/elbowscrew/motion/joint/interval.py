@@ -89,15 +89,32 @@ class SkinMotion:
 
 
 class Spread(NamedTuple):
-    """Covariances (M, P, P) by each method, in which its radii are 1.96 standard deviations, and that of the skin."""
+    """Covariances (M, P, P) by each method, in which its radii are 1.96 standard deviations, and that of the skin.
 
-    each: Float
+    Of the fit first, then of each place nearby.
+    """
+
+    each: tuple[Float, ...]
     skin: Float
 
     def deviations(self, rows: Float) -> Float:
         """Standard deviation of each number ``rows @ x``, rows (..., P); 1.96 of them hold 95 % of its errors."""
-        squares = [np.sum((rows @ one) * rows, axis=-1) for one in (*self.each, self.skin)]
-        return np.asarray(np.sqrt(np.max(squares[:-1], axis=0) + squares[-1]))
+        squares = [np.max([np.sum((rows @ one) * rows, axis=-1) for one in methods], axis=0) for methods in self.each]
+        return np.asarray(np.sqrt(np.mean(squares, axis=0) + np.sum((rows @ self.skin) * rows, axis=-1)))
+
+
+class Nearby(NamedTuple):
+    """The interval that a joint would have if its shared numbers were others, as near as the fit's own errors.
+
+    Attributes
+    ----------
+    interval : JointInterval
+    back : ndarray, shape (P, P)
+        Small changes of the fit's numbers by small changes of those.
+    """
+
+    interval: JointInterval
+    back: Float
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -116,6 +133,9 @@ class JointInterval:
         Covariance by the stated skin motion.
     told : tuple of int or None
         Which of the joint's numbers these P are; of the others nothing is known, and they have no part in a radius.
+    nearby : tuple of Nearby
+        What it would be at its own ends, where a fit that is linear in its errors does not reach that far: a radius is
+        the root mean square of the one here and those there.
     """
 
     markers: Mixture | None
@@ -123,12 +143,22 @@ class JointInterval:
     blocks: Mixture | None
     skin: Float | None
     told: tuple[int, ...] | None = None
+    nearby: tuple[Nearby, ...] = ()
 
     def _of_told(self, rows: Float) -> Float:
         return rows if self.told is None else rows[..., list(self.told)]
 
     def radii(self, rows: Float, level: float = LEVEL) -> dict[Method, float]:
         """Radius of ``rows @ x``, rows of all numbers, by each method that is used; skin comes on top."""
+        here = self._radii_here(rows, level)
+        largest = max(here.values(), default=0.0)
+        if not self.nearby or not largest > 0.0:
+            return here
+        there = [max(one.interval.radii(rows @ one.back, level).values(), default=np.nan) for one in self.nearby]
+        wider = float(np.sqrt(np.mean(np.square([largest, *there])))) / largest
+        return {method: wider * radius for method, radius in here.items()}
+
+    def _radii_here(self, rows: Float, level: float) -> dict[Method, float]:
         if self.residuals is None:
             return {}
         rows = self._of_told(rows)
@@ -158,26 +188,31 @@ class JointInterval:
 
     def spread(self, rows: Float) -> Spread:
         """What gives the deviations of many numbers at once, its factors being those of some rows (N, P) of them."""
+        size = rows.shape[1]
+        skin = np.zeros((size, size)) if self.skin is None else self._of_all(self.skin, size)
+        there = [one.back @ one.interval._spread_here(rows @ one.back) @ one.back.T for one in self.nearby]
+        return Spread((self._spread_here(rows), *there), skin)
+
+    def _spread_here(self, rows: Float) -> Float:
+        size = rows.shape[1]
         if self.residuals is None:
-            size = np.shape(rows)[1]
-            return Spread(np.full((1, size, size), np.nan), np.zeros((size, size)))
+            return np.full((1, size, size), np.nan)
         parts: list[tuple[Method, Mixture | None]] = [
             ("A", self.markers),
             ("B", self.residuals.white),
             ("B", self.residuals.colored),
             ("J", self.blocks),
         ]
-        radii = [self.radii(row[None]) for row in rows]
+        radii = [self._radii_here(row[None], LEVEL) for row in rows]
         scaled = []
         for name, mixture in parts:
             if mixture is None:
                 continue
-            covariance = self._of_all(mixture.mean, rows.shape[1])
+            covariance = self._of_all(mixture.mean, size)
             square = np.einsum("np,pq,nq->n", rows, covariance, rows)
             factors = [one[name] ** 2 / part for one, part in zip(radii, square, strict=True) if part > 0.0]
             scaled.append(max(factors, default=0.0) / NORMAL_95**2 * covariance)
-        skin = np.zeros_like(scaled[0]) if self.skin is None else self._of_all(self.skin, rows.shape[1])
-        return Spread(np.stack(scaled), skin)
+        return np.stack(scaled)
 
     def _of_all(self, covariance: Float, count: int) -> Float:
         if self.told is None:

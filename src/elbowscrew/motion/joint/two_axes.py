@@ -24,6 +24,12 @@ _LENGTH: Final = 0.1  # m that weigh as a radian where rotations and shifts are 
 _LARGEST_ANGLE_SD: Final = np.radians(8.0)
 _LARGEST_WINDING: Final = 2.0 * np.pi + 0.5
 _STEP: Final = 1e-6
+
+TILTS: Final = (np.eye(12)[0:2], np.eye(12)[8:10])
+"""Rows of the tilts of axis 1 and of axis 2 among the 12 shared numbers."""
+
+SHIFTS: Final = (np.eye(12)[2:4], np.eye(12)[10:12])
+"""Rows of the shifts of axis 1 and of axis 2."""
 _CROSSING_ROUNDS: Final = 4
 _TINY: Final = float(np.finfo(np.float64).tiny)
 _SCALE: Final = np.array([1.0, 1.0, 1.0, _LENGTH, _LENGTH, _LENGTH])
@@ -90,6 +96,14 @@ class TwoAxesMechanism(Mechanism):
             distal=dq.normalize(dq.multiply(self.distal, dq.exp(line_twist(steps[..., 8:])))),
             frames=self.frames + own,
         )
+
+    def numbers_by(self, other: TwoAxesMechanism) -> Float:
+        """Small changes (12, 12) of these shared numbers by those of axes nearby, where M moves by other directions."""
+        found = np.eye(12)
+        found[4:8, 4:8] = np.linalg.lstsq(
+            self.directions / _SCALE[:, None], other.directions / _SCALE[:, None], rcond=None
+        )[0]
+        return found
 
     def placed(self, joint: Float) -> Self:
         """Angle 1 by which the second line has gone round the first, then angle 2 from what is left.

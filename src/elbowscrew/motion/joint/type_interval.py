@@ -2,18 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Final
 
 import numpy as np
 
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry.arrays import Float, Index
+from elbowscrew.geometry.sensitivity import NORMAL_95
 from elbowscrew.geometry.twist import adjoint
+from elbowscrew.motion.joint.contest import LARGEST_AXIS_SD
 from elbowscrew.motion.joint.influence import Influence, influence_of_poses
-from elbowscrew.motion.joint.interval import ClusterMotion, JointInterval, SkinMotion, joint_interval
-from elbowscrew.motion.joint.likelihood import Fit, Mechanism
+from elbowscrew.motion.joint.interval import ClusterMotion, JointInterval, Nearby, SkinMotion, joint_interval
+from elbowscrew.motion.joint.likelihood import Fit, Mechanism, settled
 from elbowscrew.motion.joint.poses import Poses
 from elbowscrew.motion.joint.simple_types import Ball
+from elbowscrew.motion.joint.two_axes import TILTS, TwoAxesMechanism
+
+_FARTHEST: Final = np.radians(40.0)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -82,6 +89,19 @@ def interval_of_type(
     reference : ndarray, shape (A,), optional
         The joint's angles where the clusters sit right; those of the first frame by default.
     """
+    interval = _linear_interval(fit, poses, evidence, reference)
+    if not isinstance(fit.mechanism, TwoAxesMechanism):
+        return interval
+    ends = []
+    for step in _ends(interval):
+        moved = fit.mechanism.moved(step, fit.own_by_shared @ step)
+        there = settled(moved, poses)._replace(weight=fit.weight)
+        ends.append(Nearby(_linear_interval(there, poses, evidence, reference), fit.mechanism.numbers_by(moved)))
+    return replace(interval, nearby=tuple(ends))
+
+
+def _linear_interval(fit: Fit[Mechanism], poses: Poses, evidence: Evidence, reference: Float | None) -> JointInterval:
+    """The interval of a fit that is linear in its errors."""
     start = [None, None] if reference is None else [*(float(angle) for angle in reference[:2]), None]
     return joint_interval(
         influence_of_type(fit, poses),
@@ -91,6 +111,30 @@ def interval_of_type(
         reference_second=start[1],
         noise_known=evidence.noise_known,
     )
+
+
+def _ends(interval: JointInterval) -> list[Float]:
+    """Steps (12,) of two axes to the ends of each direction's interval; none where both are known well enough.
+
+    Where one axis may lie tens of degrees off, how much the frames tell of the other depends on where it is.
+    """
+    if not largest_tilt_sd(interval) > LARGEST_AXIS_SD:
+        return []
+    found = []
+    for tilt in TILTS:
+        each = interval.spread(tilt).each[0]
+        covariance = each[np.argmax([np.trace(tilt @ one @ tilt.T) for one in each])]
+        values, vectors = np.linalg.eigh(tilt @ covariance @ tilt.T)
+        step = NORMAL_95 * covariance @ tilt.T @ vectors[:, -1] / np.sqrt(values[-1])
+        farthest = max(float(np.linalg.norm(one @ step)) for one in TILTS)
+        step = step * min(1.0, _FARTHEST / farthest)
+        found += [step, -step]
+    return found
+
+
+def largest_tilt_sd(interval: JointInterval, axes: Sequence[Float] = TILTS) -> float:
+    """Standard deviation (rad) that a direction's interval stands for where it is widest."""
+    return max(interval.radius(row[None]) for tilt in axes for row in tilt) / NORMAL_95
 
 
 def _angles_of(mechanism: Mechanism) -> Float:

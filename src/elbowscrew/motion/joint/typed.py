@@ -25,22 +25,22 @@ from elbowscrew.motion.joint.robust_fit import fit_robustly, refined_robustly
 from elbowscrew.motion.joint.simple_types import Ball, OneAxis
 from elbowscrew.motion.joint.two_axes import (
     LARGEST_UNDONE,
+    SHIFTS,
+    TILTS,
     TwoAxesMechanism,
     angle_sd,
     axes_geometry,
     geometry_slopes,
     undone_share,
 )
-from elbowscrew.motion.joint.type_interval import Evidence, interval_of_type
+from elbowscrew.motion.joint.type_interval import Evidence, interval_of_type, largest_tilt_sd
 
 _MOST_FRAMES: Final = 5000
 _PARALLEL: Final = np.radians(5.0)
 _SURE: Final = 3.0
 _SHARES_THE_HINGE: Final = 1.5
 _LEAST_BESIDE: Final = np.radians(45.0)
-# Rows of the tilts and of the shifts of both axes among the 12 shared numbers.
-_TILTS: Final = (np.eye(12)[0:2], np.eye(12)[8:10])
-_SHIFTS: Final = (np.eye(12)[2:4], np.eye(12)[10:12])
+_LARGEST_SD_AT_ENDS: Final = np.radians(15.0)
 
 
 def identify_joint(
@@ -115,7 +115,7 @@ def identify_joint(
         every = every._replace(angle=_near_zero(every.angle))
         allowed = coordinates_of(replace(at, frames=np.zeros((1, 2))), reference)
         two = _two_axes(written, reference, interval, noise_known=noise_known, order_determined=choice.order_told)
-        method = interval.decided_by(_TILTS[0])
+        method = interval.decided_by(TILTS[0])
         if choice.status == "determined" and not all(line.determined for line in two.lines):
             reason = f"{choice.reason}; errors that go together are too large to tell both directions"
             choice = choice._replace(status="approximate", reason=reason)
@@ -231,10 +231,13 @@ def _two_axes(
 
 
 def _between(at: TwoAxesMechanism, interval: JointInterval) -> tuple[float, bool]:
-    """Angle (rad) between the axes, 90 deg at most, and whether they count as parallel."""
+    """Angle (rad) between the axes, 90 deg at most, and whether they count as parallel.
+
+    An angle that is hardly known makes no axes parallel, so that the interval's own ends have no say here.
+    """
     angle = axes_geometry(at).angle
     folded = min(angle, np.pi - angle)
-    sd = interval.radius(geometry_slopes(at)[:1]) / NORMAL_95
+    sd = replace(interval, nearby=()).radius(geometry_slopes(at)[:1]) / NORMAL_95
     return folded, folded < max(_PARALLEL, _SURE * sd)
 
 
@@ -249,9 +252,11 @@ def _lines(
         (dq.multiply(reference, at.distal), at.distal),
     ]
     apart = undone_share(at) <= LARGEST_UNDONE or _between(at, interval)[1]
+    linear = replace(interval, nearby=())
     lines = []
     for k, (proximal, distal) in enumerate(poses):
-        tilt_sd = max(interval.radius(row[None]) for row in _TILTS[k]) / NORMAL_95
+        tilt_sd = largest_tilt_sd(interval, TILTS[k : k + 1])
+        known = largest_tilt_sd(linear, TILTS[k : k + 1]) <= LARGEST_AXIS_SD and tilt_sd <= _LARGEST_SD_AT_ENDS
         reach = middle_range(at.frames[:, k])
         lines.append(
             JointLine(
@@ -259,12 +264,12 @@ def _lines(
                 point_proximal=dq.pose_from_dual_quat(proximal)[1],
                 direction_distal=dq.transform_lines(distal, Z_LINE)[:3],
                 point_distal=dq.pose_from_dual_quat(distal)[1],
-                axis_cone=interval.radius(_TILTS[k]),
-                point_radius=interval.radius(_SHIFTS[k]),
+                axis_cone=interval.radius(TILTS[k]),
+                point_radius=interval.radius(SHIFTS[k]),
                 axis_sd=tilt_sd,
                 range=reach,
                 angle_sd=float(deviation[k]),
-                determined=bool(apart and reach >= least * deviation[k] and tilt_sd <= LARGEST_AXIS_SD),
+                determined=bool(apart and reach >= least * deviation[k] and known),
             )
         )
     return lines[0], lines[1]
