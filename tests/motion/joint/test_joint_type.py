@@ -309,6 +309,15 @@ def test_white_noise_alone_makes_no_joint_a_free_one() -> None:
     assert identify_joint(seen, covariance, seen[0], noise_known=False).type == "free"
 
 
+@pytest.mark.parametrize("seed", [1, 4, 11])
+def test_noise_of_rotations_alone_makes_no_joint_a_free_one(seed: int) -> None:
+    """2.4 deg shift the end of a lever by more than 12 mm, along two directions: most squares are below their mean."""
+    rng = np.random.default_rng([36, seed])
+    for exact in (mj.ball(200, 22.0, rng), mj.two_axes(200, (55.0, 18.0), 70.0, 0.02, rng)):
+        seen, covariance = mj.noisy(exact.poses, rng, 2.4, 0.004)
+        assert identify_joint(seen, covariance, seen[0], noise_known=False).type != "free"
+
+
 @pytest.mark.parametrize("seed", [2, 15, 26])
 def test_a_screw_hinge_leaves_no_more_than_the_hinge_that_it_may_be(seed: int) -> None:
     """Of motions that are neither, in which searches of their own end in other minima."""

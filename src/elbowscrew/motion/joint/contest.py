@@ -34,6 +34,8 @@ _LARGEST_CENTER_SD: Final = 0.05
 _LARGEST_ANGLE_SD: Final = np.radians(8.0)
 _LEAST_RANGE: Final = np.radians(1.5)
 _SURE: Final = 3.0
+# Of a square, over its mean: noise of a rotation shifts the end of a lever along two directions.
+_MEDIAN_ACROSS_A_LEVER: Final = float(np.log(2.0))
 _THIRD_DIFFERENCES: Final = 20.0  # variance of those of white noise
 # What orientations alone can refuse: they see no slide, and a ball has any of them.
 _ORDER_BY_TURNING: Final[tuple[Fitted, ...]] = ("rigid", "hinge", "two_axes")
@@ -178,7 +180,7 @@ class Contest:
         fit = self[name].fit
         if fit.residual_translation <= _LARGEST_LEFT:
             return False
-        white = _white_square(self._on_successive_frames(name).residual[:, 3:])
+        white = _white_square(self._on_successive_frames(name).residual[:, 3:]) / _MEDIAN_ACROSS_A_LEVER
         return bool(fit.residual_translation**2 - white > _LARGEST_LEFT**2)
 
     def left_by_few_frames(self, name: Fitted) -> bool:
