@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import shutil
 import subprocess
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -110,12 +111,13 @@ def test_whatever_file_of_numbers_was_edited_is_named(result: Path, tmp_path: Pa
             view_of_result(folder)
 
 
-def test_all_files_of_numbers_that_were_edited_are_named_together(copy: Path) -> None:
+@pytest.mark.parametrize("check", [lambda folder: proof_of(folder).check_numbers(), view_of_result])
+def test_all_files_of_numbers_that_were_edited_are_named_together(copy: Path, check: Callable[[Path], object]) -> None:
     names = ("screw.csv", "interpolation.csv", "keyframes.csv")
     for name in names:
         (copy / name).write_text("0")
     with pytest.raises(ResultError) as caught:
-        proof_of(copy).check_numbers()
+        check(copy)
     text = str(caught.value)
     assert [text.count(name) for name in names] == [1, 1, 1]
     assert text.startswith(str(copy))

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import hashlib
 import io
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -100,18 +100,23 @@ class Proof:
             raise ResultError(msg)
         return ProvedFile(self.folder / name, self.sums[name])
 
-    def changed(self) -> tuple[str, ...]:
-        """Names of files that are not as they were written: edited, missing, or not named although they are ours."""
-        named = [name for name, digest in self.sums.items() if not _has(self.folder / name, digest)]
+    def changed(self, proved: Collection[str] = ()) -> tuple[str, ...]:
+        """Names of files that are not as they were written: edited, missing, or not named although they are ours.
+
+        Those that have been proved are not looked at again.
+        """
+        named = [
+            name for name, digest in self.sums.items() if name not in proved and not _has(self.folder / name, digest)
+        ]
         try:
             others = set(files_in(self.folder)) - set(self.sums) - {SUMS}
         except OSError:
             others = set()
         return (*named, *sorted(filter(is_of_result, others)))
 
-    def check_numbers(self) -> None:
+    def check_numbers(self, proved: Collection[str] = ()) -> None:
         """Raise `ResultError` if a table or a JSON file is not as it was written; what is drawn may be retouched."""
-        changed = [name for name in self.changed() if not name.startswith(_DRAWN)]
+        changed = [name for name in self.changed(proved) if not name.startswith(_DRAWN)]
         if changed:
             raise _edited(self.folder / changed[0], changed[1:])
 
