@@ -365,7 +365,8 @@ def texts_with_numbers(told: Told) -> Iterator[tuple[str, list[str]]]:
     reach = 1.959964 * screw["theta_sd_deg"]
     interval = ["95", f"{reach.median():.2g}"] if reach.notna().any() else []
     joint_axis = "joint axis" if motion["joint_axis"] else "mean axis"
-    yield r"(moving )?(not tracked )?(filled in )?(95 % interval.*)?measured .*keyframes", [*interval, poses]
+    yield r"(moving )?(not tracked )?(filled in )?(95 % interval .*)?measured .*keyframes$", [*interval, poses]
+    yield r"(moving )?(not tracked )?(filled in )?measured .*keyframes 95 % interval: .* drawn$", [poses, *interval]
     yield (
         "Measured and modeled rotation angle",
         [dec(screw["time_s"].iloc[-1] - screw["time_s"].iloc[0]), plain(dec(motion["theta_max_deg"], 1)),
@@ -438,7 +439,7 @@ def texts_with_numbers(told: Told) -> Iterator[tuple[str, list[str]]]:
     yield r"± standard deviation mean of", [count]
     if int(count) > 1:
         most = told.table("repetition_curve")["theta_sd_deg"].max()
-        yield r"standard deviation: .* deg at most, too narrow to be drawn mean of", [f"{most:.2g}", count]
+        yield r"mean of \d+ repetitions standard deviation: .* deg at most, too narrow", [count, f"{most:.2g}"]
     yield "Mean and standard deviation of the angle over", [count]
     yield (
         "Mean angle over the cycles",
@@ -485,12 +486,20 @@ def texts_with_numbers(told: Told) -> Iterator[tuple[str, list[str]]]:
 def own_angles(told: Told) -> Iterator[tuple[str, list[str]]]:
     """Keys, description and caption of the chart of the joint's own angles."""
     table = told.table("joint_angles")
-    keys = []
-    for name in (column.removesuffix("_deg") for column in map(str, table) if column.endswith("_sd_deg")):
-        reach = 1.959964 * table[f"{name}_deg"].median()
+    keys, behind = [], []
+    names = [column.removesuffix("_sd_deg") for column in map(str, table) if column.endswith("_sd_deg")]
+    angles = table[[f"{name}_deg" for name in names]].to_numpy()
+    span = np.nanmax(angles) - np.nanmin(angles)
+    for name in names:
+        reach = 1.959964 * table[f"{name}_sd_deg"].dropna()
         number = re.findall(r"\d", name)  # of an axis
-        keys += [*(["95", *number, f"{reach:.2g}"] if np.isfinite(reach) else []), *number]
-    yield r"(not tracked )?(filled in )?(95 % interval of )?(Angle 1|Rotation x)\b(?!, )", keys
+        told_reach = ["95", *number, f"{reach.median():.2g}"] if len(reach) else []
+        if len(reach) and np.percentile(reach, 95.0) > 0.007 * span:
+            keys += told_reach
+        else:
+            behind += told_reach  # too narrow to be drawn
+        keys += number
+    yield r"(not tracked )?(filled in )?(95 % interval of )?(Angle 1|Rotation x)\b(?!, )", keys + behind
     yield "Angle 1, Angle 2 over time; on the right Angle 2 against Angle 1", ["1", "2", "2", "1"]
     yield "The joint's own angles since the reference, about axis", ["1", "2"]
 

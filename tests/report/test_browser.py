@@ -19,6 +19,7 @@ import pytest
 from drawn_trials import drawn_trial
 from PIL import Image
 
+from elbowscrew.report.pages import digests
 from elbowscrew.report.study import read_study
 from elbowscrew.report.study_page import study_page
 from elbowscrew.report.trial_page import trial_page
@@ -502,3 +503,50 @@ def test_links_lead_to_the_trials_pages(browser: Any, study: Path) -> None:
     page.wait_for_selector("#viewer")
     assert page.locator("#h-methods").is_visible()
     page.close()
+
+
+def test_words_in_the_view_are_not_cut_off(open_page: Any, result: Path) -> None:
+    """Turned and enlarged until a segment's name would stand half over the edge, it stands within."""
+    page = open_page(result / "report.html", viewport={"width": 1280, "height": 900})
+    page.evaluate(
+        "window.words = []; const draw = CanvasRenderingContext2D.prototype.strokeText;"
+        "CanvasRenderingContext2D.prototype.strokeText = function (text, x, y) {"
+        " const half = this.measureText(text).width / 2;"
+        " window.words.push([x - half, y - 6, x + half - this.canvas.clientWidth, y + 6 - this.canvas.clientHeight]);"
+        " return draw.call(this, text, x, y); }; 0"
+    )
+    space = page.locator("#space")
+    for key in ("+", "+", "+", "ArrowUp", "+", "ArrowLeft", "+", "+"):
+        for _ in range(4):
+            space.press(key)
+            viewer(page)
+    boxes = np.array(page.evaluate("window.words"))
+    assert len(boxes) > 60
+    seen = (boxes[:, 0] > -60) & (boxes[:, 1] > -16) & (boxes[:, 2] < 60) & (boxes[:, 3] < 16)
+    left, top, right, bottom = boxes[seen].T
+    cut = (left < 0) | (top < 0) | (right > 0) | (bottom > 0)
+    whole_outside = (left < -30) | (top < -9) | (right > 30) | (bottom > 9)
+    assert not (cut & ~whole_outside).any()
+
+
+def test_a_digest_does_not_widen_the_checklist_on_a_phone(open_page: Any, result: Path, tmp_path: Path) -> None:
+    text = (result / "report.html").read_text(encoding="utf-8")
+    place = re.search(r'<tr><th scope="row">File</th><td>.*?</td></tr>', text)
+    row = '<tr><th scope="row">File</th><td>a.csv, SHA-256 ' + digests("0a" * 32) + "</td></tr>"
+    assert str(digests("a <b>")) == "a &lt;b&gt;"
+    changed = text.replace(place[0], row) if place else text
+    assert "digest" in changed
+    (tmp_path / "report.html").write_text(changed, encoding="utf-8")
+    page = open_page(tmp_path / "report.html", viewport={"width": 390, "height": 844})
+    page.locator("summary", has_text="What a paper on this trial should state").click()
+    area = page.get_by_role("region", name="Table of the reporting checklist")
+    assert area.evaluate("(area) => area.scrollWidth - area.clientWidth") <= 1
+
+
+def test_the_headings_of_the_trials_table_are_no_buttons_in_print(open_page: Any, study: Path) -> None:
+    """A button is painted on the first sheet alone."""
+    page = open_page(study / "index.html")
+    button = page.locator("#trials thead button").first
+    assert button.evaluate("(button) => getComputedStyle(button).display") != "contents"
+    page.emulate_media(media="print")
+    assert button.evaluate("(button) => getComputedStyle(button).display") == "contents"

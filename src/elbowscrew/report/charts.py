@@ -273,9 +273,9 @@ def _numbers(values: Float) -> list[float | None]:
 
 
 def keys_of(legend: Iterable[tuple[str, str]]) -> Markup:
-    """Keys of a chart, from pairs of look and label; without a look, what there is to say of something not drawn."""
+    """Keys of a chart, from pairs of look and label; behind them, without a look, what is said of things not drawn."""
     parts = []
-    for look, label in legend:
+    for look, label in sorted(legend, key=lambda key: not key[0]):
         if not look:
             parts.append(f"<span>{escape(label)}</span> ")
             continue

@@ -30,6 +30,7 @@ INDEX: Final = "index.html"
 UNSHOWABLE: Final = (*UNREADABLE, jinja2.UndefinedError)
 _HERE: Final = Path(__file__).parent
 _NONE: Final = "–"
+_DIGEST: Final = re.compile(r"\b[0-9a-f]{64}\b")
 _HEADING: Final = re.compile(r'<h2 id="([^"]+)"[^>]*>([^<]*)</h2>')
 
 
@@ -123,6 +124,7 @@ def _environment() -> jinja2.Environment:
         words=words,
         listed=listed,
         headings=headings,
+        digests=digests,
     )
     return environment
 
@@ -163,6 +165,11 @@ def vector(values: Iterable[float | None] | None, decimals: int = 1) -> str:
 def percent(share: float | None, decimals: int = 1) -> str:
     """Write a share in percent."""
     return _NONE if share is None else f"{number(100.0 * share, decimals)} %"
+
+
+def digests(text: str) -> Markup:
+    """Escape a text, and let lines break within the digests of files, each a word of 64 letters."""
+    return Markup(_DIGEST.sub(r'<span class="digest">\g<0></span>', str(escape(text))))  # noqa: S704 - escaped here
 
 
 def headings(html: str) -> list[tuple[str, str]]:

@@ -237,10 +237,16 @@
     label(add(scene.joint.center, times(16 / scale, view.rows[1])), "center", color("measured"));
   };
   const label = (p, text, look) => {
-    const [x, y] = screen(p);
     context.font = "600 13px system-ui, sans-serif";
     context.textAlign = "center";
     context.textBaseline = "middle";
+    // A word that would be cut off at the edge moves inside; one whose place is out of view stays there.
+    const at = screen(p);
+    const half = [context.measureText(text).width / 2 + 3, 10];
+    const [x, y] = [width, height].map((size, k) => {
+      const inside = Math.min(Math.max(at[k], half[k]), size - half[k]);
+      return Math.abs(inside - at[k]) < half[k] + 8 ? inside : at[k];
+    });
     context.lineWidth = 3;
     context.strokeStyle = color("paper");
     context.strokeText(text, x, y);
