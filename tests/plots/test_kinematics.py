@@ -197,3 +197,15 @@ def test_a_short_stretch_of_a_long_trial_is_marked_and_not_blackened(share: floa
     view = drawn_trial("long")
     ax = plot_overview(Figure().add_subplot(), view, Stretch(100, 100 + round(share * view.frame.size), ""))
     assert len(ax.get_lines()) == curves
+
+
+def test_the_slope_stands_out_from_noise(trial: Analysis) -> None:
+    """A wider white line lies between it and the curve."""
+    lines = kinematics.plot_slide(Figure().add_subplot(), trial).get_lines()
+    labels = [one.get_label() for one in lines]
+    slope = labels.index("slope of the screw-hinge")
+    under = lines[slope - 1]
+    assert labels.index("measured") < slope - 1
+    assert under.get_color() == "white"
+    assert under.get_linewidth() > 2.0 * lines[slope].get_linewidth()
+    assert np.asarray(under.get_xydata()) == pytest.approx(np.asarray(lines[slope].get_xydata()))

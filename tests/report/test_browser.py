@@ -19,6 +19,7 @@ import pytest
 from drawn_trials import drawn_trial
 from PIL import Image
 
+from elbowscrew import Mesh, analyze, save_analysis, simulate_trial
 from elbowscrew.report.pages import digests
 from elbowscrew.report.study import read_study
 from elbowscrew.report.study_page import study_page
@@ -550,3 +551,49 @@ def test_the_headings_of_the_trials_table_are_no_buttons_in_print(open_page: Any
     assert button.evaluate("(button) => getComputedStyle(button).display") != "contents"
     page.emulate_media(media="print")
     assert button.evaluate("(button) => getComputedStyle(button).display") == "contents"
+
+
+def test_bones_are_drawn_and_can_be_left_out(open_page: Any, tmp_path: Path) -> None:
+    """A box of bone as long as a thigh, of twelve triangles."""
+    low, high = np.array([-0.02, -0.02, -0.15]), np.array([0.02, 0.02, 0.15])
+    corners = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], dtype=np.float64)
+    squares = [(0, 1, 3, 2), (4, 5, 7, 6), (0, 1, 5, 4), (2, 3, 7, 6), (0, 2, 6, 4), (1, 3, 7, 5)]
+    faces = np.array([half for a, b, c, d in squares for half in ((a, b, c), (a, c, d))])
+    bone = Mesh(vertices=low + corners * (high - low), faces=faces, triangles=len(faces))
+    recording = simulate_trial(joint="knee", frames=60, inversion=30, proximal="moving").recording
+    folder = save_analysis(analyze(recording), tmp_path / "r", figure_formats=(), meshes={"thigh": bone})
+    page = open_page(folder / "report.html", viewport={"width": 1280, "height": 900})
+    for part in ("axes", "moment", "cone", "path"):
+        page.locator(f'[data-show="{part}"]').uncheck()
+    viewer(page)
+    with_bone = ink(page)
+    page.locator('[data-show="bones"]').uncheck()
+    viewer(page)
+    assert with_bone > ink(page) + 1000
+    found = axe.Axe().run(page).response
+    assert [fault["id"] for fault in found["violations"]] == []
+
+
+@pytest.mark.parametrize(("width", "scheme"), [(390, "light"), (1280, "dark")])
+@pytest.mark.parametrize("kind", ["two axes", "wandering", "ball"])
+def test_axe_finds_nothing_on_pages_of_all_joints_unfolded(
+    open_page: Any, tmp_path: Path, kind: str, width: int, scheme: str
+) -> None:
+    (tmp_path / "report.html").write_text(trial_page(drawn_trial(kind), tmp_path), encoding="utf-8")
+    page = open_page(tmp_path / "report.html", viewport={"width": width, "height": 900}, color_scheme=scheme)
+    for summary in page.locator("summary").all():
+        summary.click()
+    found = axe.Axe().run(page).response
+    assert len(found["passes"]) > 15
+    assert [(fault["id"], [node["html"] for node in fault["nodes"]][:3]) for fault in found["violations"]] == []
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+    assert page.evaluate(BROKEN_WORDS) == []
+
+
+@pytest.mark.parametrize("width", [390, 1280])
+def test_axe_finds_nothing_on_a_study_unfolded(open_page: Any, study: Path, width: int) -> None:
+    page = open_page(study / "index.html", viewport={"width": width, "height": 900})
+    for summary in page.locator("summary").all():
+        summary.click()
+    assert axe.Axe().run(page).response["violations"] == []
+    assert page.evaluate("document.documentElement.scrollWidth") <= width

@@ -61,8 +61,10 @@ def _with_slope(ax: Axes, view: TrialView) -> Axes:
         # The noise of the reference shifts all slides alike.
         shift = float(np.nanmedian(view.slide - 1e-3 * pitch_mm * view.angle))
         along = length_in(1e-3 * pitch_mm * ends + shift, view.settings.length_unit)
+        angle = angle_in(ends, view.settings.angle_unit)
+        ax.plot(angle, along, color="white", linewidth=2.8)  # which parts it from a black cloud of noise
         ax.plot(
-            angle_in(ends, view.settings.angle_unit),
+            angle,
             along,
             label="slope of the screw-hinge",
             **{**style.AXES[0], "linewidth": 1.2, "linestyle": _DOT_DASH},  # told from the curve in grey, too

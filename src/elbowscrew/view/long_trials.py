@@ -19,7 +19,7 @@ _MOST_NOISY: Final = 2000  # frames that differ from one to the next: more black
 _CYCLES_SHOWN: Final = 3
 _FRAMES_SHOWN: Final = 2000
 _MOST_PARTS: Final = 150
-_LEAST_PARTS: Final = 10  # fewer would say little, and cycles that few and long can be followed
+_LEAST_PARTS: Final = 20  # fewer would say little, and cycles that few and long can be followed
 _OF_FRAMES: Final = ("anatomy", "instantaneous", "losses")
 
 
