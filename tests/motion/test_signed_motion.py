@@ -62,6 +62,7 @@ def test_strokes_beside_the_reference_are_alike() -> None:
     assert motion["dominant_axis"]["direction"] == pytest.approx(AXIS, abs=0.02)
     assert analysis.mean_axis.direction == pytest.approx(AXIS, abs=0.03)
     assert motion["largest_jump_deg"] < 1.0
+    assert motion["axis_dispersion_weighted_deg"] is not None
     assert motion["axis_dispersion_weighted_deg"] < 10.0
     # The model's theta is off by what the model is off.
     off, off_in_all = model["rmse_theta_deg"], model["rms_angle_error_deg"]

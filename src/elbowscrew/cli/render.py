@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from elbowscrew.model.summary_types import (
         JointWords,
         ModelSummary,
+        MotionSummary,
         QualitySummary,
         SelectionSummary,
         SpreadSummary,
@@ -87,11 +88,7 @@ def analysis_table(summary: Summary, folder: Path) -> None:
         ("Joint", joint_text(motion["joint_type"])),
         ("Joint axis", joint_axis_text(motion, located=trial["positions"])),
         *anatomy_rows(motion["anatomy"]),
-        (
-            "Dispersion",
-            f"median {motion['axis_dispersion_deg']:.2f} deg by equal steps of the angle, "
-            f"{motion['axis_dispersion_all_frames_deg']:.2f} over the {motion['axis_frames']} frames with an axis",
-        ),
+        ("Dispersion", _dispersion(motion)),
         (
             "Model",
             f"{model['method']} {model['blend']}, {model['law']} law, keyframes {_numbers(model['keyframes'])}"
@@ -245,6 +242,16 @@ def _fitted_peaks(model: ModelSummary) -> Iterable[tuple[str, str]]:
         shown = ", ".join(f"{100.0 * peak:.1f} ± {100.0 * sd:.1f}" for peak, sd in fitted[:_PEAKS_TOLD])
         more = f" and {len(fitted) - _PEAKS_TOLD} more" if len(fitted) > _PEAKS_TOLD else ""
         yield "Highest velocity", f"at {shown}{more} % of the phases (± one standard deviation)"
+
+
+def _dispersion(motion: MotionSummary) -> str:
+    dispersion, of_frames = motion["axis_dispersion_deg"], motion["axis_dispersion_all_frames_deg"]
+    if dispersion is None or of_frames is None:
+        return "none: one frame alone has an axis"
+    return (
+        f"median {dispersion:.2f} deg by equal steps of the angle, {of_frames:.2f} over the {motion['axis_frames']} "
+        "frames with an axis"
+    )
 
 
 def _displacement(model: ModelSummary) -> str:

@@ -246,7 +246,7 @@ class DispersionSummary(TypedDict):
     direction_95_deg: float | None
     """95th percentile."""
     direction_max_deg: float | None
-    direction_excursion_deg: float
+    direction_excursion_deg: float | None
     """Largest angle between two of the axes."""
     position_median_mm: float | None
     """Positions are None where over 5 % of the axes are over 75 deg from their mean: they pierce the plane anywhere."""

@@ -123,10 +123,10 @@ class MeanAxis(ArrayRecord):
     direction, point : ndarray, shape (3,)
         Unit vector, and the point (m) nearest the origin; mean weighted by ``sin^2(theta/2)``.
     deviation : ndarray, shape (N,)
-        Angle between each frame's axis and the plain mean direction, radians; NaN where there is no axis.
+        Angle between each frame's axis and the plain mean direction, radians; NaN where there is no axis, or no other.
     distance : ndarray, shape (N,)
         Distance between each frame's axis and the mean axis, across the latter where it passes the distal body at the
-        reference, meters; NaN where there is no axis.
+        reference, meters; NaN where there is no axis, or no other.
     dispersion : float
         Median angle of the axes from their mean direction, both over equal steps (1 deg) of the rotation, radians: a
         rest counts no more than the angle it is at.
@@ -147,9 +147,10 @@ class MeanAxis(ArrayRecord):
 
     @property
     def spread95(self) -> tuple[float, float]:
-        """Deviation (rad) and distance (m) that 95 % of the frames' axes keep within; NaN where none has a distance."""
-        distance = np.nanpercentile(self.distance, 95.0) if np.isfinite(self.distance).any() else np.nan
-        return float(np.nanpercentile(self.deviation, 95.0)), float(distance)
+        """Deviation (rad) and distance (m) that 95 % of the frames' axes keep within; NaN where no axis has one."""
+        each = (self.deviation, self.distance)
+        angle, shift = (np.nanpercentile(one, 95.0) if np.isfinite(one).any() else np.nan for one in each)
+        return float(angle), float(shift)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)

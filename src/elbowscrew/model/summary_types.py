@@ -240,11 +240,11 @@ class MotionSummary(TypedDict):
     """Measured frames whose rotation is large enough for an axis."""
     mean_axis: LineSummary
     """Mean of the axes, weighted by sin^2(theta/2)."""
-    axis_dispersion_deg: float
+    axis_dispersion_deg: float | None
     """Median angle of the axes from their mean direction, both over equal steps of the angle."""
     axis_dispersion_all_frames_deg: float | None
     """Median angle over all frames with an axis."""
-    axis_dispersion_weighted_deg: float
+    axis_dispersion_weighted_deg: float | None
     """RMS angle from the mean axis, with its weights."""
     axis_dispersion_rms_deg: float | None
     axis_dispersion_max_deg: float | None

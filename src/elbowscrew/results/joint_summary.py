@@ -69,7 +69,7 @@ def dispersion_summary(analysis: Analysis) -> DispersionSummary:
         "direction_rms_deg": statistic(rms, deviation),
         "direction_95_deg": statistic(_high, deviation),
         "direction_max_deg": statistic(np.nanmax, deviation),
-        "direction_excursion_deg": float(np.degrees(mean.excursion)),
+        "direction_excursion_deg": known(np.degrees(mean.excursion)),
         "position_median_mm": statistic(np.nanmedian, distance),
         "position_rms_mm": statistic(rms, distance),
         "position_95_mm": statistic(_high, distance),

@@ -43,7 +43,8 @@ def mean_axis_of(angle: Float, line: Float, near: Float) -> MeanAxis:
     The direction noise of a finite axis grows as 1/sin(theta/2), so these are the inverse variances. The spread is
     told about the plain mean of the directions, every frame alike, as the literature does and so that it compares.
     An axis more than 75 deg from the mean one has no distance from it: nearly in the plane across, it pierces that
-    anywhere or nowhere. Where more than 5 % of the axes are so far off, as a ball's are, no axis has.
+    anywhere or nowhere. Where more than 5 % of the axes are so far off, as a ball's are, no axis has. A single axis has
+    no spread, and is none from itself.
 
     Parameters
     ----------
@@ -71,6 +72,18 @@ def mean_axis_of(angle: Float, line: Float, near: Float) -> MeanAxis:
     if np.mean(off > MOST_ACROSS) > _SHARE_ACROSS:
         position[:] = np.nan
     chosen = evenly_thinned(np.flatnonzero(known), _MOST_COMPARED)
+    if len(off) < 2:
+        unknown = np.full(len(line), np.nan)
+        return MeanAxis(
+            direction=direction,
+            point=point,
+            dispersion=np.nan,
+            weighted_dispersion=np.nan,
+            deviation=unknown,
+            distance=unknown,
+            excursion=np.nan,
+            position_excursion=np.nan,
+        )
     return MeanAxis(
         direction=direction,
         point=point,
