@@ -20,7 +20,7 @@ from drawn_trials import drawn_trial
 from PIL import Image
 
 from elbowscrew import Mesh, analyze, save_analysis, simulate_trial
-from elbowscrew.report.pages import digests
+from elbowscrew.report.pages import broken
 from elbowscrew.report.study import read_study
 from elbowscrew.report.study_page import study_page
 from elbowscrew.report.trial_page import trial_page
@@ -533,8 +533,8 @@ def test_words_in_the_view_are_not_cut_off(open_page: Any, result: Path) -> None
 def test_a_digest_does_not_widen_the_checklist_on_a_phone(open_page: Any, result: Path, tmp_path: Path) -> None:
     text = (result / "report.html").read_text(encoding="utf-8")
     place = re.search(r'<tr><th scope="row">File</th><td>.*?</td></tr>', text)
-    row = '<tr><th scope="row">File</th><td>a.csv, SHA-256 ' + digests("0a" * 32) + "</td></tr>"
-    assert str(digests("a <b>")) == "a &lt;b&gt;"
+    row = '<tr><th scope="row">File</th><td>a.csv, SHA-256 ' + broken("0a" * 32) + "</td></tr>"
+    assert str(broken("a <b>")) == "a &lt;b&gt;"
     changed = text.replace(place[0], row) if place else text
     assert "digest" in changed
     (tmp_path / "report.html").write_text(changed, encoding="utf-8")
@@ -597,3 +597,15 @@ def test_axe_finds_nothing_on_a_study_unfolded(open_page: Any, study: Path, widt
         summary.click()
     assert axe.Axe().run(page).response["violations"] == []
     assert page.evaluate("document.documentElement.scrollWidth") <= width
+
+
+def test_no_option_is_broken_on_a_phone(open_page: Any, tmp_path: Path) -> None:
+    (tmp_path / "report.html").write_text(trial_page(drawn_trial("ball"), tmp_path), encoding="utf-8")
+    page = open_page(tmp_path / "report.html", viewport={"width": 390, "height": 844})
+    for summary in page.locator("summary").all():
+        summary.click()
+    lines = page.evaluate("[...document.querySelectorAll('.option')].map((one) => one.getClientRects().length)")
+    assert set(lines) == {1}  # of one at least
+    assert str(broken("--arm-markers NAMES, a--b, <--x>")) == (
+        '<span class="option">--arm-markers</span> NAMES, a--b, &lt;<span class="option">--x</span>&gt;'
+    )

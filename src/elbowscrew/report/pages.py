@@ -31,6 +31,7 @@ UNSHOWABLE: Final = (*UNREADABLE, jinja2.UndefinedError)
 _HERE: Final = Path(__file__).parent
 _NONE: Final = "–"
 _DIGEST: Final = re.compile(r"\b[0-9a-f]{64}\b")
+_OPTION: Final = re.compile(r"(?<![\w-])--[a-z][a-z-]*")
 _HEADING: Final = re.compile(r'<h2 id="([^"]+)"[^>]*>([^<]*)</h2>')
 
 
@@ -124,7 +125,7 @@ def _environment() -> jinja2.Environment:
         words=words,
         listed=listed,
         headings=headings,
-        digests=digests,
+        broken=broken,
     )
     return environment
 
@@ -167,9 +168,10 @@ def percent(share: float | None, decimals: int = 1) -> str:
     return _NONE if share is None else f"{number(100.0 * share, decimals)} %"
 
 
-def digests(text: str) -> Markup:
-    """Escape a text, and let lines break within the digests of files, each a word of 64 letters."""
-    return Markup(_DIGEST.sub(r'<span class="digest">\g<0></span>', str(escape(text))))  # noqa: S704 - escaped here
+def broken(text: str) -> Markup:
+    """Escape a text, and let lines break within digests of files, words of 64 letters, and not within options."""
+    marked = _DIGEST.sub(r'<span class="digest">\g<0></span>', str(escape(text)))
+    return Markup(_OPTION.sub(r'<span class="option">\g<0></span>', marked))  # noqa: S704 - escaped here
 
 
 def headings(html: str) -> list[tuple[str, str]]:
