@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import moving_joints as mj
@@ -10,6 +11,7 @@ import pytest
 from trials import joint_poses
 
 from elbowscrew import Recording, RigidBody, Settings, analyze, read_recording, simulate_trial
+from elbowscrew.cli import main
 from elbowscrew.cli.render import analysis_table
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.motion.joint.typed import identify_joint
@@ -192,3 +194,19 @@ def test_axes_that_turn_one_at_a_time_are_warned_of() -> None:
     ]
     told = joint_summary(analysis)["joint_type"]
     assert (told["type"], told["status"]) == ("two_axes", "approximate")
+
+
+def test_one_axis_of_a_pair_whose_order_is_open_is_not_told(tmp_path: Path) -> None:
+    """Skin of 6 mm at 60 and 30 deg: what was told as axis 2, within 20 deg, is that of the other body, 54 deg off."""
+    source = tmp_path / "elbow.csv"
+    joint = ["--joint-type", "two-axes", "--top", "60", "--pronation", "30"]
+    assert main(["simulate", str(source), *joint, "--skin", "6", "--seed", "1", "--quiet"]) == 0
+    analysis = analyze(source)
+    assert analysis.joint_type is not None
+    two = analysis.joint_type.two_axes
+    assert two is not None
+    truth = tuple(json.loads(source.with_suffix(".truth.json").read_text())["two_axes"]["axis2"]["distal"]["direction"])
+    assert degrees_off(list(two.axis2.direction_distal), truth) > np.degrees(two.axis2.axis_cone)
+    assert not two.order_determined
+    assert [line.determined for line in two.lines] == [False, False]
+    assert "axis-undetermined" in [warning.code for warning in analysis.warnings]

@@ -215,6 +215,8 @@ def _two_axes(
     between, parallel = _between(at, interval)
     sd = [interval.radius(row[None]) / NORMAL_95 for row in geometry_slopes(at)]
     determined = all(line.determined for line in lines)
+    if not determined and not order_determined:  # whose axis the one is that seems known is open, and so what it is
+        lines = (replace(lines[0], determined=False), replace(lines[1], determined=False))
     if not determined:
         sd = [float("nan")] * len(sd)  # how two axes stand to each other is no better known than they are
     return TwoAxes(
