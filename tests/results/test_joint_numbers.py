@@ -56,6 +56,13 @@ def test_an_open_order_is_told_wherever_the_axes_are(elbow: Analysis, tmp_path: 
     assert said == {True: [False] * 4, False: [True] * 4}
 
 
+@pytest.mark.parametrize(("located", "what"), [(True, "cluster"), (False, "sensor")])
+def test_the_terminal_says_what_the_intervals_of_two_axes_leave_out(elbow: Analysis, located: bool, what: str) -> None:
+    told = joint_axis_text(summary_from_analysis(elbow)["motion"], located=located)
+    assert f"for the {what}s' frames, " in told
+    assert f"; a {what} that turns on its bone with the motion is in it only as --skin-motion states)" in told
+
+
 def told_line(elbow: Analysis, cone_deg: float) -> dict[str, object]:
     """The first of two axes, as if it were known to so much and 7 mm."""
     found = elbow.joint_type

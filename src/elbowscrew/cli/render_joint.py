@@ -30,9 +30,9 @@ def joint_text(found: JointTypeSummary) -> str:
 def joint_axis_text(motion: MotionSummary, *, located: bool) -> str:
     """Say where the joint's axis is, or its axes or center, and how well that is known."""
     axis, numbers = motion["joint_axis"], motion["joint_numbers"]
-    whose, whose_body = ("clusters'", "cluster") if located else ("sensors'", "sensor")
+    whose, whose_body = names = ("clusters'", "cluster") if located else ("sensors'", "sensor")
     if axis is None:
-        return _axes_or_center(motion, whose)
+        return _axes_or_center(motion, names)
     model = axis["model"].replace("_", "-")
     direction = vector_text(axis["direction"], 4)
     beside = _wander(numbers["wander"]) + _second_rotation(numbers["second_rotation"])
@@ -107,7 +107,7 @@ def place_text(point_mm: Vector | None) -> str:
     return "" if point_mm is None else f", point ({vector_text(point_mm, 1)}) mm"
 
 
-def _axes_or_center(motion: MotionSummary, whose: str) -> str:
+def _axes_or_center(motion: MotionSummary, whose: tuple[str, str]) -> str:
     from elbowscrew.model.joint_summary_types import order_is_open
 
     found, axes, ball = motion["joint_type"], motion["joint_numbers"]["two_axes"], motion["joint_numbers"]["ball"]
@@ -132,8 +132,11 @@ def _axes_or_center(motion: MotionSummary, whose: str) -> str:
     return "none"
 
 
-def _stands_on(found: JointTypeSummary, whose: str) -> str:
-    return f"95 %, for the {whose} frames, {found['interval_method'] or 'not known'}"
+def _stands_on(found: JointTypeSummary, whose: tuple[str, str]) -> str:
+    return (
+        f"95 %, for the {whose[0]} frames, {found['interval_method'] or 'not known'}; "
+        f"a {whose[1]} that turns on its bone with the motion is in it only as --skin-motion states"
+    )
 
 
 def _one_of_two(axis: JointLineSummary, body: Literal["proximal", "distal"]) -> str:
