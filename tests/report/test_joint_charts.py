@@ -15,7 +15,7 @@ from read_charts import keys_in, panels_in, picture_in, remarks_in
 
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.plots import FIGURES
-from elbowscrew.plots.style import AXES
+from elbowscrew.plots.style import AXES, KEYFRAME, MEASURED, MODELED
 from elbowscrew.quantities import rounded
 from elbowscrew.report.captions import caption_of
 from elbowscrew.report.clip import clip_of
@@ -199,6 +199,8 @@ def test_axes_have_one_color_in_figures_on_the_page_and_in_its_view() -> None:
     colors = [str(look["color"]).lower() for look in AXES]
     light = page[: page.index("@media")]
     assert re.findall(r"--axis[123]: (#[0-9a-f]{6})", light) == colors
+    for name, look in (("modeled", MODELED), ("keyframe", KEYFRAME), ("measured", MEASURED)):
+        assert f"--{name}: {str(look['color']).lower()};" in light, name
     dark = re.findall(r"--axis[123]: (#[0-9a-f]{6})", page[len(light) :])
     assert len(set(dark)) == 3
     still = np.asarray(Image.open(io.BytesIO(clip_of(drawn_trial("two axes"), ".png"))).convert("RGB")).astype(int)
