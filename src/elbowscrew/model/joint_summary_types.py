@@ -126,9 +126,13 @@ class JointLineSummary(EstimateSummary):
     """One of two axes, with the joint in its reference pose; the point is where the radius holds."""
 
     cone95_deg: float | None
-    """Half-angle of the cone that holds the direction with 95 %."""
+    """Half-angle of the cone that holds the direction with 95 % in the axis' own body: the proximal one for axis 1."""
     radius95_mm: float | None
-    """Radius of the circle across the axis that holds its position with 95 %."""
+    """Radius of the circle across the axis that holds its position with 95 %, in the same body."""
+    cone95_other_deg: float | None
+    """The cone in the other body, with the error of the reference pose, through which the axis is seen there."""
+    radius95_other_mm: float | None
+    """The radius in the other body."""
     range_deg: float | None
     """Rotation about it, from the 5 % to the 95 % quantile."""
     angle_sd_deg: float | None

@@ -58,7 +58,9 @@ class JointLine(ArrayRecord):
     direction_proximal, point_proximal, direction_distal, point_distal : ndarray, shape (3,)
         In the frames of the bodies, with the joint in its reference pose; the point is where `point_radius` holds.
     axis_cone, point_radius : float
-        Half-angle (rad) and radius (m) that hold 95 %.
+        Half-angle (rad) and radius (m) that hold 95 %, in the body the axis is fixed in: the first in the proximal one.
+    other_cone, other_radius : float
+        The same in the other body, with the error of the reference pose, through which it is seen there.
     axis_sd : float
         Larger of the two tilts' standard deviations, rad.
     range : float
@@ -76,6 +78,8 @@ class JointLine(ArrayRecord):
     point_distal: Float
     axis_cone: float
     point_radius: float
+    other_cone: float
+    other_radius: float
     axis_sd: float
     range: float
     angle_sd: float

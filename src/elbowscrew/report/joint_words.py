@@ -23,15 +23,22 @@ def _sentences(view: TrialView) -> Iterator[str]:
             yield f"Which axis is that of the {proximal} is open: the motion hardly turns about both at once."
         yield _apart(two)
     if ball is not None:
+        proximal, distal = view.named_joint.proximal.name, view.named_joint.distal.name
         within = "" if ball["radius95_mm"] is None else f", within {number(ball['radius95_mm'])} mm"
         yield (
-            f"The center is at ({vector(ball['center_in_proximal_mm'], 1)}) mm in the proximal body{within}, and at "
-            f"({vector(ball['center_in_distal_mm'], 1)}) mm in the distal one; by SCoRE, beside it, at "
+            f"The center is at ({vector(ball['center_in_proximal_mm'], 1)}) mm in the {proximal}{within}, and at "
+            f"({vector(ball['center_in_distal_mm'], 1)}) mm in the {distal}; by SCoRE, beside it, at "
             f"({vector(ball['score']['center_in_proximal_mm'], 1)}) and "
             f"({vector(ball['score']['center_in_distal_mm'], 1)}) mm."
         )
     yield from _beside_a_hinge(joint)
     yield from _intervals(joint, located=view.located)
+    if two is not None and two["axis1"]["determined"] and two["axis2"]["determined"]:
+        yield (
+            "Each interval is that of an axis in the segment it is fixed in; in the other it is seen through the "
+            "reference pose, whose error adds to it. Whether one of the two wanders with the motion is not tested: an "
+            "axis that does so takes both beyond their intervals."
+        )
     if two is not None or ball is not None:
         mixed = "both axes" if two is not None else "all directions"
         yield (

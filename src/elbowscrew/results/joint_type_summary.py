@@ -27,6 +27,7 @@ from elbowscrew.motion.screws.frames import frame_called
 from elbowscrew.results.statistics import known, known_vector
 
 _MILLIMETERS: Final = 1000.0
+_BEYOND: Final = 0.5 * np.pi
 _DEGREES: Final = float(np.degrees(1.0))
 INTERVAL_METHODS: Final = {
     "A": "from the markers' motion among themselves",
@@ -167,7 +168,7 @@ def _two_axes(found: TwoAxes, frame: _Frame) -> TwoAxesSummary:
 
 def _line(line: JointLine, frame: _Frame) -> JointLineSummary:
     direction, point = frame.line(line)
-    determined = line.determined and line.axis_cone < 0.5 * np.pi
+    determined = line.determined and line.axis_cone < _BEYOND
     return {
         "direction": direction.tolist(),
         "point_mm": known_vector(_MILLIMETERS * point),
@@ -177,6 +178,8 @@ def _line(line: JointLine, frame: _Frame) -> JointLineSummary:
         "point_in_distal_mm": known_vector(_MILLIMETERS * line.point_distal),
         "cone95_deg": known(_DEGREES * line.axis_cone) if determined else None,
         "radius95_mm": known(_MILLIMETERS * line.point_radius) if determined else None,
+        "cone95_other_deg": known(_DEGREES * line.other_cone) if determined and line.other_cone < _BEYOND else None,
+        "radius95_other_mm": known(_MILLIMETERS * line.other_radius) if determined else None,
         "range_deg": known(_DEGREES * line.range),
         "angle_sd_deg": known(_DEGREES * line.angle_sd),
         "determined": determined,

@@ -210,3 +210,54 @@ def test_one_axis_of_a_pair_whose_order_is_open_is_not_told(tmp_path: Path) -> N
     assert not two.order_determined
     assert [line.determined for line in two.lines] == [False, False]
     assert "axis-undetermined" in [warning.code for warning in analysis.warnings]
+
+
+def test_an_axis_seen_from_the_other_body_has_the_error_of_the_reference_pose() -> None:
+    """Of twelve elbows: in its own body an axis is within its interval, in the other within the wider one of that."""
+    back = {"proximal": "distal", "distal": "proximal"}
+    near, far, own_alone = [], [], []
+    for seed in range(12):
+        trial = simulate_trial(joint_type="two-axes", seed=seed)
+        two = joint_summary(analyze(trial.recording))["two_axes"]
+        truth = trial.truth["two_axes"]
+        assert two is not None
+        for axis, own in (("axis1", "proximal"), ("axis2", "distal")):
+            told = two[axis]  # type: ignore[literal-required]
+            for body in (own, back[own]):
+                line = truth[axis][body]
+                turn = degrees_off(told[f"direction_in_{body}"], tuple(line["direction"]))
+                off = np.cross(np.array(told[f"point_in_{body}_mm"]) - line["point_mm"], line["direction"])
+                shift = float(np.linalg.norm(off))
+                if body == own:
+                    near += [turn <= told["cone95_deg"], shift <= told["radius95_mm"]]
+                else:
+                    far += [turn <= told["cone95_other_deg"], shift <= told["radius95_other_mm"]]
+                    own_alone.append(shift <= told["radius95_mm"])
+    assert np.mean(near) > 0.85
+    assert np.mean(far) > 0.85
+    assert np.mean(own_alone) < 0.4
+
+
+@pytest.mark.parametrize(
+    ("joint", "stated", "words"),
+    [
+        ("hinge", "ball", "the joint is stated to be a ball joint, but the motion does not determine its center"),
+        ("screw-hinge", "rigid", "the joint is stated to be rigid, but the bodies move by "),
+        ("two-axes", "rigid", "the joint is stated to be rigid, but the bodies move by "),
+    ],
+)
+def test_a_statement_that_the_motion_does_not_bear_out_is_warned_of(joint: str, stated: str, words: str) -> None:
+    trial = simulate_trial(joint_type=joint, seed=63)  # type: ignore[arg-type]
+    analysis = analyze(trial.recording, Settings(joint_type=stated))
+    told = {warning.code: warning.message for warning in analysis.warnings}
+    assert told["stated-joint"].startswith(words)
+    assert "hardly move" not in " ".join(told.values())
+    ball = joint_summary(analysis)["ball"]
+    assert ball is None or (ball["radius95_mm"], ball["semi_axes95_mm"]) == (None, None)
+
+
+def test_a_gain_beyond_measure_is_not_told_to_the_tenth(real_data: Path) -> None:
+    """It was 207741999917.1 times."""
+    analysis = analyze(read_recording(real_data / "cases" / "identity_fast_start.csv"))
+    assert analysis.joint_type is not None
+    assert "a richer type leaves over 1000 times less variance" in analysis.joint_type.reason

@@ -27,6 +27,7 @@ _ALL_RETRACED: Final = 0.9
 _MUCH_RETRACED: Final = 0.5
 _LARGEST_WANDER: Final = np.radians(15.0)
 _WANDERS: Final = "an axis that wanders with the angle explains as much as two axes do"
+_MANY_TIMES: Final = 1000.0
 _HARDLY: Final = "so little motion tells no axis"
 _NO_CENTER: Final = "whether it turns about one center, orientations alone do not tell"
 _NO_ORDER: Final = "it hardly turns about both at once, which would tell which of them goes with which body"
@@ -38,7 +39,8 @@ class Choice(NamedTuple):
     """The type, how sure it is, why, what all types that were tried leave, and which of two axes goes with which body.
 
     The last is told where axes in the other order leave much more. Beside one axis, where two were tried, there is the
-    RMS rotation (rad) that it leaves beyond the noise. All are of those rows of the poses.
+    RMS rotation (rad) that it leaves beyond the noise. All are of those rows of the poses. The center of a stated ball
+    is not told where one axis explains the motion.
     """
 
     type: JointTypeName
@@ -49,6 +51,7 @@ class Choice(NamedTuple):
     order_told: bool
     rotation_left: float
     rows: Index
+    center_told: bool = True
 
 
 def choose_type(
@@ -77,7 +80,8 @@ def choose_type(
     contest = Contest(poses, noise_known=noise_known, robust=robust, one=one)
     if forced is not None:
         contest[forced]
-        return _chosen(contest, forced, "forced", f"{JOINT_TYPE_WORDS[forced]}, as stated")
+        chosen = _chosen(contest, forced, "forced", f"{JOINT_TYPE_WORDS[forced]}, as stated")
+        return chosen._replace(center_told=forced != "ball" or not contest.turns_about_one_axis())
     if contest["rigid"].hardly_moves:
         limit = _EXPLAINED if noise_known else NEED_LARGE * contest.floor("rigid")
         return _unless_too_far(contest, "rigid", 0.0, doubt=None if contest.heldout("rigid") <= limit else _HARDLY)
@@ -168,7 +172,8 @@ def _unless_too_far(contest: Contest, name: Fitted, gain: float, *, doubt: str |
     left += f" and {in_digits(left_mm)} mm RMS" if contest.poses.located else " RMS of rotation"
     if doubt is None and gain >= NEED_LARGE:
         doubt = (
-            f"a richer type leaves {gain:.1f} times less variance, which is within what skin and imperfect joints do"
+            f"a richer type leaves {'over 1000' if gain > _MANY_TIMES else f'{gain:.1f}'} times less variance, which is "
+            "within what skin and imperfect joints do"
         )
     if doubt is not None:
         return _chosen(contest, name, "approximate", f"{left}; {doubt}")

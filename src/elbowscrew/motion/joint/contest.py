@@ -214,6 +214,11 @@ class Contest:
         for name in self.order:
             self[name]
 
+    def turns_about_one_axis(self) -> bool:
+        """Whether a hinge leaves little: then the center of a ball may be anywhere on its axis."""
+        fit = fit_type("hinge", self.poses, robust=self.robust)
+        return Tried(fit, valid=True, shared_sd=np.zeros(0)).leaves_little
+
     def hardly_turns(self) -> bool:
         """Whether an angle of two axes covers too little, for how well a frame tells it, to tell its axis."""
         fit = self["two_axes"].fit

@@ -30,6 +30,7 @@ from elbowscrew.motion.joint.typed import identify_joint
 from elbowscrew.motion.screws.measurement import Measurement
 from elbowscrew.motion.screws.pose_noise import STILL_STRETCH, fix_a_pose
 from elbowscrew.motion.screws.uncertainty import fitted_covariance
+from elbowscrew.quantities import in_digits
 from elbowscrew.settings import Settings
 
 _LARGE_NOISE_RATIO: Final = 2.0
@@ -43,6 +44,8 @@ _FOUND: Final = {
     "free": "no joint of rotations alone explains it",
     "rigid": "the two bodies hardly move against each other",
 }
+_LITTLE_TURN: Final = np.radians(1.0)
+_LITTLE_SHIFT: Final = 0.0015
 
 
 def measured_joint_axis(measured: Measurement, mean: MeanAxis, settings: Settings) -> EstimatedAxis:
@@ -203,6 +206,8 @@ def joint_axis_warnings(
         found = "" if joint_type is None else f"; {_FOUND.get(joint_type.type, 'what it is, is undetermined')}"
         if joint_type is not None and joint_type.type == "ball" and not measured.joint.located:
             found = f"; {_NO_CENTER}"
+        if stated and joint_type is not None and joint_type.type == "rigid":
+            found = "; it is stated to be rigid"
         message = (
             f"the motion has no single axis: a hinge leaves {share} unexplained, so that no joint axis is fitted, and "
             f"theta and the mean axis mix rotations{found}"
@@ -245,6 +250,10 @@ def _doubts_of_type(joint_axis: JointAxis, joint_type: JointType | None) -> list
     elif any(candidate.type == joint_type.type and not candidate.valid for candidate in joint_type.candidates):
         what = JOINT_TYPE_WORDS[joint_type.type]
         message = f"the joint is stated to be {what}, but the motion does not determine it: it has no angles here"
+    elif stated and joint_type.ball is not None and not np.isfinite(joint_type.ball.radius):
+        message = "the joint is stated to be a ball joint, but the motion does not determine its center"
+    elif stated and joint_type.type == "rigid" and (moves := _moves(joint_type)):
+        message = f"the joint is stated to be rigid, but the bodies move by {moves} RMS against each other"
     elif two is not None and not all(line.determined for line in two.lines):
         told = (
             "the joint is stated to have two axes, but the motion does not determine"
@@ -262,3 +271,12 @@ def _doubts_of_type(joint_axis: JointAxis, joint_type: JointType | None) -> list
     else:
         return []
     return [QualityWarning(code=code, message=message)]
+
+
+def _moves(rigid: JointType) -> str:
+    """How far two bodies move that are stated not to; nothing where that is little."""
+    left = next(candidate for candidate in rigid.candidates if candidate.type == "rigid")
+    turn, shift = left.residual_rotation, left.residual_translation
+    if turn < _LITTLE_TURN and not shift > _LITTLE_SHIFT:
+        return ""
+    return f"{in_digits(np.degrees(turn))} deg" + (f" and {in_digits(1000.0 * shift)} mm" if shift > 0.0 else "")

@@ -17,7 +17,7 @@ from elbowscrew.motion.joint.contest import LARGEST_AXIS_SD, LEAST_RANGE_IN_SD, 
 from elbowscrew.motion.joint.coordinates import coordinates_of
 from elbowscrew.motion.joint.every_frame import Everywhere, FrameNumbers, numbers_everywhere, reference_numbers
 from elbowscrew.motion.joint.fitting import Fitted, frames_that_count_as_one, shared_covariance
-from elbowscrew.motion.joint.interval import ClusterMotion, JointInterval, Method, SkinMotion
+from elbowscrew.motion.joint.interval import ClusterMotion, JointInterval, Method, SkinMotion, pose_radii
 from elbowscrew.motion.joint.likelihood import Fit, Mechanism, fit_mechanism, refined
 from elbowscrew.motion.joint.lines import Z_LINE, nearest_points
 from elbowscrew.motion.joint.poses import Poses
@@ -114,7 +114,15 @@ def identify_joint(
         every = numbers_everywhere(at, everywhere, reference, interval)
         every = every._replace(angle=_near_zero(every.angle))
         allowed = coordinates_of(replace(at, frames=np.zeros((1, 2))), reference)
-        two = _two_axes(written, reference, interval, noise_known=noise_known, order_determined=choice.order_told)
+        carried = everywhere.reference_covariance
+        two = _two_axes(
+            written,
+            reference,
+            interval,
+            None if carried is None else scale * carried,
+            noise_known=noise_known,
+            order_determined=choice.order_told,
+        )
         method = interval.decided_by(TILTS[0])
         if choice.status == "determined" and not all(line.determined for line in two.lines):
             reason = f"{choice.reason}; errors that go together are too large to tell both directions"
@@ -128,6 +136,8 @@ def identify_joint(
     if isinstance(mechanism, Ball):
         interval = interval_of_type(fit, most, evidence.at(rows))
         center = _ball(fit, mechanism, interval, most.joint, noise_known=noise_known)
+        if not choice.center_told:
+            center = replace(center, radius=np.nan, covariance=np.full_like(center.covariance, np.nan))
         method = interval.decided_by(np.eye(6)[:3])
         return _result(choice, every, scale, coordinates=allowed, ball=center, decided_by=method)
     if isinstance(mechanism, OneAxis):
@@ -207,11 +217,17 @@ def _to_origin(pose: Float) -> float:
 
 
 def _two_axes(
-    fit: Fit[TwoAxesMechanism], reference: Float, interval: JointInterval, *, noise_known: bool, order_determined: bool
+    fit: Fit[TwoAxesMechanism],
+    reference: Float,
+    interval: JointInterval,
+    carried: Float | None,
+    *,
+    noise_known: bool,
+    order_determined: bool,
 ) -> TwoAxes:
     at = fit.mechanism
     geometry = axes_geometry(at)
-    lines = _lines(at, fit, reference, interval)
+    lines = _lines(at, fit, reference, interval, carried)
     between, parallel = _between(at, interval)
     sd = [interval.radius(row[None]) / NORMAL_95 for row in geometry_slopes(at)]
     determined = all(line.determined for line in lines)
@@ -244,8 +260,13 @@ def _between(at: TwoAxesMechanism, interval: JointInterval) -> tuple[float, bool
 
 
 def _lines(
-    at: TwoAxesMechanism, fit: Fit[Mechanism], reference: Float, interval: JointInterval
+    at: TwoAxesMechanism,
+    fit: Fit[Mechanism],
+    reference: Float,
+    interval: JointInterval,
+    carried: Float | None = None,
 ) -> tuple[JointLine, JointLine]:
+    """Both axes; `carried` (6, 6) is the reference pose's covariance, in the distal body's frame."""
     deviation = angle_sd(fit)
     # Frames whose errors go together tell an axis no better than the few that count.
     least = LEAST_RANGE_IN_SD * np.sqrt(frames_that_count_as_one(fit))
@@ -260,14 +281,19 @@ def _lines(
         tilt_sd = largest_tilt_sd(interval, TILTS[k : k + 1])
         known = largest_tilt_sd(linear, TILTS[k : k + 1]) <= LARGEST_AXIS_SD and tilt_sd <= _LARGEST_SD_AT_ENDS
         reach = middle_range(at.frames[:, k])
+        direction, point = dq.transform_lines(distal, Z_LINE)[:3], dq.pose_from_dual_quat(distal)[1]
+        cone, radius = interval.radius(TILTS[k]), interval.radius(SHIFTS[k])
+        by_pose = (0.0, 0.0) if carried is None else pose_radii(carried, direction, point)
         lines.append(
             JointLine(
                 direction_proximal=dq.transform_lines(proximal, Z_LINE)[:3],
                 point_proximal=dq.pose_from_dual_quat(proximal)[1],
-                direction_distal=dq.transform_lines(distal, Z_LINE)[:3],
-                point_distal=dq.pose_from_dual_quat(distal)[1],
-                axis_cone=interval.radius(TILTS[k]),
-                point_radius=interval.radius(SHIFTS[k]),
+                direction_distal=direction,
+                point_distal=point,
+                axis_cone=cone,
+                point_radius=radius,
+                other_cone=float(np.hypot(cone, by_pose[0])),
+                other_radius=float(np.hypot(radius, by_pose[1])),
                 axis_sd=tilt_sd,
                 range=reach,
                 angle_sd=float(deviation[k]),
