@@ -171,10 +171,8 @@ def _unless_too_far(contest: Contest, name: Fitted, gain: float, *, doubt: str |
     left = f"{words} {leave} {in_digits(np.degrees(tried.fit.residual_rotation))} deg"
     left += f" and {in_digits(left_mm)} mm RMS" if contest.poses.located else " RMS of rotation"
     if doubt is None and gain >= NEED_LARGE:
-        doubt = (
-            f"a richer type leaves {'over 1000' if gain > _MANY_TIMES else f'{gain:.1f}'} times less variance, which is "
-            "within what skin and imperfect joints do"
-        )
+        times = "over 1000" if gain > _MANY_TIMES else f"{gain:.1f}"
+        doubt = f"a richer type leaves {times} times less variance, which is within what skin and imperfect joints do"
     if doubt is not None:
         return _chosen(contest, name, "approximate", f"{left}; {doubt}")
     return _chosen(contest, name, "determined", f"{left}; no richer type explains much more")
