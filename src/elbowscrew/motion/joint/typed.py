@@ -283,7 +283,7 @@ def _lines(
         reach = middle_range(at.frames[:, k])
         direction, point = dq.transform_lines(distal, Z_LINE)[:3], dq.pose_from_dual_quat(distal)[1]
         cone, radius = interval.radius(TILTS[k]), interval.radius(SHIFTS[k])
-        by_pose = (0.0, 0.0) if carried is None else pose_radii(carried, direction, point)
+        by_pose = (0.0, 0.0) if carried is None else _carried_radii(carried, direction, point)
         lines.append(
             JointLine(
                 direction_proximal=dq.transform_lines(proximal, Z_LINE)[:3],
@@ -301,6 +301,15 @@ def _lines(
             )
         )
     return lines[0], lines[1]
+
+
+def _carried_radii(covariance: Float, direction: Float, point: Float) -> tuple[float, float]:
+    """As `pose_radii`; of a pose without a place the direction's alone."""
+    if np.isfinite(covariance).all() and np.isfinite(point).all():
+        return pose_radii(covariance, direction, point)
+    rotation = np.zeros((6, 6))
+    rotation[:3, :3] = covariance[:3, :3]
+    return pose_radii(rotation, direction, np.zeros(3))[0], float("nan")
 
 
 def _second_rotation(choice: Choice, poses: Poses, reference: Float, evidence: Evidence) -> SecondRotation | None:
