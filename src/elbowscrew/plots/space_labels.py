@@ -8,6 +8,7 @@ from __future__ import annotations
 from itertools import pairwise
 from typing import Any, Final, NamedTuple, cast
 
+import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import FixedLocator, MaxNLocator
@@ -131,8 +132,17 @@ def _keep(axis: Any, ticks: list[Any]) -> None:
     axis.set_major_locator(FixedLocator([tick.get_loc() for tick in ticks]))
 
 
+def _put_in_place(axis: Any, renderer: Any) -> None:
+    """Put line, ticks and words where they will be drawn: before matplotlib 3.11 drawing them alone did so."""
+    if matplotlib.__version_info__ >= (3, 11):
+        axis.get_tightbbox(renderer)
+        return
+    axis.axes.M = axis.axes.get_proj()
+    axis.draw(renderer)  # which the figure's own drawing wipes off
+
+
 def _side(axis: Any, renderer: Any) -> _Side:
-    axis.get_tightbbox(renderer)  # which puts everything into its place
+    _put_in_place(axis, renderer)
     low, high = sorted(axis.get_view_interval())
     close = 1e-9 * (high - low)
     made = axis.majorTicks[: len(axis.get_majorticklocs())]  # those behind them are left from an earlier choice

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import moving_joints as mj
@@ -261,3 +262,20 @@ def test_a_gain_beyond_measure_is_not_told_to_the_tenth(real_data: Path) -> None
     analysis = analyze(read_recording(real_data / "cases" / "identity_fast_start.csv"))
     assert analysis.joint_type is not None
     assert "a richer type leaves over 1000 times less variance" in analysis.joint_type.reason
+
+
+@pytest.mark.parametrize(("name", "assumed"), [("noise_error_column_only", True), ("cycles_small_noisy", False)])
+def test_error_bars_of_assumed_markers_are_warned_of_where_a_hinge_leaves_more(
+    real_data: Path, name: str, assumed: bool
+) -> None:
+    """An error column alone: three markers at 30 mm make 0.6 deg, and four at 50 mm, as is assumed, 0.22."""
+    analysis = analyze(read_recording(real_data / "cases" / f"{name}.csv"))
+    told = {warning.code: warning for warning in analysis.warnings}
+    assert ("noise-assumed" in told) == assumed
+    if assumed:
+        ratio = re.search(r"a hinge leaves (\d\.\d) times as much", told["noise-assumed"].message)
+        assert ratio is not None
+        assert told["noise-assumed"].severity == "warning"
+        stated = float(np.degrees(np.nanmedian(analysis.screw.angle_sd)))
+        assert stated == pytest.approx(0.22, abs=0.01)
+        assert float(ratio[1]) * stated == pytest.approx(0.6, abs=0.1)

@@ -28,7 +28,7 @@ from elbowscrew.motion.joint.joint_axis import (
 from elbowscrew.motion.joint.nonrigid import Segment
 from elbowscrew.motion.joint.typed import identify_joint
 from elbowscrew.motion.screws.measurement import Measurement
-from elbowscrew.motion.screws.pose_noise import STILL_STRETCH, fix_a_pose
+from elbowscrew.motion.screws.pose_noise import MARKERS_ASSUMED, STILL_STRETCH, fix_a_pose
 from elbowscrew.motion.screws.uncertainty import fitted_covariance
 from elbowscrew.quantities import in_digits
 from elbowscrew.settings import Settings
@@ -218,11 +218,18 @@ def joint_axis_warnings(
         message = f"the noise of the poses is not known, so that axes have no error bars; {how}"
         warnings.append(QualityWarning(code="noise-unknown", message=message, severity="note"))
     elif joint_axis.best is not None and joint_axis.best.noise_ratio > _LARGE_NOISE_RATIO:
+        times = f"{joint_axis.best.noise_ratio:.1f} times"
         message = (
-            f"the poses leave a hinge by {joint_axis.best.noise_ratio:.1f} times what their noise explains: the joint "
+            f"the poses leave a hinge by {times} what their noise explains: the joint "
             "is not a perfect hinge, or the markers move on the skin; the joint axis' interval is that of the residuals"
         )
         warnings.append(QualityWarning(code="beyond-noise", message=message, severity="note"))
+        if any(one is not None and one.source.endswith(MARKERS_ASSUMED) for one in measured.noise.known):
+            message = (
+                "the number and places of the markers are assumed, as the file has none, and a hinge leaves "
+                f"{times} as much: error bars of single frames may be too small by that; --marker-noise MM states more"
+            )
+            warnings.append(QualityWarning(code="noise-assumed", message=message))
     known = measured.noise.known or ()
     if any(
         n is not None and n.source == STILL_STRETCH and m for n, m in zip(known, measured.noise.moving, strict=False)

@@ -36,6 +36,9 @@ _IDENTITY: Final = np.eye(8)[0]
 _COMMON_NOISE: Final = np.diag([6e-6] * 3 + [1e-8] * 3)
 # Exports have six decimals: where some coordinate repeats in all of them its noise is that of the rounding, not none.
 _ROUNDING_SD: Final = np.array([2.0, 2.0, 2.0, 1.0, 1.0, 1.0]) * 1e-6 / np.sqrt(12.0)
+MARKERS_ASSUMED: Final = ", markers assumed"
+"""How the name of a source ends that tells of the markers' errors, not of their number and places."""
+
 _STANDS_STILL: Final = PoseNoise(covariance=np.zeros((6, 6)), source="stands still", marker_noise=None)
 
 
@@ -191,7 +194,7 @@ def _from_marker_noise(body: RigidBody, marker_noise: float, source: str, settin
     radius = DEFAULT_RADIUS if settings.radius_mm is None else settings.radius_mm / 1000.0
     rotation, position = marker_noise**2 / (_ASSUMED_MARKERS * np.array([2.0 / 3.0 * radius**2, 1.0]))
     covariance = np.diag([rotation] * 3 + [position] * 3)
-    return PoseNoise(covariance=covariance, source=f"{source}, markers assumed", marker_noise=marker_noise)
+    return PoseNoise(covariance=covariance, source=source + MARKERS_ASSUMED, marker_noise=marker_noise)
 
 
 def _residuals(body: RigidBody, rate_hz: float, settings: Settings) -> PoseNoise | None:
