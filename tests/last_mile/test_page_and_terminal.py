@@ -209,12 +209,13 @@ def test_tables_of_the_joints_type(told: Told) -> None:
                 )
             ),
             *(
+                [f"95 % {name} there, and in the other, {unit}"]
+                + [f"{dec(axis[f'{key}_{unit}'], 3)}, {dec(axis[f'{key}_other_{unit}'], 3)}" for axis in axes]
+                for name, key, unit in (("cone", "cone95", "deg"), ("radius", "radius95", "mm"))
+            ),
+            *(
                 [name, *(dec(axis[key], decimals) for axis in axes)]
                 for name, key, decimals in (
-                    ("95 % cone in that segment, deg", "cone95_deg", 3),
-                    ("95 % radius in that segment, mm", "radius95_mm", 3),
-                    ("95 % cone in the other, deg", "cone95_other_deg", 3),
-                    ("95 % radius in the other, mm", "radius95_other_mm", 3),
                     ("Range, deg", "range_deg", 1),
                     ("Angle known to (sd), deg", "angle_sd_deg", 3),
                 )

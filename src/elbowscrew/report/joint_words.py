@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Final
 
 from elbowscrew.model.joint_summary_types import JointSummary, TwoAxesSummary, order_is_open
 from elbowscrew.report.pages import number, vector
@@ -12,6 +13,12 @@ from elbowscrew.view.trial_view import TrialView
 def joint_sentences(view: TrialView) -> tuple[str, ...]:
     """Say what the joint is, in sentences for the page."""
     return tuple(_sentences(view))
+
+
+_TWO_AXES: Final = (
+    " Seen from the other segment an axis has the reference pose’s error, too. That one wanders is not tested, and "
+    "would take both beyond their intervals."
+)
 
 
 def _sentences(view: TrialView) -> Iterator[str]:
@@ -33,17 +40,11 @@ def _sentences(view: TrialView) -> Iterator[str]:
         )
     yield from _beside_a_hinge(joint)
     yield from _intervals(joint, located=view.located)
-    if two is not None and two["axis1"]["determined"] and two["axis2"]["determined"]:
-        yield (
-            "Each interval is that of an axis in the segment it is fixed in; in the other it is seen through the "
-            "reference pose, whose error adds to it. Whether one of the two wanders with the motion is not tested: an "
-            "axis that does so takes both beyond their intervals."
-        )
     if two is not None or ball is not None:
         mixed = "both axes" if two is not None else "all directions"
         yield (
             f"The angle θ mixes rotations about {mixed}; the joint’s own angles stand in joint_angles.csv and in the "
-            "figure joint_angles."
+            f"figure joint_angles.{_TWO_AXES if two is not None else ''}"
         )
     side = view.summary["trial"]["joint"]["side"]
     if two is not None and side is not None and view.named_joint.name == "elbow":
