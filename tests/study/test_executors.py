@@ -9,8 +9,11 @@ import sys
 import threading
 import time
 from collections.abc import Iterator
+from concurrent.futures import Future
+from contextlib import nullcontext
 from importlib import import_module
 from pathlib import Path
+from runpy import run_path
 from typing import Any
 
 import pytest
@@ -21,7 +24,7 @@ from elbowscrew.cli import main
 from elbowscrew.errors import UsageError
 from elbowscrew.study.executors import open_executor
 from elbowscrew.study.outcome import Failure
-from elbowscrew.study.running import run_tasks
+from elbowscrew.study.running import _collect, run_tasks
 
 distributed: Any = pytest.importorskip("distributed")
 psutil: Any = import_module("psutil")  # Dask's own
@@ -174,3 +177,19 @@ def test_a_cluster_that_loses_its_workers_for_good_is_not_waited_for(tmp_path: P
         with pytest.raises(UsageError, match=r"no worker after 0.3 s; start some"):
             run_tasks(tasks, work, open_executor(there.scheduler_address, 1, 0.3), 1, lose_all)
     assert 0 < len(done) < len(tasks)
+
+
+@pytest.mark.parametrize(("name", "suspected"), [("cfexecutor.py", [3]), ("reader.py", [])])
+def test_a_task_that_dask_has_no_word_of_is_tried_again(tmp_path: Path, name: str, suspected: list[int]) -> None:
+    """Of a task whose workers are gone its own code fails; the same error of the work itself is told."""
+    code = tmp_path / name
+    code.write_text("kind, error, trace = None")
+    future: Future[Failure | None] = Future()
+    try:
+        run_path(str(code))
+    except TypeError as error:
+        future.set_exception(error)
+    suspects: list[int] = []
+    with nullcontext() if suspected else pytest.raises(UsageError, match="the workers cannot do the work: TypeError"):
+        assert not _collect({future: 3}, lambda *_: None, suspects.append)
+    assert suspects == suspected

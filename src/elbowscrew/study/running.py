@@ -13,6 +13,8 @@ from concurrent.futures import (
     wait,
 )
 from contextlib import ExitStack
+from pathlib import Path
+from traceback import extract_tb
 from typing import Final, TypeVar
 
 from elbowscrew.errors import OutputError, UsageError
@@ -24,6 +26,7 @@ Report = Callable[[int, Failure | None], None]
 
 _SPARE: Final = 2
 _TRIES_ALONE: Final = 2
+_OF_FUTURES: Final = "cfexecutor.py"  # Dask's, in which it makes its results into futures
 
 
 def run_tasks(
@@ -129,13 +132,19 @@ def _collect(
             msg = "the cluster is gone; start the batch again when it is there: what is finished is kept"
             raise OutputError(msg) from error
         except Exception as error:
-            if type(error).__name__ != "KilledWorker":  # Dask's, which may not be installed
+            if not _lost_by_cluster(error):
                 msg = f"the workers cannot do the work: {type(error).__name__}: {error}; install the same program there"
                 raise UsageError(msg) from error
             suspect(index)
         else:
             settle(index, failure)
     return broken
+
+
+def _lost_by_cluster(error: Exception) -> bool:
+    """Whether Dask, which may not be installed, has lost a task: it says so, or fails to tell what became of it."""
+    innermost = extract_tb(error.__traceback__)[-1:]
+    return type(error).__name__ == "KilledWorker" or any(Path(one.filename).name == _OF_FUTURES for one in innermost)
 
 
 def _lost(task: object) -> Failure:
