@@ -369,6 +369,7 @@ def test_an_interruption_while_the_temporary_folder_goes_waits_until_it_is_gone(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     unlink = os.unlink
+    former = signal.signal(signal.SIGINT, signal.default_int_handler)  # it is ignored in the background
 
     def interrupted(*given: Any, **more: Any) -> None:
         unlink(*given, **more)
@@ -380,8 +381,11 @@ def test_an_interruption_while_the_temporary_folder_goes_waits_until_it_is_gone(
                 (staged / name).touch()
             monkeypatch.setattr(os, "unlink", interrupted)
 
-    with pytest.raises(KeyboardInterrupt):
-        run()
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            run()
+    finally:
+        signal.signal(signal.SIGINT, former)
     assert list(tmp_path.iterdir()) == []
 
 

@@ -94,7 +94,8 @@ def interval_of_type(
         return interval
     ends = []
     for step in _ends(interval):
-        moved = fit.mechanism.moved(step, fit.own_by_shared @ step)
+        told = step if fit.told is None else step[list(fit.told)]
+        moved = fit.mechanism.moved(step, fit.own_by_shared @ told)
         there = settled(moved, poses)._replace(weight=fit.weight)
         ends.append(Nearby(_linear_interval(there, poses, evidence, reference), fit.mechanism.numbers_by(moved)))
     return replace(interval, nearby=tuple(ends))
