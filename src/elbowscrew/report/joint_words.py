@@ -16,7 +16,7 @@ def joint_sentences(view: TrialView) -> tuple[str, ...]:
 
 
 _TWO_AXES: Final = (
-    " Seen from the other segment an axis has the reference pose’s error, too. That one wanders is not tested, and "
+    " Seen from the other segment an axis has the reference pose’s error, too. A wander of either is not tested, and "
     "would take both beyond their intervals."
 )
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import moving_joints as mj
@@ -211,6 +212,19 @@ def test_one_axis_of_a_pair_whose_order_is_open_is_not_told(tmp_path: Path) -> N
     assert not two.order_determined
     assert [line.determined for line in two.lines] == [False, False]
     assert "axis-undetermined" in [warning.code for warning in analysis.warnings]
+
+
+def test_orientations_alone_tell_a_direction_in_the_other_body_and_no_place() -> None:
+    """It has the error of the reference pose there, which of one frame is larger than the axis' own."""
+    recording = simulate_trial(joint_type="two-axes", seed=1).recording
+    bodies = tuple(replace(body, located=False, marker_motion=None) for body in recording.bodies)
+    two = joint_summary(analyze(replace(recording, bodies=bodies)))["two_axes"]
+    assert two is not None
+    for line in (two["axis1"], two["axis2"]):
+        assert line["cone95_deg"] is not None
+        assert line["cone95_other_deg"] is not None
+        assert line["cone95_other_deg"] > 1.05 * line["cone95_deg"]
+        assert (line["radius95_mm"], line["radius95_other_mm"]) == (None, None)
 
 
 def test_an_axis_seen_from_the_other_body_has_the_error_of_the_reference_pose() -> None:
