@@ -128,6 +128,7 @@ CASES: dict[str, tuple[Callable[[], Recording], dict[str, Any]]] = {
     "jitter": (simulated(rest_before_s=1.0), {"noise": "still"}),
     "no noise": (USUAL, {"noise": "none"}),
     "stated noise": (without_markers(USUAL), {"marker_noise_mm": 0.2, "robust": True}),
+    "stated noise, short": (without_markers(simulated(frames=80, inversion=40)), {"marker_noise_mm": 0.2}),
     "wander": (without_markers(simulated(axis_drift_deg=6.0, frames=300, inversion=150)), {}),
     "skin": (USUAL, {"skin_motion": (4.0,)}),
     "skin turns": (USUAL, {"skin_motion": (4.0, 3.0)}),
@@ -396,7 +397,14 @@ DECISIONS: dict[str, tuple[Outcome, Sentences]] = {
         noise,
         lambda case: {
             source: f"are propagated from the noise of the poses ({source})."
-            for source in ("marker residuals", "error column", "still stretch", "option", "option, markers assumed")
+            for source in (
+                "marker residuals",
+                "error column",
+                "still stretch",
+                "option",
+                "option, markers assumed",
+                "option, shared out as the poses jitter",
+            )
         },
     ),
     "single axis": (

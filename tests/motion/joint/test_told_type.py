@@ -10,6 +10,7 @@ from pathlib import Path
 import moving_joints as mj
 import numpy as np
 import pytest
+from scipy.ndimage import gaussian_filter1d
 from trials import joint_poses
 
 from elbowscrew import Recording, RigidBody, Settings, analyze, read_recording, simulate_trial
@@ -278,18 +279,34 @@ def test_a_gain_beyond_measure_is_not_told_to_the_tenth(real_data: Path) -> None
     assert "a richer type leaves over 1000 times less variance" in analysis.joint_type.reason
 
 
-@pytest.mark.parametrize(("name", "assumed"), [("noise_error_column_only", True), ("cycles_small_noisy", False)])
-def test_error_bars_of_assumed_markers_are_warned_of_where_a_hinge_leaves_more(
-    real_data: Path, name: str, assumed: bool
-) -> None:
-    """An error column alone: three markers at 30 mm make 0.6 deg, and four at 50 mm, as is assumed, 0.22."""
-    analysis = analyze(read_recording(real_data / "cases" / f"{name}.csv"))
+def test_error_bars_of_bodies_without_markers_are_those_of_their_unseen_markers(real_data: Path) -> None:
+    """An error column alone: three markers at 30 mm make 0.6 deg, where four at 50 mm would make 0.22."""
+    analysis = analyze(read_recording(real_data / "cases" / "noise_error_column_only.csv"))
+    assert float(np.degrees(np.nanmedian(analysis.screw.angle_sd))) == pytest.approx(0.6, abs=0.05)
+    assert analysis.joint_axis.best is not None
+    assert analysis.joint_axis.best.noise_ratio == pytest.approx(1.0, abs=0.1)
+    assert not {warning.code for warning in analysis.warnings} & {"noise-assumed", "beyond-noise"}
+
+
+@pytest.mark.parametrize(("factor", "severity"), [(1.0, "note"), (0.1, "warning")])
+def test_error_bars_of_assumed_markers_are_warned_of(real_data: Path, factor: float, severity: str) -> None:
+    """A filter took what jitters; the more where a hinge leaves more than markers that are assumed explain."""
+    recording = read_recording(real_data / "cases" / "noise_error_column_only.csv")
+    assert recording.bodies[0].reported_error is not None
+    smooth = tuple(
+        replace(
+            one,
+            dual_quat_lab_body=gaussian_filter1d(one.dual_quat_lab_body, 6.0, axis=0),
+            reported_error=None if one.reported_error is None else factor * one.reported_error,
+        )
+        for one in recording.bodies
+    )
+    smooth = tuple(replace(one, dual_quat_lab_body=dq.normalize(one.dual_quat_lab_body)) for one in smooth)
+    analysis = analyze(replace(recording, bodies=smooth))
     told = {warning.code: warning for warning in analysis.warnings}
-    assert ("noise-assumed" in told) == assumed
-    if assumed:
-        ratio = re.search(r"a hinge leaves (\d\.\d) times as much", told["noise-assumed"].message)
-        assert ratio is not None
-        assert told["noise-assumed"].severity == "warning"
-        stated = float(np.degrees(np.nanmedian(analysis.screw.angle_sd)))
-        assert stated == pytest.approx(0.22, abs=0.01)
-        assert float(ratio[1]) * stated == pytest.approx(0.6, abs=0.1)
+    assert told["noise-assumed"].severity == severity
+    said = re.search(r"as a hinge leaves (\d+\.\d) times as much", told["noise-assumed"].message)
+    assert (said is not None) == (severity == "warning")
+    if said is not None:
+        assert analysis.joint_axis.best is not None
+        assert float(said[1]) == pytest.approx(analysis.joint_axis.best.noise_ratio, abs=0.051)

@@ -224,13 +224,9 @@ def joint_axis_warnings(
             "is not a perfect hinge, or the markers move on the skin; the joint axis' interval is that of the residuals"
         )
         warnings.append(QualityWarning(code="beyond-noise", message=message, severity="note"))
-        if any(one is not None and one.source.endswith(MARKERS_ASSUMED) for one in measured.noise.known):
-            message = (
-                "the number and places of the markers are assumed, as the file has none, and a hinge leaves "
-                f"{times} as much: error bars of single frames may be too small by that; --marker-noise MM states more"
-            )
-            warnings.append(QualityWarning(code="noise-assumed", message=message))
     known = measured.noise.known or ()
+    if any(one is not None and one.source.endswith(MARKERS_ASSUMED) for one in known):
+        warnings.append(_assumed_markers(joint_axis))
     if any(
         n is not None and n.source == STILL_STRETCH and m for n, m in zip(known, measured.noise.moving, strict=False)
     ):
@@ -240,6 +236,19 @@ def joint_axis_warnings(
         )
         warnings.append(QualityWarning(code="noise-from-jitter", message=message))
     return tuple(warnings)
+
+
+def _assumed_markers(joint_axis: JointAxis) -> QualityWarning:
+    """Say what error bars rest on where neither the file nor the poses' jitter tells what markers make of errors."""
+    message = (
+        "the number and places of the markers are assumed, as the file has none and the jitter of the poses does not "
+        "tell what they make of errors: error bars of single frames may be off by a factor"
+    )
+    ratio = None if joint_axis.best is None else joint_axis.best.noise_ratio
+    beyond = ratio is not None and ratio > _LARGE_NOISE_RATIO
+    message += f", as a hinge leaves {ratio:.1f} times as much" if beyond else ""
+    message += "; --marker-noise MM and --radius MM state more"
+    return QualityWarning(code="noise-assumed", message=message, severity="warning" if beyond else "note")
 
 
 def _doubts_of_type(joint_axis: JointAxis, joint_type: JointType | None) -> list[QualityWarning]:

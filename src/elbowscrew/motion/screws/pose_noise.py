@@ -15,6 +15,7 @@ from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.dual_quaternion import align_signs, conjugate, log, multiply, normalize
 from elbowscrew.model import PoseNoise, RigidBody
 from elbowscrew.motion.difference import DEFAULT_RADIUS
+from elbowscrew.motion.screws.jitter import jitter_covariance
 from elbowscrew.settings import Settings
 
 # A mean distance in space is this much less than the RMS one, for a normal error.
@@ -23,6 +24,7 @@ STILL_STRETCH: Final = "still stretch"
 """Name of the source that tells of jitter only."""
 
 _ASSUMED_MARKERS: Final = 4
+_FEWEST_MARKERS: Final = 3
 _STILL_S: Final = 0.5
 _FEWEST_STILL_FRAMES: Final = 20
 _LARGEST_DRIFT: Final = 3.0
@@ -38,6 +40,8 @@ _COMMON_NOISE: Final = np.diag([6e-6] * 3 + [1e-8] * 3)
 _ROUNDING_SD: Final = np.array([2.0, 2.0, 2.0, 1.0, 1.0, 1.0]) * 1e-6 / np.sqrt(12.0)
 MARKERS_ASSUMED: Final = ", markers assumed"
 """How the name of a source ends that tells of the markers' errors, not of their number and places."""
+BY_JITTER: Final = ", shared out as the poses jitter"
+"""How it ends where the poses themselves tell what markers, not known, make of their errors."""
 
 _STANDS_STILL: Final = PoseNoise(covariance=np.zeros((6, 6)), source="stands still", marker_noise=None)
 
@@ -90,12 +94,16 @@ class JointNoise(NamedTuple):
     proximal_share, distal_share : float
         0 of a body that stands still to the last digit, or is none, 1 of one whose poses vary by at least half of the
         noise's variance. What does not change in the trial is no error of the joint.
+    proximal_shape, distal_shape : ndarray, shape (6, 6)
+        What counts of an unknown noise, only as to its shape: how the poses jitter, or a common cluster's noise.
     """
 
     proximal: PoseNoise | None
     distal: PoseNoise | None
     proximal_share: float
     distal_share: float
+    proximal_shape: Float = _COMMON_NOISE
+    distal_shape: Float = _COMMON_NOISE
 
     @classmethod
     def of(cls, proximal: RigidBody | None, distal: RigidBody, rate_hz: float, settings: Settings) -> JointNoise:
@@ -104,12 +112,14 @@ class JointNoise(NamedTuple):
         noises = [pose_noise(body, rate_hz, settings) for body in bodies]
         # One that is known has nothing to be weighed against where the other is not.
         known = [noise.covariance for noise in noises if noise is not None]
-        sizes = known if len(known) == len(bodies) else [_COMMON_NOISE] * len(bodies)
+        all_known = len(known) == len(bodies)
+        shapes = [_COMMON_NOISE] * len(bodies) if all_known else _shapes(bodies)
+        sizes = known if all_known else shapes
         shares = [_share_shown(body, size) for body, size in zip(bodies, sizes, strict=True)]
         shown = [_as_shown(noise, share) for noise, share in zip(noises, shares, strict=True)]
         if proximal is None:
-            shown, shares = [None, *shown], [0.0, *shares]
-        return cls(shown[0], shown[1], shares[0], shares[1])
+            shown, shares, shapes = [None, *shown], [0.0, *shares], [_COMMON_NOISE, *shapes]
+        return cls(shown[0], shown[1], shares[0], shares[1], shapes[0], shapes[1])
 
     @property
     def moving(self) -> tuple[bool, bool]:
@@ -129,10 +139,10 @@ class JointNoise(NamedTuple):
 
     @property
     def assumed(self) -> tuple[PoseNoise | None, PoseNoise]:
-        """Both as known, else those of a common cluster, which only the shape counts of."""
+        """Both as known, else as the poses jitter or as a common cluster's, which only the shape counts of."""
         first, second = (
-            PoseNoise(covariance=share * _COMMON_NOISE, source="assumed", marker_noise=None)
-            for share in (self.proximal_share, self.distal_share)
+            PoseNoise(covariance=share * shape, source="assumed", marker_noise=None)
+            for share, shape in ((self.proximal_share, self.proximal_shape), (self.distal_share, self.distal_shape))
         )
         return self.known or (first if self.proximal_share > 0.0 else None, second)
 
@@ -163,6 +173,17 @@ def covariance_from_markers(offsets: Float, marker_noise: float) -> Float:
     return np.asarray(marker_noise**2 * np.linalg.inv(square), dtype=np.float64)
 
 
+def _shapes(bodies: tuple[RigidBody, ...]) -> list[Float]:
+    """How the poses of bodies jitter; a common cluster's noise of all where one does not tell and moves."""
+    shapes = [jitter_covariance(body, _ROUNDING_SD) for body in bodies]
+    silent = (
+        shape is None and _share_shown(body, _COMMON_NOISE) > _LEAST_SHOWN
+        for shape, body in zip(shapes, bodies, strict=True)
+    )
+    common = any(silent)
+    return [_COMMON_NOISE if common or shape is None else shape for shape in shapes]
+
+
 def _as_shown(noise: PoseNoise | None, share: float) -> PoseNoise | None:
     if noise is None or share == 1.0:
         return noise
@@ -190,9 +211,17 @@ def _from_marker_noise(body: RigidBody, marker_noise: float, source: str, settin
         return PoseNoise(
             covariance=covariance_from_markers(offsets, marker_noise), source=source, marker_noise=marker_noise
         )
+    position = marker_noise**2 / _ASSUMED_MARKERS
+    jitter = jitter_covariance(body, _ROUNDING_SD)
+    if jitter is not None:
+        # Never less than what jitters, but for a noise that is stated: three markers make the most of that.
+        most = marker_noise**2 / _FEWEST_MARKERS if settings.marker_noise_mm is not None else np.inf
+        shown = float(np.trace(jitter[3:, 3:])) / 3.0
+        covariance = np.clip(shown, position, most) / shown * jitter
+        return PoseNoise(covariance=covariance, source=source + BY_JITTER, marker_noise=marker_noise)
     # Of the cluster nothing is known but its size: as many points as a common cluster has, spread alike in space.
     radius = DEFAULT_RADIUS if settings.radius_mm is None else settings.radius_mm / 1000.0
-    rotation, position = marker_noise**2 / (_ASSUMED_MARKERS * np.array([2.0 / 3.0 * radius**2, 1.0]))
+    rotation = position / (2.0 / 3.0 * radius**2)
     covariance = np.diag([rotation] * 3 + [position] * 3)
     return PoseNoise(covariance=covariance, source=source + MARKERS_ASSUMED, marker_noise=marker_noise)
 
@@ -216,7 +245,7 @@ def _from_square(body: RigidBody, square: Float | None, source: str, settings: S
     if known is None or not known.size or np.median(known) <= _NO_JITTER_M**2:  # round-off is no noise
         return None
     count = _ASSUMED_MARKERS if body.marker_offsets is None else len(body.marker_offsets)
-    if count < 3:
+    if count < _FEWEST_MARKERS:
         return None
     freedom = 3 * count - 6
     # The median of a chi-square over its mean (Wilson and Hilferty): astray markers move it little.
@@ -253,7 +282,7 @@ def _still(body: RigidBody, rate_hz: float, settings: Settings) -> PoseNoise | N
 
 def fix_a_pose(offsets: Float) -> bool:
     """Whether markers (M, 3) are three and more that are not on one line."""
-    if len(offsets) < 3:
+    if len(offsets) < _FEWEST_MARKERS:
         return False
     spread = np.linalg.svd(offsets - offsets.mean(axis=0), compute_uv=False)
     return bool(spread[1] > 1e-3 * spread[0])
