@@ -185,12 +185,11 @@ def _place_space(ax: Axes, cell: _Cell, renderer: Any) -> None:
     _place(ax, cell.inner)
     scale = 1.0
     for _ in range(_ROUNDS):
-        place_labels(ax, renderer)
+        words = place_labels(ax, renderer)
         if _multiplied(ax):
-            place_labels(ax, renderer)
-        box = ax.get_tightbbox(renderer)
-        if box is None:
-            return
+            words = place_labels(ax, renderer)
+        drawn = Axes.get_tightbbox(ax, renderer)  # which is that of a view in space without its axes
+        box = words if drawn is None else Bbox.union([words, drawn])
         scale = min(1.0, *((np.array(room.size) - kept) / (np.array(box.size) - kept)).tolist())
         old = ax.get_position(original=True).transformed(ax.figure.transFigure)
         moved = _middle(room) + scale * (_middle(old) - _middle(box))

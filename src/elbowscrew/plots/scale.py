@@ -61,7 +61,7 @@ class Scale(Artist):
         """Lower left and upper right corners of the labels, pixels, shape (K, 4)."""
         seen = [k for k, word in enumerate(self.words) if word and self.shows_words]
         at = np.tile(self.label.get_transform().transform(self._along(self.places[seen])), 2)
-        sizes = [_about(self.label, self.words[k], renderer) for k in seen]
+        sizes = [about_its_point(self.label, self.words[k], renderer) for k in seen]
         return np.asarray(at + np.array(sizes).reshape(-1, 4))
 
     def box(self, renderer: Any, boxes: Float) -> Bbox:
@@ -72,7 +72,7 @@ class Scale(Artist):
         name = self.axis.label
         if name.get_visible() and name.get_text():
             across = int(self.lies)
-            size = _about(name, name.get_text(), renderer)
+            size = about_its_point(name, name.get_text(), renderer)
             low[across] = self._name_at(boxes) - (size[2 + across] - size[across])
         return Bbox([low, high])
 
@@ -151,7 +151,7 @@ def _look(text: Any, renderer: Any) -> tuple[Any, ...]:
     return renderer.dpi, font, text.get_rotation(), text.get_ha(), text.get_va(), text.get_rotation_mode()
 
 
-def _about(text: Any, word: str, renderer: Any) -> tuple[float, float, float, float]:
+def about_its_point(text: Any, word: str, renderer: Any) -> tuple[float, float, float, float]:
     """Corners of a word about the point where a text puts it, pixels; kept of what is drawn in pixels."""
     if not isinstance(renderer, RendererAgg):
         return _measured(text, word, renderer)

@@ -5,15 +5,17 @@ Matplotlib puts them at a distance that knows nothing of how wide they are.
 
 from __future__ import annotations
 
+from collections import deque
 from itertools import pairwise
 from typing import Any, Final, NamedTuple, cast
 
-import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import FixedLocator, MaxNLocator
+from matplotlib.transforms import Bbox
 
 from elbowscrew.geometry.arrays import Float
+from elbowscrew.plots.scale import about_its_point
 
 _ROUNDS: Final = 8  # at most
 _STEPS: Final = (1, 2, 2.5, 5, 10)
@@ -37,19 +39,25 @@ class _Side(NamedTuple):
         Lower left and upper right corners of their labels.
     out : ndarray, shape (2,)
         Across the axis, away from the box.
-    start : ndarray, shape (2,)
-        A point of the axis.
+    ends : ndarray, shape (2, 2)
+        Of the axis.
     """
 
     axis: Any
     ticks: list[Any]
     boxes: Float
     out: Float
-    start: Float
+    ends: Float
 
 
-def place_labels(ax: Axes, renderer: Any) -> None:
-    """Put tick labels and names of a view in space where they are clear, with fewer ticks where they would touch."""
+def place_labels(ax: Axes, renderer: Any) -> Bbox:
+    """Put tick labels and names of a view in space where they are clear, with fewer ticks where they would touch.
+
+    Returns
+    -------
+    Bbox
+        Of the axes with their words, pixels.
+    """
     axes = list(cast(Any, ax)._axis_map.values())
     ax.apply_aspect()
     sides = [_side(axis, renderer) for axis in axes]
@@ -58,8 +66,20 @@ def place_labels(ax: Axes, renderer: Any) -> None:
         if not any(changed):
             changed = _parted(sides, renderer)
             if not any(changed):
-                return
+                break
         sides = [_side(side.axis, renderer) if new else side for side, new in zip(sides, changed, strict=True)]
+    return Bbox.union([_box(side, renderer) for side in sides])
+
+
+def _box(side: _Side, renderer: Any) -> Bbox:
+    """What an axis takes with its words, pixels."""
+    name = side.axis.label
+    corners = [side.ends, side.boxes.reshape(-1, 2)]
+    if name.get_visible() and name.get_text():
+        at = _on_paper(side.axis, [name.get_position()])
+        corners.append(at + np.reshape(about_its_point(name, name.get_text(), renderer), (2, 2)))
+    every = np.concatenate(corners)
+    return Bbox([every.min(axis=0), every.max(axis=0)])
 
 
 def _thinned(side: _Side, renderer: Any) -> bool:
@@ -99,7 +119,7 @@ def _moved(side: _Side, renderer: Any) -> bool:
 
 def _off(side: _Side, points: Any) -> float:
     """How far points of the axis' own are off it on the paper, pixels, in the mean."""
-    return float(((_on_paper(side.axis, points) - side.start) @ side.out).mean())
+    return float(((_on_paper(side.axis, points) - side.ends[0]) @ side.out).mean())
 
 
 def _height(name: Any, renderer: Any) -> float:
@@ -134,11 +154,12 @@ def _keep(axis: Any, ticks: list[Any]) -> None:
 
 def _put_in_place(axis: Any, renderer: Any) -> None:
     """Put line, ticks and words where they will be drawn: before matplotlib 3.11 drawing them alone did so."""
-    if matplotlib.__version_info__ >= (3, 11):
-        axis.get_tightbbox(renderer)
-        return
     axis.axes.M = axis.axes.get_proj()
-    axis.draw(renderer)  # which the figure's own drawing wipes off
+    put_all = getattr(axis, "_update_all_positions", None)
+    if put_all is None:
+        axis.draw(renderer)  # which the figure's own drawing wipes off
+    else:
+        deque(put_all(), maxlen=0)
 
 
 def _side(axis: Any, renderer: Any) -> _Side:
@@ -150,14 +171,16 @@ def _side(axis: Any, renderer: Any) -> _Side:
     for tick in ticks:
         tick.label1.set_va("center")
         tick.label1.set_ha("center")
-    boxes = np.array([tick.label1.get_window_extent(renderer).extents for tick in ticks]).reshape(-1, 4)
+    labels = [tick.label1 for tick in ticks]
+    about = np.array([about_its_point(label, label.get_text(), renderer) for label in labels]).reshape(-1, 4)
+    boxes = about + np.tile(_on_paper(axis, np.array([label.get_position() for label in labels]).reshape(-1, 2)), 2)
     ends = _on_paper(axis, np.column_stack(axis.line.get_data()))
     along = ends[1] - ends[0]
     out = np.array([along[1], -along[0]]) / float(np.hypot(*along))
     middle = ends.mean(axis=0)
     box = np.array(axis.axes.bbox.extents)
     inside = 0.5 * (box[:2] + box[2:]) - middle  # the view's own middle lies on the other side
-    return _Side(axis, ticks, boxes, -out if float(out @ inside) > 0.0 else out, ends[0])
+    return _Side(axis, ticks, boxes, -out if float(out @ inside) > 0.0 else out, ends)
 
 
 def _on_paper(axis: Any, points: Any) -> Float:
@@ -165,7 +188,7 @@ def _on_paper(axis: Any, points: Any) -> Float:
 
 
 def _middles(side: _Side) -> Float:
-    return np.asarray((0.5 * (side.boxes[:, :2] + side.boxes[:, 2:]) - side.start) @ side.out)
+    return np.asarray((0.5 * (side.boxes[:, :2] + side.boxes[:, 2:]) - side.ends[0]) @ side.out)
 
 
 def _reach(side: _Side) -> Float:
