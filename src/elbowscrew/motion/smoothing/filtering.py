@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_left
-from collections.abc import Callable
-from functools import cache
+from collections.abc import Callable, Sequence
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -13,6 +12,7 @@ from numpy.typing import NDArray
 from elbowscrew.errors import SettingError
 from elbowscrew.geometry.arrays import Float, Index
 from elbowscrew.geometry.dual_quaternion import conjugate, continuous_signs, multiply, normalize
+from elbowscrew.model import BodyPoints
 from elbowscrew.motion.difference import points_from_radius, rms_displacement
 from elbowscrew.motion.tracking.inserted import recorded_poses
 
@@ -180,18 +180,26 @@ def automatic_cutoff(
     longest = _Lowpass(rate_hz, grid[0]).settling
     spectra = [_Spectrum.of(series[run], longest) for run in runs]
 
-    @cache
+    known: dict[int, float] = {}
+
+    def look_at(several: Sequence[int]) -> None:
+        """Find the mean squares of the residual at some cut-offs of the grid."""
+        lowpasses = [_Lowpass(rate_hz, grid[k]) for k in several]
+        errors = [
+            _residuals(series[run], spectrum, lowpasses, points) for run, spectrum in zip(runs, spectra, strict=True)
+        ]
+        for k, error in zip(several, np.concatenate(errors, axis=1), strict=True):
+            known[k] = float(np.mean(error**2))
+
     def square(k: int) -> float:
         """Mean square of the residual at a cut-off of the grid; few of them are looked at."""
-        lowpass = _Lowpass(rate_hz, grid[k])
-        errors = [
-            rms_displacement(series[run], lowpass(spectrum), points)
-            for run, spectrum in zip(runs, spectra, strict=True)
-        ]
-        return float(np.mean(np.concatenate(errors) ** 2))
+        if k not in known:
+            look_at([k])
+        return known[k]
 
     gain, gain_square = np.transpose([_white_gains(rate_hz, cutoff_hz) for cutoff_hz in grid])
     hidden = 2.0 * gain - gain_square
+    look_at(range(int(np.searchsorted(grid, _NOISE_SHARE * rate_hz)), grid.size))  # ten, which most noise is told by
     noise = _noise_band(grid, square, hidden, _NOISE_SHARE * rate_hz)
     if noise is None:
         return float(highest_hz)
@@ -204,6 +212,16 @@ def automatic_cutoff(
         return _LOWEST_HZ
     between = np.log([square(above), square(above - 1)])
     return float(np.exp(np.interp(np.log(whole), between, np.log(grid[[above, above - 1]]))))
+
+
+def _residuals(run: Float, spectrum: _Spectrum, lowpasses: list[_Lowpass], points: BodyPoints) -> Float:
+    """How far each of several filters moves the points of a run of poses (N, 8), shape (K, N)."""
+    gains = np.array([lowpass.gain(spectrum) for lowpass in lowpasses])
+    inner = slice(spectrum.beyond, spectrum.beyond + spectrum.frames)
+    filtered = np.fft.irfft(spectrum.components[:, None] * gains, spectrum.length)[..., inner].reshape(8, -1).T
+    poses = multiply(spectrum.first, normalize(filtered))
+    unfiltered = np.tile(np.ascontiguousarray(run.T), len(lowpasses)).T
+    return rms_displacement(unfiltered, poses, points).reshape(len(lowpasses), -1)
 
 
 def _noise_band(grid: Float, square: Callable[[int], float], hidden: Float, lowest_hz: float) -> range | None:
@@ -256,7 +274,8 @@ class _Spectrum(NamedTuple):
     frames: int
     beyond: int
     length: int
-    components: list[NDArray[np.complex128]]
+    tangents: Float
+    components: NDArray[np.complex128]
 
     @classmethod
     def of(cls, run: Float, settling: int) -> _Spectrum:
@@ -265,7 +284,8 @@ class _Spectrum(NamedTuple):
         count = _fast_length(len(run) + 2 * settling)
         beyond = (count - len(run) + 1) // 2
         local = _continued(multiply(conjugate(run[0]), run), beyond)[:count]
-        return cls(run[0].copy(), len(run), beyond, count, [np.fft.rfft(component) for component in local.T])
+        tangents = np.tan(np.pi * np.arange(count // 2 + 1) / count)
+        return cls(run[0].copy(), len(run), beyond, count, tangents, np.fft.rfft(local.T))
 
 
 class _Lowpass:
@@ -281,14 +301,17 @@ class _Lowpass:
         squared_radius = (1.0 - np.sqrt(2.0) * w + w**2) / (1.0 + np.sqrt(2.0) * w + w**2)
         self.settling = int(np.ceil(-2.0 * _SETTLED / np.log(squared_radius)))
 
+    def gain(self, run: _Spectrum) -> Float:
+        """Share of each frequency of a run that both passes let through."""
+        return np.asarray(1.0 / (1.0 + (run.tangents / self._tangent) ** 4))
+
     def __call__(self, run: _Spectrum) -> Float:
         """Filter one run of poses (N, 8), continued until the filter has settled, or farther."""
-        ratio = np.tan(np.pi * np.arange(run.length // 2 + 1) / run.length) / self._tangent
-        attenuation = 1.0 + ratio**4
+        gain = self.gain(run)
         inner = slice(run.beyond, run.beyond + run.frames)
         filtered = np.empty((8, run.frames))
         for row, component in zip(filtered, run.components, strict=True):
-            row[...] = np.fft.irfft(component / attenuation, run.length)[inner]
+            row[...] = np.fft.irfft(component * gain, run.length)[inner]
         poses: Float = filtered.T
         for start in range(0, run.frames, _BLOCK):  # which takes no memory but the result's
             part = slice(start, start + _BLOCK)
