@@ -51,8 +51,7 @@ def in_blocks(
     with np.errstate(all="ignore"):
         for start in range(0, count, BLOCK):
             part = slice(start, start + BLOCK)
-            block = result[:, part]
-            for out, row in zip(block, kernel(*(read(part) for read in readers)), strict=True):
+            for out, row in zip(result[:, part], kernel(*[read(part) for read in readers]), strict=True):
                 out[...] = row
     if len(shape) == 1:
         return result.T

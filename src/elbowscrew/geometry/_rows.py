@@ -134,6 +134,18 @@ def rotation_matrix(quat: Rows) -> list[Float]:
     ]
 
 
+def adjoint_blocks(Q: Rows) -> list[Float]:
+    """Rotation R of a pose and ``[d]x R`` of its origin d, both row after row."""
+    R, (x, y, z) = rotation_matrix(Q[:4]), position(Q)
+    first, second, third = R[:3], R[3:6], R[6:]
+    return [
+        *R,
+        *(y * b - z * a for a, b in zip(second, third, strict=True)),
+        *(z * b - x * a for a, b in zip(third, first, strict=True)),
+        *(x * b - y * a for a, b in zip(first, second, strict=True)),
+    ]
+
+
 def normalized(Q: Rows, least: float = 0.0) -> list[Float]:
     """Divide by the dual norm; NaN where the real part's is not more than `least`."""
     quotients = divide_rows(Q, row_length(Q[:4]), least)

@@ -7,7 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from elbowscrew.geometry import dual_quaternion, quaternion
+from elbowscrew.geometry import _rows, dual_quaternion
+from elbowscrew.geometry._blocks import in_blocks
 from elbowscrew.geometry._small_angle import divide, length
 from elbowscrew.geometry.arrays import Float
 
@@ -107,16 +108,11 @@ def adjoint(dual_quat: ArrayLike) -> Float:
     >>> adjoint([1, 0, 0, 0, 0, 0.5, 0, 0]) @ [0, 0, 3, 0, 0, 0] + 0.0
     array([ 0.,  0.,  3.,  0., -3.,  0.])
     """
-    quat, position = dual_quaternion.pose_from_dual_quat(dual_quat)
-    R = quaternion.rotation_matrix_from_quat(quat)
-    matrix = np.zeros((*R.shape[:-2], 6, 6))
-    matrix[..., :3, :3] = R
-    matrix[..., 3:, 3:] = R
-    # [d]x R written out: `np.cross` takes several times as long, and this is done for every frame of a fit.
-    x, y, z = np.moveaxis(position[..., None], -2, 0)
-    matrix[..., 3, :3] = y * R[..., 2, :] - z * R[..., 1, :]
-    matrix[..., 4, :3] = z * R[..., 0, :] - x * R[..., 2, :]
-    matrix[..., 5, :3] = x * R[..., 1, :] - y * R[..., 0, :]
+    shape = np.shape(dual_quat)[:-1]
+    blocks = in_blocks(_rows.adjoint_blocks, dual_quat, width=18).reshape(*shape, 2, 3, 3)
+    matrix = np.zeros((*shape, 6, 6))
+    matrix[..., :3, :3] = matrix[..., 3:, 3:] = blocks[..., 0, :, :]
+    matrix[..., 3:, :3] = blocks[..., 1, :, :]
     return matrix
 
 
@@ -154,7 +150,13 @@ def inverse_left_jacobian(twist: ArrayLike) -> Float:
     x[..., 3:, 3:] = x[..., :3, :3]
     second = x @ x
     fourth = second @ second
-    return np.asarray(np.eye(6) + x / 2.0 + second / 12.0 - fourth / 720.0 + fourth @ second / 30_240.0)
+    sixth = fourth @ second
+    x /= 2.0
+    x += np.eye(6)
+    for power, divisor in ((second, 12.0), (fourth, -720.0), (sixth, 30_240.0)):
+        power /= divisor
+        x += power
+    return x
 
 
 def integrate_twist(start: ArrayLike, twist: ArrayLike, time_step: ArrayLike) -> Float:

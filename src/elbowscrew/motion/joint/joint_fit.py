@@ -270,7 +270,9 @@ def _normal_equations(at: _Step, joint: Float, W: Float, weight: Float, screw: b
     square, weighted, own_pull, own = _across(residual, W_line, along)
     mixed = np.einsum("fip,fi->fp", WG, along)
     pull = np.einsum("fip,fi->fp", G, weighted)
-    information = np.einsum("f,fip,fiq->pq", weight, G, WG) - np.einsum("f,fp,fq->pq", weight / own, mixed, mixed)
+    # Factors are weighed beforehand: sums of three factors take twice as long, and come to the same.
+    information = np.einsum("fip,fiq->pq", weight[:, None, None] * G, WG)
+    information -= np.einsum("fp,fq->pq", (weight / own)[:, None] * mixed, mixed)
     gradient = weight @ (pull - mixed * (own_pull / own)[:, None])
     return _Equations(information, gradient, own_pull / own, mixed / own[:, None], residual, along, square)
 

@@ -238,7 +238,8 @@ def _reduced(mechanism: Mechanism, poses: Poses, weight: Float) -> _Reduced:
     square = across @ own
     # Where two numbers of a frame do one and the same, as the angles of parallel axes in one line: no step, not NaN.
     square = square + (1e-10 / max(k, 1)) * np.trace(square, axis1=-2, axis2=-1)[..., None, None] * np.eye(k)
-    covariance = np.linalg.inv(square)
+    # One number is not inverted as a matrix, which takes a call of LAPACK for each frame.
+    covariance = 1.0 / square if k == 1 and square.all() else np.linalg.inv(square)
     mixed = covariance @ (across @ rest)
     rest = rest - own @ mixed
     residual, shared = rest[..., 0], rest[..., 1:]
