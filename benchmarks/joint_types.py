@@ -1,7 +1,7 @@
 """Whether the search for two axes fails, which joint is told for which, and what the intervals cover.
 
     python benchmarks/joint_types.py [--quick] [--stated] [--seed N] [--trials N] [starts] [types] [pronation]
-        [coverage] [intervals] [angles]
+        [coverage] [intervals] [angles] [wander]
 
 Synthetic joints with both bodies' noise. Types: by noise, range and what real joints add, an axis that wanders by 5 deg
 and a cluster that moves on the bone by 4 deg and 5 mm; the noise's size is told to the choice with
@@ -16,14 +16,25 @@ import sys
 import time
 from collections import Counter
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "support"))
 
 import moving_joints as mj
-from cluster_noise import Noise, skin, smooth_skin, turning, wander, white
-from typed_noise import Kind, angles_held, joint_of, skin_of_both, typed_coverage
+from cluster_noise import Noise, seen, skin, smooth_skin, turning, wander, white
+from trials import LINE, START
+from typed_noise import (
+    AXIS2,
+    Kind,
+    angles_held,
+    angles_in_an_eight,
+    joint_of,
+    skin_of_both,
+    typed_coverage,
+    wandering_elbow,
+)
 
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry import quaternion as qn
@@ -34,6 +45,7 @@ from elbowscrew.motion.joint.likelihood import fit_mechanism
 from elbowscrew.motion.joint.poses import Poses
 from elbowscrew.motion.joint.starts import find_two_axes
 from elbowscrew.motion.joint.typed import identify_joint
+from elbowscrew.motion.screws.uncertainty import joint_covariance
 
 FRAMES = 200
 NOISES = ((0.1, 2e-4), (0.5, 1e-3))
@@ -46,7 +58,9 @@ TYPES = ("rigid", "hinge", "two_axes", "ball", "free")
 def main() -> None:
     """Print the tables in Markdown."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("parts", nargs="*", default=["starts", "types", "pronation", "coverage", "intervals", "angles"])
+    parser.add_argument(
+        "parts", nargs="*", default=["starts", "types", "pronation", "coverage", "intervals", "angles", "wander"]
+    )
     parser.add_argument("--quick", action="store_true")
     parser.add_argument("--seed", type=int, default=15)
     parser.add_argument("--stated", action="store_true", help="tell the choice of types how large the noise is")
@@ -67,6 +81,8 @@ def main() -> None:
         intervals(trials or (10 if options.quick else 60), options.seed)
     if "angles" in options.parts:
         angles(trials or (5 if options.quick else 30), options.seed)
+    if "wander" in options.parts:
+        wandering(trials or (3 if options.quick else 40), options.seed)
 
 
 def noises() -> dict[str, Noise]:
@@ -89,6 +105,76 @@ def angles(trials: int, seed: int) -> None:
             given, whole = angles_held(joint_of("two_axes", top_deg), noise, trials, seed=seed)
             cells = [", ".join(f"{share:.2f}" for share in shares) for shares in (given, whole)]
             print(f"| {top_deg:g} | {name} | {cells[0]} | {cells[1]} |", flush=True)
+
+
+WANDERS_DEG = ((0.0, 0.0), (1.5, 0.0), (3.0, 0.0), (6.0, 0.0), (0.0, 3.0))
+
+
+def wandering(trials: int, seed: int) -> None:
+    """Print how often one of two axes is told to wander, by how much, and whether the mean axes are in their cones."""
+    print(
+        "\n| deg | noise | tested | told of none | of axis 1 by 1.5, 3, 6 deg | of axis 2 by 3 deg | 6 deg found as |",
+        end="",
+    )
+    print(" unseen | held |\n" + 9 * "| --- " + "|")
+    for tops_deg in ((140.0, 80.0), (60.0, 60.0)):
+        for name, noise in {
+            "white 0.2 mm": white(),
+            "skin with the flexion, 0.5 mm": skin(5e-4),
+            "skin with the flexion, 5 mm": skin(5e-3),
+            "clusters turn, 0.2 deg": turning(np.radians(0.2)),
+            "clusters turn, 2 deg": turning(np.radians(2.0)),
+        }.items():
+            cells = [wander_cell(tops_deg, noise, sizes, trials, seed) for sizes in WANDERS_DEG]
+            told = [np.mean([one.told for one in cell], axis=0) if cell else np.full(2, np.nan) for cell in cells]
+            held = np.array([axis for cell in cells for one in cell if any(one.told) for axis in one.held])
+            unseen = np.median([one.unseen_deg for cell in cells for one in cell] or [(np.nan, np.nan)], axis=0)
+            sizes = [one.size_deg[0] for one in cells[3] if np.isfinite(one.size_deg[0])]
+            print(
+                f"| {tops_deg[0]:g}, {tops_deg[1]:g} | {name} | "
+                f"{np.mean([len(cell) for cell in cells]) / trials:.2f} | "
+                f"{told[0][0]:.2f}, {told[0][1]:.2f} | {', '.join(f'{share[0]:.2f}' for share in told[1:4])} | "
+                f"{told[4][1]:.2f} | {f'{np.median(sizes):.1f}' if sizes else ''} | "
+                f"{', '.join(f'{one:.2g}' for one in unseen)} | "
+                f"{f'{held.mean():.2f} of {held.size}' if held.size else ''} |",
+                flush=True,
+            )
+
+
+class ToldWander(NamedTuple):
+    """Of axis 1 and 2: told or not, how far, how far none would be seen, and whether the mean axis is in its cone."""
+
+    told: tuple[bool, ...]
+    size_deg: tuple[float, ...]
+    unseen_deg: tuple[float, ...]
+    held: tuple[bool, ...]
+
+
+def wander_cell(
+    tops_deg: tuple[float, float], noise: Noise, sizes_deg: tuple[float, float], trials: int, seed: int
+) -> list[ToldWander]:
+    """Of the trials in which both axes are told."""
+    course, truth = angles_in_an_eight(tops_deg), (LINE, dq.transform_lines(dq.conjugate(START), AXIS2))
+    rng, found = np.random.default_rng(seed), []
+    for _ in range(trials):
+        hinge = wandering_elbow(course, sizes_deg, rng)
+        case = seen(hinge, noise(hinge, rng))
+        covariance = joint_covariance(case.joint, *case.noise)
+        two = identify_joint(case.joint, covariance, case.joint[0], noise_known=True, clusters=case.clusters).two_axes
+        if two is None or not all(line.determined for line in two.lines):
+            continue
+        wanders = [line.wander for line in two.lines]
+        directions = two.axis1.direction_proximal, two.axis2.direction_distal
+        off = [mj.angle_between(mine, true) for mine, true in zip(directions, truth, strict=True)]
+        found.append(
+            ToldWander(
+                told=tuple(one is not None and one.significant for one in wanders),
+                size_deg=tuple(np.nan if one is None else float(np.degrees(one.tilt)) for one in wanders),
+                unseen_deg=tuple(45.0 if one is None else float(np.degrees(one.unseen_tilt)) for one in wanders),
+                held=tuple(far <= line.axis_cone for far, line in zip(off, two.lines, strict=True)),
+            )
+        )
+    return found
 
 
 def intervals(trials: int, seed: int) -> None:

@@ -105,6 +105,7 @@ CASES: dict[str, tuple[Callable[[], Recording], dict[str, Any]]] = {
     "unsigned": (USUAL, {"signed": "no"}),
     "ball": (ball, {}),
     "two axes": (two_axes_moving, {}),
+    "two axes, one wanders": (simulated(joint_type="two-axes", wander_deg=6.0, frames=300, inversion=140), {}),
     "ball joint": (ball_joint, {}),
     "no joint": (no_joint, {}),
     "astray": (astray, {}),
@@ -218,6 +219,13 @@ def single_axis(case: Case) -> str:
 
 def has_one(case: Case) -> bool:
     return single_axis(case) not in ("none", "stated otherwise")
+
+
+def sizes_of_wander(case: Case) -> list[float]:
+    """By how much each of two axes turns that wanders, deg."""
+    two = case.told.joint["two_axes"] or {"axis1": {"wander": None}, "axis2": {"wander": None}}
+    wanders = [two[name]["wander"] for name in ("axis1", "axis2")]
+    return [wander["size_deg"] for wander in wanders if wander is not None and wander["significant"]]
 
 
 def other_joint(case: Case) -> str:
@@ -428,6 +436,15 @@ DECISIONS: dict[str, tuple[Outcome, Sentences]] = {
             "wanders": f"As the axis turns by {(case.told.joint['wander'] or {}).get('size_deg') or 0.0:.2g}° over the "
             "range of the angle, its mean over the range is reported."
         },
+    ),
+    "wander of two": (
+        lambda case: "wanders" if sizes_of_wander(case) else "none",
+        lambda case: {
+            "wanders": f"As axis 1 turns by {sizes_of_wander(case)[:1][0]:.2g}° over the range of its angle, both axes "
+            "are reported as they are on the mean. The 95 % intervals"
+        }
+        if sizes_of_wander(case)
+        else {},
     ),
     "other joint": (
         other_joint,

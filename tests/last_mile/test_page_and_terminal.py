@@ -404,6 +404,7 @@ def texts_with_numbers(told: Told) -> Iterator[tuple[str, list[str]]]:
     if two is not None:
         names = [f"{name}{end}" for name in ("angle_between_deg", "distance_mm") for end in ("", "_low", "_high")]
         yield "The axes are", [dec(two[name], 1) for name in names]
+        yield "The angle θ mixes rotations about both axes", wanders_of_both(two)
     if ball is not None:
         within = [] if ball["radius95_mm"] is None else [dec(ball["radius95_mm"])]
         yield (
@@ -602,6 +603,18 @@ def anatomy_numbers(anatomy: Any) -> dict[str, list[str]]:
     }  # fmt: skip
 
 
+def wanders_of_both(two: dict[str, Any]) -> list[str]:
+    """The numbers of the sentences on the wander of each axis: those that wander come first."""
+    found, unseen = [], []
+    for k in (1, 2):
+        wander = two[f"axis{k}"]["wander"]
+        if wander["significant"]:
+            found += [str(k), *(dec(wander[f"size_{unit}"]) for unit in ("deg", "mm"))]
+        else:
+            unseen += [dec(wander["unseen_deg"]), str(k)]
+    return found + unseen
+
+
 def joint_axis_numbers(told: Told) -> list[str]:
     axis, found = told.summary["motion"]["joint_axis"], told.joint["joint_type"]
     if axis is not None:
@@ -629,6 +642,8 @@ def joint_axis_numbers(told: Told) -> list[str]:
             axis = axes[f"axis{k}"]
             told_axes += [str(k), *vec(axis[f"direction_in_{body}"], 4), f"{axis['cone95_deg']:.2g}"]
             told_axes += [dec(axis["range_deg"], 0)]
+            names = ("size_deg", "size_mm") if axis["wander"]["significant"] else ("unseen_deg",)
+            told_axes += [f"{axis['wander'][name]:.2g}" for name in names]
         return [*told_axes, dec(axes["angle_between_deg"], 1), dec(abs(axes["distance_mm"]), 1), "95"]
     ball = told.joint["ball"]
     within = [] if ball["radius95_mm"] is None else [f"{ball['radius95_mm']:.2g}"]

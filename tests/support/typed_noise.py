@@ -7,7 +7,7 @@ from typing import Literal
 
 import moving_joints as mj
 import numpy as np
-from cluster_noise import Held, Hinge, Noise, Seen, seen, white, with_rms_alone
+from cluster_noise import FRAMES_A_CYCLE, Held, Hinge, Noise, Seen, seen, white, with_rms_alone
 from numpy.typing import NDArray
 from trials import LINE, START
 
@@ -22,8 +22,8 @@ from elbowscrew.motion.joint.poses import Poses
 from elbowscrew.motion.joint.simple_types import Ball
 from elbowscrew.motion.joint.starts import _from_lines
 from elbowscrew.motion.joint.two_axes import TwoAxesMechanism, axes_geometry, geometry_slopes
+from elbowscrew.motion.joint.two_axes_told import axes_lines
 from elbowscrew.motion.joint.type_interval import Evidence, interval_of_type
-from elbowscrew.motion.joint.typed import _lines
 from elbowscrew.motion.screws.uncertainty import joint_covariance
 
 Kind = Literal["two_axes", "ball"]
@@ -122,7 +122,7 @@ def typed_coverage(
         radius.append(found[1])
         told.append([True, True])
         if isinstance(mechanism, TwoAxesMechanism):
-            one, two = (line.determined for line in _lines(mechanism, fit, START, interval))
+            one, two = (line.determined for line in axes_lines(mechanism, fit, START, interval))
             told[-1] = [one, one, two, two, one and two, one and two]
     names: tuple[str, ...] = ("center in the proximal body", "center in the distal body")
     if kind == "two_axes":
@@ -170,3 +170,46 @@ def angles_held(hinge: Hinge, noise: Noise, trials: int, *, seed: int) -> tuple[
         given.append(np.mean(off <= NORMAL_95 * own, axis=0))
         whole.append(np.mean(off <= NORMAL_95 * np.hypot(own, axes), axis=0))
     return np.mean(given, axis=0), np.mean(whole, axis=0)
+
+
+def angles_in_an_eight(tops_deg: tuple[float, float], frames: int = FRAMES_A_CYCLE) -> Float:
+    """Flexion out and back, and pronation that goes to and fro on each of both ways, (F, 2) radians."""
+    phase = np.arange(frames) * 2.0 * np.pi / FRAMES_A_CYCLE
+    courses = (1.0 - np.cos(phase), np.sin(2.0 * phase))
+    return np.stack([np.radians(0.5 * top) * one for top, one in zip(tops_deg, courses, strict=True)], axis=1)
+
+
+def wandering_elbow(angles: Float, wander_deg: tuple[float, float], rng: np.random.Generator) -> Hinge:
+    """Two axes that are `LINE` and `AXIS2` on the mean, each turning by so much in all with its own angle (F, 2).
+
+    The first in the proximal body, the second in the distal one, any way across itself.
+    """
+    back = dq.conjugate(START)
+    second = dq.transform_lines(back, AXIS2), dq.transform_points(back, POINT + APART * NORMAL)
+    sizes = [float(np.radians(size)) for size in wander_deg]
+    first = _about_a_wandering_axis(angles[:, 0], LINE, POINT, sizes[0], rng)
+    other = _about_a_wandering_axis(-angles[:, 1], *second, sizes[1], rng)
+    exact = dq.multiply(dq.multiply(first, START), dq.conjugate(other))
+    return Hinge(top_deg=float(np.degrees(np.ptp(angles[:, 0]))), exact=exact)
+
+
+def _about_a_wandering_axis(angle: Float, line: Float, point: Float, size: float, rng: np.random.Generator) -> Float:
+    """Poses (F, 8) of a body that turns about an axis through a point, the line itself in the middle of the range."""
+    steps = 1000
+    across = mj.unit(np.cross(line[:3], rng.normal(size=3)))
+    grid = np.linspace(angle.min(), angle.max(), steps + 1)
+    tilt = size * (np.arange(steps) + 0.5) / steps - 0.5 * size
+    h = np.cos(tilt)[:, None] * line[:3] + np.sin(tilt)[:, None] * np.cross(across, line[:3])
+    small = dq.exp(0.5 * (grid[1] - grid[0]) * np.concatenate([h, np.cross(point, h)], axis=1))
+    poses = [dq.exp(np.zeros(6))]
+    for one in small:
+        poses.append(dq.normalize(dq.multiply(one, poses[-1])))
+    table = dq.continuous_signs(np.stack(poses))
+
+    def at(where: Float) -> Float:
+        place = (where - grid[0]) / (grid[1] - grid[0])
+        low = np.clip(place.astype(int), 0, steps - 1)
+        step = dq.log(dq.multiply(dq.conjugate(table[low]), table[low + 1]))
+        return dq.multiply(table[low], dq.exp((place - low)[:, None] * step))
+
+    return dq.multiply(at(angle), dq.conjugate(at(np.zeros(1))[0]))

@@ -90,8 +90,21 @@ def _wander(found: WanderSummary | None) -> str:
         return ""
     if not found["significant"]:
         return f"; the axis stays: a wander below {in_digits(found['unseen_deg'])} deg would not be seen"
+    return f"; it wanders by {_size(found)} over the range (axis_path.csv)"
+
+
+def _over_which(found: WanderSummary | None) -> str:
+    """How far one of two axes goes with its angle, or what would not be seen."""
+    if found is None or found["size_deg"] is None or found["unseen_deg"] is None:
+        return ""
+    if not found["significant"]:
+        return f", over which a wander below {in_digits(found['unseen_deg'])} deg would not be seen"
+    return f", over which it wanders by {_size(found)}"
+
+
+def _size(found: WanderSummary) -> str:
     shift = "" if found["size_mm"] is None else f" and {in_digits(found['size_mm'])} mm"
-    return f"; it wanders by {in_digits(found['size_deg'])} deg{shift} over the range (axis_path.csv)"
+    return f"{in_digits(found['size_deg'] or 0.0)} deg{shift}"
 
 
 def _second_rotation(found: SecondRotationSummary | None) -> str:
@@ -144,7 +157,9 @@ def _one_of_two(axis: JointLineSummary, body: Literal["proximal", "distal"]) -> 
     direction = vector_text(axis["direction_in_proximal"] if number == 1 else axis["direction_in_distal"], 4)
     if not axis["determined"]:
         return f"axis {number} undetermined, {axis['range_deg']:.0f} deg about it"
+    wander = axis["wander"]
+    mean = "mean axis" if wander is not None and wander["significant"] else "axis"
     return (
-        f"axis {number} ({direction}) in the {body} body within {in_digits(axis['cone95_deg'])} deg, "
-        f"{axis['range_deg']:.0f} deg about it"
+        f"{mean} {number} ({direction}) in the {body} body within {in_digits(axis['cone95_deg'])} deg, "
+        f"{axis['range_deg']:.0f} deg about it{_over_which(wander)}"
     )

@@ -57,7 +57,9 @@ def _joint(summary: Summary, joint: JointSummary) -> Iterator[Fact]:
     if two is not None:
         for name, line in (("axis 1", two["axis1"]), ("axis 2", two["axis2"])):
             known = _within(line["cone95_deg"], line["radius95_mm"]) if line["determined"] else "not determined"
-            yield name, f"{_line(line['direction'], line['point_mm'])} {where}; {known}"
+            wander = line["wander"]
+            mean = " (mean of an axis that wanders)" if wander is not None and wander["significant"] else ""
+            yield name, f"{_line(line['direction'], line['point_mm'])} {where}{mean}; {known}"
     elif ball is not None:
         radius = ball["radius95_mm"]
         known = "not known how surely" if radius is None else f"95 % within {brief(radius)} mm"

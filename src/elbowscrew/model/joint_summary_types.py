@@ -71,13 +71,13 @@ class FitSummary(EstimateSummary):
 
 
 class WanderSummary(TypedDict):
-    """How far the joint's axis moves while the joint goes from one end of its range to the other."""
+    """How far an axis moves while its joint goes from one end of its range to the other."""
 
     size_deg: float | None
     """By how much its direction turns."""
     size_sd_deg: float | None
     size_mm: float | None
-    """By how much it moves across itself, at its point nearest the distal body's origin at the reference."""
+    """By how much it moves across itself: one of two axes at its point, one alone nearest the distal body's origin."""
     size_sd_mm: float | None
     unseen_deg: float | None
     """How far an axis may turn without being distinguishable from a fixed one."""
@@ -139,6 +139,8 @@ class JointLineSummary(EstimateSummary):
     """Median standard deviation of the rotation of a frame."""
     determined: bool
     """Whether the motion shows it well enough to be stated."""
+    wander: WanderSummary | None
+    """With its own angle, in its own body; where one of two axes wanders both are means. None where not known."""
 
 
 class TwoAxesSummary(TypedDict):

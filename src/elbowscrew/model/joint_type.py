@@ -13,6 +13,7 @@ from elbowscrew.choices import StatedJoint
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.sensitivity import NORMAL_95
 from elbowscrew.model.array_record import ArrayRecord
+from elbowscrew.model.joint_axis import AxisWander
 from elbowscrew.model.joint_coordinates import JointCoordinates
 from elbowscrew.model.table_record import TableRecord
 
@@ -70,6 +71,9 @@ class JointLine(ArrayRecord):
     determined : bool
         Whether the range is 12 times that, times the root of how many frames count as one, the direction known to
         10 deg, and the two axes not drawn together by errors.
+    wander : AxisWander or None
+        How far it moves with its own angle in the body it is fixed in; where it does, the line is its mean. None where
+        it is not tested, as where one of two axes is not determined, or where 45 deg would not be seen.
     """
 
     direction_proximal: Float
@@ -84,6 +88,7 @@ class JointLine(ArrayRecord):
     range: float
     angle_sd: float
     determined: bool
+    wander: AxisWander | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -116,6 +121,8 @@ class TwoAxes(ArrayRecord):
     order_determined : bool
         Whether the motion tells which of both is the one in the proximal body: a motion about one at a time, from one
         and the same pose, does not.
+    only_wander_doubted : bool
+        Whether the type is approximate for no other reason than that an axis wanders: it has two axes all the same.
     """
 
     axis1: JointLine
@@ -127,11 +134,17 @@ class TwoAxes(ArrayRecord):
     foot2: Measure | None
     offset: Measure | None
     order_determined: bool = True
+    only_wander_doubted: bool = False
 
     @property
     def lines(self) -> tuple[JointLine, JointLine]:
         """Both axes."""
         return self.axis1, self.axis2
+
+    @property
+    def wanders(self) -> bool:
+        """Whether one of both wanders."""
+        return any(line.wander is not None and line.wander.significant for line in self.lines)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -209,7 +222,8 @@ class JointType(ArrayRecord):
         What the cone of axis 1, or the radius of the center, stands on: the markers' own motion, the residuals'
         spectrum, or blocks of the motion; None of other types.
     coordinates : JointCoordinates or None
-        The motion that the joint allows; None of a joint without angles.
+        The motion that the joint allows; None of a joint without angles. Its axes are those that leave least, and not
+        the means of axes that wander.
     angle, angle_sd : ndarray, shape (N, k)
         Of each frame, rad, from the reference pose: one of a hinge, two of two axes, the rotation vector of a ball in
         the proximal body's axes, none of a rigid joint. NaN where there is no pose.

@@ -15,10 +15,7 @@ def joint_sentences(view: TrialView) -> tuple[str, ...]:
     return tuple(_sentences(view))
 
 
-_TWO_AXES: Final = (
-    " Seen from the other segment an axis has the reference pose’s error, too. A wander of either is not tested, and "
-    "would take both beyond their intervals."
-)
+_TWO_AXES: Final = "Seen in the other segment an axis has the reference pose’s error."
 
 
 def _sentences(view: TrialView) -> Iterator[str]:
@@ -42,9 +39,10 @@ def _sentences(view: TrialView) -> Iterator[str]:
     yield from _intervals(joint, located=view.located)
     if two is not None or ball is not None:
         mixed = "both axes" if two is not None else "all directions"
+        beside = () if two is None else (_TWO_AXES, *_wander_of_each(two))
         yield (
-            f"The angle θ mixes rotations about {mixed}; the joint’s own angles stand in joint_angles.csv and in the "
-            f"figure joint_angles.{_TWO_AXES if two is not None else ''}"
+            f"The angle θ mixes rotations about {mixed}; the joint’s own angles stand in joint_angles.csv and the "
+            f"{' '.join(('figure joint_angles.', *beside))}"
         )
     side = view.summary["trial"]["joint"]["side"]
     if two is not None and side is not None and view.named_joint.name == "elbow":
@@ -65,6 +63,28 @@ def _apart(two: TwoAxesSummary) -> str:
         f"The axes are {number(two['angle_between_deg'], 1)} deg {limits} apart in direction, and "
         f"{number(two['distance_mm'], 1)} mm {far} along their common normal."
     )
+
+
+def _wander_of_each(two: TwoAxesSummary) -> Iterator[str]:
+    """Say of each axis that is told how far it wanders, or what would not be seen."""
+    axes = (("axis 1", two["axis1"]), ("axis 2", two["axis2"]))
+    told = [(name, axis["wander"]) for name, axis in axes if axis["determined"]]
+    for name, wander in told:
+        if wander is not None and wander["significant"]:
+            yield (
+                f"{name.capitalize()} wanders by {number(wander['size_deg'])} deg{_and_mm(wander['size_mm'])} over its "
+                "range: both axes are given as they are on the mean."
+            )
+    unseen = [
+        f"{number(wander['unseen_deg'])} deg of {name}"
+        for name, wander in told
+        if wander is not None and not wander["significant"]
+    ]
+    if unseen:
+        yield f"A wander below {' or '.join(unseen)} may exceed the intervals unseen."
+    unknown = [name for name, wander in told if wander is None]
+    if unknown:
+        yield f"Whether {' or '.join(unknown)} wanders with its angle the motion does not tell."
 
 
 def _beside_a_hinge(joint: JointSummary) -> Iterator[str]:

@@ -7,7 +7,7 @@ from typing import Final
 
 from elbowscrew.choices import JOINT_TYPE_WORDS
 from elbowscrew.model.anatomy import BonyJoint
-from elbowscrew.model.joint_summary_types import JointSummary, JointTypeSummary, NoiseOfBodies
+from elbowscrew.model.joint_summary_types import JointSummary, JointTypeSummary, NoiseOfBodies, TwoAxesSummary
 from elbowscrew.model.summary_types import ModelSummary, TrialSummary
 from elbowscrew.quantities import rounded
 from elbowscrew.report.bones_words import bones_methods
@@ -268,9 +268,21 @@ def _other_joint(joint: JointSummary, *, located: bool, robust: bool) -> Iterato
             else ", so that θ mixes its rotations; its own angles are given for each frame."
         )
     )
+    if joint["two_axes"] is not None:
+        yield from _wander_of_two(joint["two_axes"])
     if kind["interval_method"] is not None:
         whose = "marker clusters'" if located else "sensors'"
         yield f"The 95 % intervals are those of the {whose} frames, {kind['interval_method']}."
+
+
+def _wander_of_two(axes: TwoAxesSummary) -> Iterator[str]:
+    turns = [
+        f"axis {number} turns by {rounded(wander['size_deg'])}°"
+        for number, wander in enumerate((axes["axis1"]["wander"], axes["axis2"]["wander"]), start=1)
+        if wander is not None and wander["significant"] and wander["size_deg"] is not None
+    ]
+    if turns:
+        yield f"As {' and '.join(turns)} over the range of its angle, both axes are reported as they are on the mean."
 
 
 def _left(kind: JointTypeSummary, *, located: bool) -> Iterator[str]:

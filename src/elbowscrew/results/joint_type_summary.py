@@ -183,6 +183,7 @@ def _line(line: JointLine, frame: _Frame) -> JointLineSummary:
         "range_deg": known(_DEGREES * line.range),
         "angle_sd_deg": known(_DEGREES * line.angle_sd),
         "determined": determined,
+        "wander": _wander(line.wander),
     }
 
 

@@ -13,11 +13,14 @@ import pytest
 from scipy.ndimage import gaussian_filter1d
 from trials import joint_poses
 
-from elbowscrew import Recording, RigidBody, Settings, analyze, read_recording, simulate_trial
+from elbowscrew import Analysis, Recording, RigidBody, Settings, analyze, read_recording, simulate_trial
 from elbowscrew.cli import main
 from elbowscrew.cli.render import analysis_table
+from elbowscrew.cli.render_joint import joint_axis_text
 from elbowscrew.geometry import dual_quaternion as dq
+from elbowscrew.interface.facts import facts
 from elbowscrew.motion.joint.typed import identify_joint
+from elbowscrew.motion.movements.course import two_axes_of
 from elbowscrew.plots.joint_type import joint_text
 from elbowscrew.report.joint_words import joint_sentences
 from elbowscrew.results.joint_summary import joint_summary
@@ -310,3 +313,78 @@ def test_error_bars_of_assumed_markers_are_warned_of(real_data: Path, factor: fl
     if said is not None:
         assert analysis.joint_axis.best is not None
         assert float(said[1]) == pytest.approx(analysis.joint_axis.best.noise_ratio, abs=0.051)
+
+
+@pytest.fixture(scope="module")
+def wandering() -> Analysis:
+    """An elbow whose first axis tilts by 3 deg from the start to the top, and turns by more against itself."""
+    return analyze(simulate_trial(joint_type="two-axes", wander_deg=3.0, seed=3).recording)
+
+
+def test_an_axis_that_wanders_is_told_wherever_two_axes_are(wandering: Analysis) -> None:
+    told = joint_summary(wandering)
+    two = told["two_axes"]
+    assert two is not None
+    one, other = two["axis1"]["wander"], two["axis2"]["wander"]
+    assert one is not None
+    assert other is not None
+    assert (one["significant"], other["significant"]) == (True, False)
+    assert one["size_deg"] == pytest.approx(4.1, abs=0.5)
+    assert told["wander"] is None
+    deg, mm = f"{one['size_deg']:.2g}", f"{one['size_mm']:.2g}"
+    kind = told["joint_type"]
+    assert (kind["type"], kind["status"]) == ("two_axes", "approximate")
+    assert kind["reason"] == f"the noise of the poses explains what it leaves; axis 1 wanders by {deg} deg and {mm} mm"
+    summary = summary_from_analysis(wandering)
+    terminal = joint_axis_text(summary["motion"], located=True)
+    assert terminal.startswith("mean axis 1 (")
+    assert f"deg about it, over which it wanders by {deg} deg and {mm} mm; axis 2 (" in terminal
+    unseen = f"{other['unseen_deg']:.2g} deg would not be seen; "
+    assert f"deg about it, over which a wander below {unseen}" in terminal
+    sentences = joint_sentences(view_of_analysis(wandering, summary, told))
+    here, there = f"{one['size_deg']:.2f} deg", f"{one['size_mm']:.2f} mm"
+    below = f"{other['unseen_deg']:.2f} deg"
+    assert next(sentence for sentence in sentences if "θ mixes" in sentence).endswith(
+        f" Axis 1 wanders by {here} and {there} over its range: both axes are given as they are on the mean. A wander "
+        f"below {below} of axis 2 may exceed the intervals unseen."
+    )
+    said = dict(facts(summary, told))
+    assert " (mean of an axis that wanders); 95 % within " in said["axis 1"]
+    assert "mean of" not in said["axis 2"]
+    # Nearer than the axis at either end, which is 3 deg from the other, and twice that about itself.
+    assert degrees_off(two["axis1"]["direction_in_proximal"], (0.986, 0.104, -0.131)) < 4.0
+
+
+def test_what_is_not_known_of_a_wander_is_not_said(wandering: Analysis) -> None:
+    """Where 45 deg would not be seen the page says so, the terminal nothing; of an axis that is open nobody speaks."""
+    found = wandering.joint_type
+    assert found is not None
+    two = found.two_axes
+    assert two is not None
+    axis1, axis2 = replace(two.axis1, wander=None), replace(two.axis2, wander=None, determined=False)
+    one = replace(wandering, joint_type=replace(found, two_axes=replace(two, axis1=axis1, axis2=axis2)))
+    summary = summary_from_analysis(one)
+    assert "over which" not in joint_axis_text(summary["motion"], located=True)
+    told = " ".join(joint_sentences(view_of_analysis(one, summary, joint_summary(one))))
+    assert told.endswith(" Whether axis 1 wanders with its angle the motion does not tell.")
+    assert "A wander below" not in told
+    open_too = replace(two, axis1=axis1, axis2=replace(axis2, determined=True))
+    one = replace(wandering, joint_type=replace(found, two_axes=open_too))
+    told = " ".join(joint_sentences(view_of_analysis(one, summary_from_analysis(one), joint_summary(one))))
+    assert told.endswith(" Whether axis 1 or axis 2 wanders with its angle the motion does not tell.")
+
+
+def test_cuts_are_on_the_first_angle_where_an_axis_wanders(wandering: Analysis) -> None:
+    """It has two axes all the same; and a filter moves no cut, though the angles that are told are of the mean axes."""
+    found = wandering.joint_type
+    assert found is not None
+    assert found.two_axes is not None
+    assert found.two_axes.only_wander_doubted
+    assert two_axes_of(found) is found.coordinates
+    doubted = replace(found, two_axes=replace(found.two_axes, only_wander_doubted=False))
+    assert two_axes_of(doubted) is None
+    recording = simulate_trial(joint_type="two-axes", wander_deg=3.0, seed=3).recording
+    for lowpass in (4.0, 8.0):
+        filtered = analyze(recording, Settings(lowpass_hz=lowpass)).repetitions
+        for name in ("start_time_s", "end_time_s"):
+            assert getattr(filtered, name) == pytest.approx(getattr(wandering.repetitions, name), abs=0.002)

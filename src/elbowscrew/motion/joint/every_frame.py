@@ -150,6 +150,16 @@ def reference_numbers(mechanism: Mechanism, frames: Everywhere, reference: Float
     return OwnNumbers(fit.mechanism.frames, share * fit.own_covariance, fit.own_by_shared, fit.residual)
 
 
+def near_zero(angle: Float) -> Float:
+    """Take off the whole turns that the frame nearest the reference pose has."""
+    known = angle[np.isfinite(angle).all(axis=1)]
+    if not known.size:
+        return angle
+    turns = np.round(known / (_TURN))
+    nearest = np.argmin(np.sum(np.abs(known - _TURN * turns), axis=1))
+    return np.asarray(angle - _TURN * turns[nearest])
+
+
 def _settled_block(mechanism: Mechanism, frames: Everywhere, rows: Index) -> OwnNumbers:
     fit = settled(mechanism, frames.poses(rows))
     return OwnNumbers(fit.mechanism.frames, fit.own_covariance, fit.own_by_shared, fit.residual)

@@ -76,4 +76,9 @@ def shared_covariance(fit: Fit[Mechanism], *, noise_known: bool) -> Float:
 
 def frames_that_count_as_one(fit: Fit[Mechanism]) -> float:
     """Integrated autocorrelation of the residuals: 1 for white noise."""
-    return _integrated_autocorrelation(fit.whitened * np.sqrt(fit.weight)[:, None])
+    return residuals_that_count_as_one(fit.whitened * np.sqrt(fit.weight)[:, None])
+
+
+def residuals_that_count_as_one(whitened: Float) -> float:
+    """The same of whitened residuals (F, k), weighed."""
+    return _integrated_autocorrelation(whitened)

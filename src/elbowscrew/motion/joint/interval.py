@@ -145,6 +145,18 @@ class JointInterval:
     told: tuple[int, ...] | None = None
     nearby: tuple[Nearby, ...] = ()
 
+    def of_first(self, count: int) -> JointInterval:
+        """Of the first numbers alone, whatever the others are, where all are told."""
+        if self.residuals is None:
+            return self
+        kept = np.eye(self.residuals.part.shape[-1])[:count]
+        return JointInterval(
+            markers=None if self.markers is None else self.markers.of(kept),
+            residuals=self.residuals.of(kept),
+            blocks=None if self.blocks is None else self.blocks.of(kept),
+            skin=None if self.skin is None else kept @ self.skin @ kept.T,
+        )
+
     def _of_told(self, rows: Float) -> Float:
         return rows if self.told is None else rows[..., list(self.told)]
 

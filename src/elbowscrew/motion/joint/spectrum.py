@@ -83,6 +83,14 @@ class ResidualSpectrum(NamedTuple):
     part: Float
     part_freedom: Float
 
+    def of(self, rows: Float) -> ResidualSpectrum:
+        """What it says of ``rows @ x``, rows of shape (k, P)."""
+        return self._replace(
+            white=self.white.of(rows),
+            colored=None if self.colored is None else self.colored.of(rows),
+            part=rows @ self.part @ rows.T,
+        )
+
     def radius(self, rows: Float, level: float) -> float:
         """Radius that holds the error of ``rows @ x``: the larger of both, where there are two."""
         white = self.white.of(rows).radius(level)

@@ -3,44 +3,39 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from typing import Final, Literal
 
 import numpy as np
 
-from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry.arrays import Float
-from elbowscrew.geometry.sensitivity import NORMAL_95
 from elbowscrew.model.joint_coordinates import JointCoordinates
-from elbowscrew.model.joint_type import BallJoint, JointLine, JointType, Measure, SecondRotation, TwoAxes
+from elbowscrew.model.joint_type import BallJoint, JointType, SecondRotation, TwoAxes
 from elbowscrew.motion.joint.choice import Choice, choose_type
-from elbowscrew.motion.joint.contest import LARGEST_AXIS_SD, LEAST_RANGE_IN_SD, RMS_TO_RANGE, middle_range
+from elbowscrew.motion.joint.contest import RMS_TO_RANGE
 from elbowscrew.motion.joint.coordinates import coordinates_of
-from elbowscrew.motion.joint.every_frame import Everywhere, FrameNumbers, numbers_everywhere, reference_numbers
-from elbowscrew.motion.joint.fitting import Fitted, frames_that_count_as_one, shared_covariance
-from elbowscrew.motion.joint.interval import ClusterMotion, JointInterval, Method, SkinMotion, pose_radii
+from elbowscrew.motion.joint.every_frame import (
+    Everywhere,
+    FrameNumbers,
+    near_zero,
+    numbers_everywhere,
+    reference_numbers,
+)
+from elbowscrew.motion.joint.fitting import Fitted, shared_covariance
+from elbowscrew.motion.joint.interval import ClusterMotion, JointInterval, Method, SkinMotion
 from elbowscrew.motion.joint.likelihood import Fit, Mechanism, fit_mechanism, refined
-from elbowscrew.motion.joint.lines import Z_LINE, nearest_points
+from elbowscrew.motion.joint.lines import nearest_points
 from elbowscrew.motion.joint.poses import Poses
 from elbowscrew.motion.joint.robust_fit import fit_robustly, refined_robustly
 from elbowscrew.motion.joint.simple_types import Ball, OneAxis
-from elbowscrew.motion.joint.two_axes import (
-    LARGEST_UNDONE,
-    SHIFTS,
-    TILTS,
-    TwoAxesMechanism,
-    angle_sd,
-    axes_geometry,
-    geometry_slopes,
-    undone_share,
-)
-from elbowscrew.motion.joint.type_interval import Evidence, interval_of_type, largest_tilt_sd
+from elbowscrew.motion.joint.two_axes import TILTS, TwoAxesMechanism
+from elbowscrew.motion.joint.two_axes_told import at_feet, axes_lines, between_axes, oriented, told_axes
+from elbowscrew.motion.joint.type_interval import Evidence, interval_of_type
+from elbowscrew.motion.joint.wander_of_two import wander_of_two
 
 _MOST_FRAMES: Final = 5000
-_PARALLEL: Final = np.radians(5.0)
-_SURE: Final = 3.0
 _SHARES_THE_HINGE: Final = 1.5
 _LEAST_BESIDE: Final = np.radians(45.0)
-_LARGEST_SD_AT_ENDS: Final = np.radians(15.0)
 
 
 def identify_joint(
@@ -107,27 +102,9 @@ def identify_joint(
     if not fit.frame_freedom:  # nothing is left that could tell of the noise
         scale = 1.0 if noise_known else np.nan
     if isinstance(mechanism, TwoAxesMechanism):
-        start = reference_numbers(mechanism, everywhere, reference)
-        at = _oriented(mechanism.zeroed(start.own[0]), left=left, located=poses.located)
-        written = fit_mechanism(at, most, iterations=0, weight=fit.weight)
-        interval = interval_of_type(written, most, evidence.at(rows), np.zeros(2))
-        every = numbers_everywhere(at, everywhere, reference, interval)
-        every = every._replace(angle=_near_zero(every.angle))
-        allowed = coordinates_of(replace(at, frames=np.zeros((1, 2))), reference)
-        carried = everywhere.reference_covariance
-        two = _two_axes(
-            written,
-            reference,
-            interval,
-            None if carried is None else scale * carried,
-            noise_known=noise_known,
-            order_determined=choice.order_told,
-        )
-        method = interval.decided_by(TILTS[0])
-        if choice.status == "determined" and not all(line.determined for line in two.lines):
-            reason = f"{choice.reason}; errors that go together are too large to tell both directions"
-            choice = choice._replace(status="approximate", reason=reason)
-        return _result(choice, every, scale, coordinates=allowed, two_axes=two, decided_by=method)
+        at = oriented(_counted_from(mechanism, everywhere, reference), left=left, located=poses.located)
+        told = fit_mechanism(at, most, iterations=0, weight=fit.weight)
+        return _with_two_axes(choice, told, most, evidence.at(rows), everywhere, reference, scale)
     start = reference_numbers(mechanism, everywhere, reference)
     allowed = coordinates_of(replace(mechanism, frames=start.own), reference)
     every = numbers_everywhere(mechanism, everywhere, reference)
@@ -141,12 +118,67 @@ def identify_joint(
         method = interval.decided_by(np.eye(6)[:3])
         return _result(choice, every, scale, coordinates=allowed, ball=center, decided_by=method)
     if isinstance(mechanism, OneAxis):
-        angle = _near_zero(every.angle)
+        angle = near_zero(every.angle)
         sense = 1.0 if np.nanmax(angle) >= -np.nanmin(angle) else -1.0
         second = _second_rotation(choice, poses, reference, evidence)
         allowed = None if allowed is None else replace(allowed, axis=sense * allowed.axis)
         return _result(choice, every._replace(angle=sense * angle), scale, coordinates=allowed, second=second)
     return _result(choice, every, scale)
+
+
+def _with_two_axes(
+    choice: Choice,
+    fit: Fit[TwoAxesMechanism],
+    poses: Poses,
+    evidence: Evidence,
+    everywhere: Everywhere,
+    reference: Float,
+    scale: float,
+) -> JointType:
+    """Tell two axes; where one of them wanders both as they are on the mean, which the fit's are not."""
+    at = fit.mechanism
+    interval = interval_of_type(fit, poses, evidence, np.zeros(2))
+    # Of axes that stay the fit's leave least, where one of them wanders, too: so they are for what is between poses.
+    allowed = coordinates_of(replace(at, frames=np.zeros((1, 2))), reference)
+    carried = everywhere.reference_covariance
+    tell = partial(
+        told_axes,
+        fit=fit,
+        reference=reference,
+        carried=None if carried is None else scale * carried,
+        noise_known=evidence.noise_known,
+        order_determined=choice.order_told,
+    )
+    two = tell(at, interval=interval)
+    if poses.located and all(line.determined for line in two.lines):
+        found = wander_of_two(fit, poses, evidence)
+        if found.significant:
+            mean = at.moved(found.step, fit.own_by_shared @ found.step)
+            at = at_feet(_counted_from(mean, everywhere, reference), located=True)
+            about = fit_mechanism(at, poses, iterations=0, weight=fit.weight)
+            beside = wander_of_two(about, poses, evidence)
+            at, interval, scale = about.mechanism, beside.interval, max(scale, about.variance)
+            two = replace(
+                tell(at, interval=interval),
+                covariance=beside.covariance,
+                only_wander_doubted=choice.status == "determined",
+            )
+            status = "approximate" if choice.status == "determined" else choice.status
+            choice = choice._replace(status=status, reason=f"{choice.reason}; {found.words}")
+        lines = [replace(line, wander=wander) for line, wander in zip(two.lines, found.each, strict=True)]
+        two = replace(two, axis1=lines[0], axis2=lines[1])
+    if choice.status == "determined" and not all(line.determined for line in two.lines):
+        reason = f"{choice.reason}; errors that go together are too large to tell both directions"
+        choice = choice._replace(status="approximate", reason=reason)
+    every = numbers_everywhere(at, everywhere, reference, interval)
+    every = every._replace(angle=near_zero(every.angle))
+    decided_by = interval.decided_by(TILTS[0])
+    return _result(choice, every, scale, coordinates=allowed, two_axes=two, decided_by=decided_by)
+
+
+def _counted_from(at: TwoAxesMechanism, everywhere: Everywhere, reference: Float) -> TwoAxesMechanism:
+    """With angles from those of the reference pose."""
+    return at.zeroed(reference_numbers(at, everywhere, reference).own[0])
 
 
 def _result(
@@ -180,138 +212,6 @@ def _result(
     )
 
 
-def _near_zero(angle: Float) -> Float:
-    """Take off the whole turns that the frame nearest the reference pose has."""
-    known = angle[np.isfinite(angle).all(axis=1)]
-    if not known.size:
-        return angle
-    turns = np.round(known / (2.0 * np.pi))
-    nearest = np.argmin(np.sum(np.abs(known - 2.0 * np.pi * turns), axis=1))
-    return np.asarray(angle - 2.0 * np.pi * turns[nearest])
-
-
-def _oriented(at: TwoAxesMechanism, *, left: bool, located: bool) -> TwoAxesMechanism:
-    """Axis 1 with its largest excursion positive; axis 2 toward the joint from the distal body, of a left side away.
-
-    The origins are put on the feet of the common normal, where the positions of both axes are of interest; of parallel
-    axes, which have none, and whose second is given the sense of its excursion, nearest the bodies' origins. Where no
-    positions were measured the second has that sense, too.
-    """
-    angle = _near_zero(at.frames)
-    senses = np.where(angle.max(axis=0) >= -angle.min(axis=0), 1.0, -1.0)
-    geometry = axes_geometry(at)
-    parallel = min(geometry.angle, np.pi - geometry.angle) < _PARALLEL
-    if located and not parallel:
-        senses[1] = (1.0 if geometry.foot2 >= 0.0 else -1.0) * (-1.0 if left else 1.0)
-    at = at.turned(float(senses[0]), float(senses[1]))
-    first, second = _to_origin(at.proximal), _to_origin(at.distal)
-    if parallel or not located:
-        return at.slid(first, second)
-    geometry = axes_geometry(at)
-    return at.slid(first + geometry.foot1, second + geometry.foot2)
-
-
-def _to_origin(pose: Float) -> float:
-    """How far along the z axis of a pose the point nearest the body's origin is."""
-    return -float(dq.pose_from_dual_quat(pose)[1] @ dq.transform_lines(pose, Z_LINE)[:3])
-
-
-def _two_axes(
-    fit: Fit[TwoAxesMechanism],
-    reference: Float,
-    interval: JointInterval,
-    carried: Float | None,
-    *,
-    noise_known: bool,
-    order_determined: bool,
-) -> TwoAxes:
-    at = fit.mechanism
-    geometry = axes_geometry(at)
-    lines = _lines(at, fit, reference, interval, carried)
-    between, parallel = _between(at, interval)
-    sd = [interval.radius(row[None]) / NORMAL_95 for row in geometry_slopes(at)]
-    determined = all(line.determined for line in lines)
-    if not determined and not order_determined:  # whose axis the one is that seems known is open, and so what it is
-        lines = (replace(lines[0], determined=False), replace(lines[1], determined=False))
-    if not determined:
-        sd = [float("nan")] * len(sd)  # how two axes stand to each other is no better known than they are
-    return TwoAxes(
-        axis1=lines[0],
-        axis2=lines[1],
-        covariance=shared_covariance(fit, noise_known=noise_known),
-        angle_between=Measure(value=between, sd=sd[0]),
-        distance=None if parallel else Measure(value=geometry.distance, sd=sd[1]),
-        foot1=None if parallel else Measure(value=geometry.foot1, sd=sd[2]),
-        foot2=None if parallel else Measure(value=geometry.foot2, sd=sd[3]),
-        offset=Measure(value=geometry.offset, sd=sd[4]) if parallel else None,
-        order_determined=order_determined and determined,
-    )
-
-
-def _between(at: TwoAxesMechanism, interval: JointInterval) -> tuple[float, bool]:
-    """Angle (rad) between the axes, 90 deg at most, and whether they count as parallel.
-
-    An angle that is hardly known makes no axes parallel, so that the interval's own ends have no say here.
-    """
-    angle = axes_geometry(at).angle
-    folded = min(angle, np.pi - angle)
-    sd = replace(interval, nearby=()).radius(geometry_slopes(at)[:1]) / NORMAL_95
-    return folded, folded < max(_PARALLEL, _SURE * sd)
-
-
-def _lines(
-    at: TwoAxesMechanism,
-    fit: Fit[Mechanism],
-    reference: Float,
-    interval: JointInterval,
-    carried: Float | None = None,
-) -> tuple[JointLine, JointLine]:
-    """Both axes; `carried` (6, 6) is the reference pose's covariance, in the distal body's frame."""
-    deviation = angle_sd(fit)
-    # Frames whose errors go together tell an axis no better than the few that count.
-    least = LEAST_RANGE_IN_SD * np.sqrt(frames_that_count_as_one(fit))
-    poses = [
-        (at.proximal, dq.multiply(dq.conjugate(reference), at.proximal)),
-        (dq.multiply(reference, at.distal), at.distal),
-    ]
-    apart = undone_share(at) <= LARGEST_UNDONE or _between(at, interval)[1]
-    linear = replace(interval, nearby=())
-    lines = []
-    for k, (proximal, distal) in enumerate(poses):
-        tilt_sd = largest_tilt_sd(interval, TILTS[k : k + 1])
-        known = largest_tilt_sd(linear, TILTS[k : k + 1]) <= LARGEST_AXIS_SD and tilt_sd <= _LARGEST_SD_AT_ENDS
-        reach = middle_range(at.frames[:, k])
-        direction, point = dq.transform_lines(distal, Z_LINE)[:3], dq.pose_from_dual_quat(distal)[1]
-        cone, radius = interval.radius(TILTS[k]), interval.radius(SHIFTS[k])
-        by_pose = (0.0, 0.0) if carried is None else _carried_radii(carried, direction, point)
-        lines.append(
-            JointLine(
-                direction_proximal=dq.transform_lines(proximal, Z_LINE)[:3],
-                point_proximal=dq.pose_from_dual_quat(proximal)[1],
-                direction_distal=direction,
-                point_distal=point,
-                axis_cone=cone,
-                point_radius=radius,
-                other_cone=float(np.hypot(cone, by_pose[0])),
-                other_radius=float(np.hypot(radius, by_pose[1])),
-                axis_sd=tilt_sd,
-                range=reach,
-                angle_sd=float(deviation[k]),
-                determined=bool(apart and reach >= least * deviation[k] and known),
-            )
-        )
-    return lines[0], lines[1]
-
-
-def _carried_radii(covariance: Float, direction: Float, point: Float) -> tuple[float, float]:
-    """As `pose_radii`; of a pose without a place the direction's alone."""
-    if np.isfinite(covariance).all() and np.isfinite(point).all():
-        return pose_radii(covariance, direction, point)
-    rotation = np.zeros((6, 6))
-    rotation[:3, :3] = covariance[:3, :3]
-    return pose_radii(rotation, direction, np.zeros(3))[0], float("nan")
-
-
 def _second_rotation(choice: Choice, poses: Poses, reference: Float, evidence: Evidence) -> SecondRotation | None:
     """What turns beside a hinge; None where it was not looked for, or is white in time, as noise is."""
     if "two_axes" not in choice.fits:
@@ -320,13 +220,13 @@ def _second_rotation(choice: Choice, poses: Poses, reference: Float, evidence: E
     if not isinstance(two.mechanism, TwoAxesMechanism):
         return None
     interval = interval_of_type(two, poses.at(choice.rows), evidence.at(choice.rows))
-    lines = _lines(two.mechanism, two, reference, interval)
+    lines = axes_lines(two.mechanism, two, reference, interval)
     smaller = min(lines, key=lambda line: line.range)
     left = RMS_TO_RANGE * next(c for c in choice.candidates if c.type == choice.type).residual_rotation
     valid = any(candidate.valid for candidate in choice.candidates if candidate.type == "two_axes")
     # Two axes that share the hinge's own rotation among them are not the hinge's and another; and of a small rotation
     # the part across the hinge alone is seen at once, which any axis between there and the hinge has.
-    apart = _between(two.mechanism, interval)[0] >= _LEAST_BESIDE
+    apart = between_axes(two.mechanism, interval)[0] >= _LEAST_BESIDE
     beside = apart and smaller.range < _SHARES_THE_HINGE * left
     if valid and beside and all(line.determined for line in lines):
         return SecondRotation(range=smaller.range, axis=smaller)

@@ -8,6 +8,7 @@ import numpy as np
 
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry.arrays import Float
+from elbowscrew.geometry.sensitivity import NORMAL_95
 from elbowscrew.geometry.twist import adjoint
 from elbowscrew.motion.joint.influence import Influence, with_columns
 from elbowscrew.motion.joint.interval import SURE, ClusterMotion, JointInterval, SkinMotion, joint_interval
@@ -16,7 +17,9 @@ from elbowscrew.motion.joint.joint_fit import HINGE_NUMBERS, LineFit
 _GRID: Final = 400
 _TILT_SHIFT: Final = (0, 1, 3, 4)
 _WANDER_TILTS: Final = (HINGE_NUMBERS, HINGE_NUMBERS + 1)  # those of the wander stand behind the hinge's
-_TELLS_NOTHING: Final = np.radians(45.0)  # of a wander that would not be seen: no linear step tells of more
+
+TELLS_NOTHING: Final = np.radians(45.0)
+"""Of a wander that would not be seen: no linear step tells of more."""
 
 
 class Wander(NamedTuple):
@@ -131,16 +134,8 @@ def wander_of_axis(
     low, high = float(fit.angle.min()), float(fit.angle.max())
     if not high > low or not influence.determined:
         return None
-    grid = np.linspace(low, high, _GRID)
-    columns = _columns(grid, fit.pitch)
-    change = np.diff(columns, axis=0)
-    share = np.linspace(-1.0, 1.0, _GRID)
-    wave = 0.5 * (share[1:] + share[:-1])
-    summed = np.concatenate([np.zeros((1, 6, 4)), np.cumsum(wave[:, None, None] * change, axis=0)])
-    summed = summed - summed.mean(axis=0)
-    flat = summed.reshape(_GRID, -1).T
-    extra = np.stack([np.interp(fit.angle, grid, column) for column in flat], axis=1).reshape(-1, 6, 4)
-    columns = adjoint(fit.distal) @ extra
+    grid, summed = summed_columns(low, high, fit.pitch)
+    columns = adjoint(fit.distal) @ columns_at(fit.angle, grid, summed)
     if influence.told is None:
         more, step = with_columns(influence, columns)
         inverse = more.inverse
@@ -155,7 +150,7 @@ def wander_of_axis(
     tilt, shift = own[-4:-2], own[-2:]
     sizes = [float(np.linalg.norm(rows @ step)) for rows in (tilt, shift)]
     sure = [interval.radius(rows, SURE) for rows in (tilt, shift)]
-    if not 2.0 * sure[0] < _TELLS_NOTHING:
+    if not 2.0 * sure[0] < TELLS_NOTHING:
         return None
     return Wander(
         tilt=2.0 * sizes[0],
@@ -172,6 +167,46 @@ def wander_of_axis(
         grid=grid,
         summed=summed,
     )
+
+
+def summed_columns(low: float, high: float, pitch: float = 0.0, sense: float = 1.0) -> tuple[Float, Float]:
+    """Angles (K,) from one end to the other, and what a wander adds to the poses there, shape (K, 6, 4).
+
+    Parameters
+    ----------
+    low, high : float
+        Ends of the angle, radians.
+    pitch : float
+        m/rad.
+    sense : float
+        -1 where the other body turns about the line by the angle, 1 where this one stays.
+
+    Returns
+    -------
+    tuple of ndarray
+        The twists are on the distal side of the line; their mean over the angles is 0.
+    """
+    grid = np.linspace(low, high, _GRID)
+    change = np.diff(_columns(sense * grid, pitch), axis=0)
+    share = np.linspace(-1.0, 1.0, _GRID)
+    wave = 0.5 * (share[1:] + share[:-1])
+    summed = np.concatenate([np.zeros((1, 6, 4)), np.cumsum(wave[:, None, None] * change, axis=0)])
+    return grid, summed - summed.mean(axis=0)
+
+
+def columns_at(angle: Float, grid: Float, summed: Float) -> Float:
+    """What `summed_columns` gives at the angles (F,) of the frames, shape (F, 6, 4)."""
+    flat = summed.reshape(len(grid), -1).T
+    return np.stack([np.interp(angle, grid, column) for column in flat], axis=1).reshape(-1, 6, 4)
+
+
+def deviation_of_size(interval: JointInterval, step: Float, part: slice) -> float:
+    """Standard deviation of a wander's size, along the way it goes; `part` is where its two numbers stand."""
+    half = step[part]
+    size = float(np.linalg.norm(half))
+    row = np.zeros((1, len(step)))
+    row[0, part] = half / size if size > 0.0 else [1.0, 0.0]
+    return 2.0 * interval.radius(row) / NORMAL_95
 
 
 def _columns(angle: Float, pitch: float) -> Float:

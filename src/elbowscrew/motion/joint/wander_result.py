@@ -11,13 +11,12 @@ from elbowscrew.choices import ExpressIn
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry import point_nearest_origin
 from elbowscrew.geometry.arrays import Float
-from elbowscrew.geometry.sensitivity import NORMAL_95
 from elbowscrew.model import JointMotion
 from elbowscrew.model.joint_axis import AxisPath, AxisWander, LineEstimate, MeanLine
 from elbowscrew.motion.joint.estimates import LineErrors, ProximalErrors, line_errors, line_estimate
 from elbowscrew.motion.joint.joint_fit import LineFit
 from elbowscrew.motion.joint.lines import Z_LINE, line_twist
-from elbowscrew.motion.joint.wander import Wander
+from elbowscrew.motion.joint.wander import Wander, deviation_of_size
 from elbowscrew.motion.screws.pose_noise import JointNoise
 
 _PARTS: Final = 15
@@ -60,9 +59,9 @@ def told_wander(
     """
     wander = AxisWander(
         tilt=found.tilt,
-        tilt_sd=_size_sd(found, slice(-4, -2)),
+        tilt_sd=deviation_of_size(found.interval, found.step, slice(-4, -2)),
         shift=found.shift,
-        shift_sd=_size_sd(found, slice(-2, None)),
+        shift_sd=deviation_of_size(found.interval, found.step, slice(-2, None)),
         significant=found.significant,
         unseen_tilt=found.unseen_tilt,
         unseen_shift=found.unseen_shift,
@@ -114,12 +113,3 @@ def told_wander(
 def _moved(pose: Float, tilt_shift: Float) -> Float:
     """A line's pose (8,) after a step (4,) of tilts and shifts."""
     return dq.normalize(dq.multiply(pose, dq.exp(line_twist(tilt_shift))))
-
-
-def _size_sd(found: Wander, part: slice) -> float:
-    """Standard deviation of a size, along the way it goes."""
-    half = found.step[part]
-    size = float(np.linalg.norm(half))
-    row = np.zeros((1, len(found.step)))
-    row[0, part] = half / size if size > 0.0 else [1.0, 0.0]
-    return 2.0 * found.interval.radius(row) / NORMAL_95

@@ -26,7 +26,8 @@ def two_axes_of(joint_type: JointType | None) -> JointCoordinates | None:
     """Give the joint on whose angle 1 the cuts are: it has two axes for sure, or as stated, that are well apart."""
     if not mixes_two_axes(joint_type) or joint_type is None or not joint_type.has_angles:
         return None
-    return joint_type.coordinates if joint_type.status in ("determined", "forced") else None
+    wanders = joint_type.two_axes is not None and joint_type.two_axes.only_wander_doubted
+    return joint_type.coordinates if wanders or joint_type.status in ("determined", "forced") else None
 
 
 def mixes_two_axes(joint_type: JointType | None) -> bool:
@@ -52,8 +53,10 @@ def measured_course(measured: Measurement, settings: Settings, joint_type: Joint
     joint = two_axes_of(joint_type)
     if joint is not None and joint_type is not None:
         filtered = measured.smoothing.cutoff_hz is not None or len(relative) != measured.elapsed.size
-        # Without a filter they are the very poses that the joint was put on.
-        angle = _first_angle(measured, relative, reference, joint) if filtered else joint_type.angle[:, 0]
+        wanders = joint_type.two_axes is not None and joint_type.two_axes.wanders
+        # Else they are the very poses that the very axes were put on.
+        again = filtered or wanders
+        angle = _first_angle(measured, relative, reference, joint) if again else joint_type.angle[:, 0]
         return np.where(known, _way_of_theta(measured, joint_type) * angle, np.nan)
     turned = quaternion.multiply(quaternion.conjugate(relative[reference, :4]), relative[:, :4])
     own = sense_of(turned, bodies.elapsed, reference, signed=settings.signed)
