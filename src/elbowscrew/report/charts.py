@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-import json
+import functools
 from collections.abc import Iterable, Sequence
 from html import escape
 from math import isfinite
 from typing import Final
 
 import numpy as np
+import orjson
 from markupsafe import Markup
 
 from elbowscrew.geometry.arrays import Float
@@ -259,8 +260,7 @@ class Chart:
             return ""
         box, along, up = self._inner, (self._labels[0], *self._x), (self._labels[1], *self._y)
         told = {"box": box, "along": along, "up": up, "series": self._series}
-        text = json.dumps(told, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
-        return f"<metadata>{escape(text, quote=False)}</metadata>"
+        return f"<metadata>{escape(orjson.dumps(told).decode(), quote=False)}</metadata>"
 
     def _note(self, look: str, label: str) -> None:
         if label and all(known != label for _, known in self._legend):
@@ -269,7 +269,13 @@ class Chart:
 
 def _numbers(values: Float) -> list[float | None]:
     """Values to seven digits, more than a chart shows; None where one is not known."""
-    return [float(f"{value:.7g}") if isfinite(value) else None for value in values.tolist()]
+    return _rounded(np.ascontiguousarray(values, dtype=np.float64).tobytes())
+
+
+@functools.lru_cache(maxsize=8)
+def _rounded(values: bytes) -> list[float | None]:
+    """Do it once for all curves over the same times."""
+    return [float(f"{value:.7g}") if isfinite(value) else None for value in np.frombuffer(values).tolist()]
 
 
 def keys_of(legend: Iterable[tuple[str, str]]) -> Markup:

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
+import functools
 import re
 from collections.abc import Iterable
 from typing import Final
 
 # What is not read as text: data, code, and what is marked as a name, which is shown as it was given.
 _KEPT: Final = re.compile(
-    r"<(?P<whole>script|style|pre|code|metadata)\b[^>]*>.*?</(?P=whole)>"
-    r'|<(?P<named>\w+)\b[^>]*\stranslate="no"[^>]*>.*?</(?P=named)>'
-    r"|<[^>]*>",
-    re.DOTALL,
+    r"<(script|style|pre|code|metadata)\b[^>]*>"
+    r'|<(\w+)\b[^>]*\stranslate="no"[^>]*>'
+    r"|<[^>]*>"
 )
 _INLINE: Final = re.compile(r"</?(?:small|span|strong)\b")
 _UNIT: Final = r"(?:%|(?:deg|rad|mm|m)(?:/(?:s|rad))?|Hz|ms|s|min|°)(?![\w⁻])"
@@ -45,16 +45,26 @@ def typeset(page: str, names: Iterable[str] = ()) -> str:
     names_in = re.compile("(" + "|".join(map(re.escape, changed)) + ")") if changed else None
     parts: list[str] = []
     end, number = 0, False  # whether the text so far ends in a number that nothing but a change of size follows
-    for tag in _KEPT.finditer(text):
+    while (tag := _KEPT.search(text, end)) is not None:
         parts.append(_set_between(text[end : tag.start()], number, names_in))
         if end < tag.start():
             number = parts[-1][-1].isdigit()
         if not _INLINE.match(tag[0]):
             number = False
-        parts.append(tag[0])
-        end = tag.end()
+        end = _end_of(tag)
+        parts.append(text[tag.start() : end])
     parts.append(_set_between(text[end:], number, names_in))
     return head + body + "".join(parts)
+
+
+def _end_of(tag: re.Match[str]) -> int:
+    """Where what stays as it is ends: at the end of the element, or of the tag where that is all."""
+    element = tag[1] or tag[2]
+    if element is None:
+        return tag.end()
+    close = f"</{element}>"
+    found = tag.string.find(close, tag.end())
+    return tag.end() if found < 0 else found + len(close)
 
 
 def _set_between(text: str, number: bool, names: re.Pattern[str] | None) -> str:
@@ -69,7 +79,9 @@ def _set_between(text: str, number: bool, names: re.Pattern[str] | None) -> str:
     return "".join(part if k % 2 else _set(part) for k, part in enumerate(names.split(text)))
 
 
+@functools.lru_cache(maxsize=4096)
 def _set(text: str) -> str:
+    """Set a text; most of a page's stand on that of the next trial, too."""
     text = _BEFORE_UNIT.sub(_HELD, text)
     text = _AFTER_SIGN.sub(_HELD, text)
     text = _MINUS.sub("\N{MINUS SIGN}", text)
