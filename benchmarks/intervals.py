@@ -5,7 +5,8 @@
 Prints a table in Markdown: share of trials whose 95 % interval holds the true line, direction and place in the proximal
 and in the distal body; mean radius over the 95th percentile of the error; and how often a pitch is told.
 As in `analyze` of a file with markers; with ``--rms`` they tell no more than their RMS in each frame. With
-``--prepared`` recordings of markers are analyzed instead: as they are, with gaps, filtered, resampled, robustly.
+``--prepared`` recordings of markers are analyzed instead: as they are, with gaps, filtered, resampled, robustly, and
+without the markers, by their poses and errors.
 """
 
 from __future__ import annotations
@@ -34,14 +35,14 @@ from cluster_noise import (
 )
 from trials import LINE
 
-from elbowscrew import Settings
+from elbowscrew import Recording, RigidBody, Settings
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry import pose_from_points, quaternion
 from elbowscrew.motion.axes.measured import measured_mean_axis
 from elbowscrew.motion.joint.interval import SkinMotion
 from elbowscrew.motion.joint.lines import line_pose
 from elbowscrew.motion.joint.measured import measured_joint_axis
-from elbowscrew.motion.screws.measurement import measure
+from elbowscrew.motion.screws.measurement import Measurement, measure
 
 HINGES = (
     Hinge(top_deg=140.0),
@@ -86,7 +87,10 @@ PREPARED: dict[str, dict[str, Any]] = {
     "low-pass 6 Hz": {"lowpass_hz": 6.0},
     "resampled to 50 Hz": {"resample_hz": 50.0},
     "robust": {"robust": True},
+    "markers' errors alone": {},
 }
+# Of a distance in space that is normal in each coordinate: its mean over its RMS, as an error column has it.
+MEAN_TO_RMS = float(np.sqrt(8.0 / (3.0 * np.pi)))
 
 
 def prepared(trials: int) -> None:
@@ -111,13 +115,16 @@ def prepared(trials: int) -> None:
                     express_in="proximal",
                     **chosen,
                 )
-                measured = measure(seen, settings)
+                measured = whole = measure(seen, settings)
+                if how == "markers' errors alone":
+                    settings = Settings(joint_type="hinge", express_in="proximal")
+                    measured = measure(errors_alone(whole), settings)
                 found = measured_joint_axis(measured, measured_mean_axis(measured), settings).axis.hinge
                 assert found is not None
-                assert measured.proximal is not None
-                assert measured.proximal.marker_offsets is not None
+                assert whole.proximal is not None
+                assert whole.proximal.marker_offsets is not None
                 # A body that is made of markers has axes of its own.
-                shape = pose_from_points(measured.proximal.marker_offsets, hinge.shapes[0])
+                shape = pose_from_points(whole.proximal.marker_offsets, hinge.shapes[0])
                 direction = quaternion.rotate(shape[:4], found.line.direction_proximal)
                 pose = line_pose(direction, dq.transform_points(shape, found.line.point_proximal))
                 error[how].append(line_errors(pose, LINE))
@@ -126,6 +133,23 @@ def prepared(trials: int) -> None:
             told = Held(np.array(error[how]), np.array(radius[how]))
             held, sharp = told.held, told.sharpness
             print(f"| {name} | {how} | {held[0]:.3f} | {held[1]:.3f} | {sharp[0]:.2f}, {sharp[1]:.2f} |", flush=True)
+
+
+def errors_alone(measured: Measurement) -> Recording:
+    """The two bodies as an export without markers has them: poses, and a column of mean errors."""
+    bodies = []
+    for name, body in (("Upper Arm", measured.proximal), ("Forearm", measured.distal)):
+        assert body is not None
+        assert body.marker_residual is not None
+        bodies.append(
+            RigidBody(
+                name=name,
+                dual_quat_lab_body=body.dual_quat_lab_body,
+                loss=body.loss,
+                reported_error=MEAN_TO_RMS * body.marker_residual,
+            )
+        )
+    return Recording.from_bodies(bodies, rate_hz=measured.recording.rate_hz)
 
 
 def kinds(hinge: Hinge) -> dict[str, tuple[Noise, tuple[SkinMotion, ...]]]:

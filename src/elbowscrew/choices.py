@@ -41,6 +41,8 @@ JointName = Literal["elbow", "wrist", "knee", "ankle", "hip", "shoulder", "finge
 """Joints; their words stand in `elbowscrew.joints`."""
 ExpressIn = Literal["distal", "proximal", "lab"]
 """Frames a screw is written in."""
+MarkersTold = Literal["motion", "errors"]
+"""What a file tells of its markers: how they move among themselves, or only how large their errors are."""
 NoiseSource = Literal["residuals", "error-column", "still"]
 """What tells the noise of a body's poses, the best first; functions of `elbowscrew.motion.screws.pose_noise`."""
 StatedJoint = Literal["rigid", "hinge", "screw_hinge", "two_axes", "ball", "free"]

@@ -115,6 +115,21 @@ def test_the_display_tells_axes_with_their_intervals(elbow: Analysis) -> None:
     assert max(map(len, told.splitlines())) < 160
 
 
+def test_each_axis_is_displayed_in_the_body_that_its_cone_is_in(elbow: Analysis) -> None:
+    """It was told in the frame of the screws, where its cone is another."""
+    told, two = dict(facts(elbow.summary, elbow.joint_summary)), elbow.joint_summary["two_axes"]
+    assert two is not None
+    for name, body, line in (("axis 1", "proximal", two["axis1"]), ("axis 2", "distal", two["axis2"])):
+        words = rf"\((.*)\) through \((.*)\) mm in the {body} frame; 95 % within (.*) deg and (.*) mm"
+        found = re.fullmatch(words, told[name].replace("\N{MINUS SIGN}", "-"))
+        assert found is not None
+        direction, point = ([float(x) for x in found[k].split(", ")] for k in (1, 2))
+        assert direction == pytest.approx(line[f"direction_in_{body}"], abs=6e-4)  # type: ignore[literal-required]
+        assert point == pytest.approx(line[f"point_in_{body}_mm"], abs=0.06)  # type: ignore[literal-required]
+        assert float(found[3]) == pytest.approx(line["cone95_deg"], rel=0.01)
+        assert float(found[4]) == pytest.approx(line["radius95_mm"], rel=0.02)
+
+
 def test_an_axis_that_is_not_known_is_said_to_be_so(elbow: Analysis) -> None:
     joint = copy.deepcopy(elbow.joint_summary)
     assert joint["two_axes"] is not None

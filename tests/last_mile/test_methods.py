@@ -26,6 +26,13 @@ def simulated(**changes: Any) -> Callable[[], Recording]:
     )
 
 
+def errors_alone() -> Recording:
+    """Bodies and the column of their markers' mean errors."""
+    recording = from_file()
+    gone: dict[str, Any] = dict.fromkeys(("marker_offsets", "marker_residual", "marker_motion", "shape_deviation"))
+    return replace(recording, bodies=tuple(replace(body, **gone) for body in recording.bodies), markers=())
+
+
 def without_markers(make: Callable[[], Recording]) -> Callable[[], Recording]:
     """Only poses: no markers, no residuals and no errors."""
 
@@ -124,6 +131,7 @@ CASES: dict[str, tuple[Callable[[], Recording], dict[str, Any]]] = {
         with_markers,
         {"proximal_markers": ("Left Upper Arm:*",), "distal_markers": ("Left Forearm:*",), "pose_method": "dual-qr"},
     ),
+    "errors alone": (errors_alone, {}),
     "error column": (from_file, {"noise": "error-column"}),
     "from a file": (from_file, {}),
     "jitter": (simulated(rest_before_s=1.0), {"noise": "still"}),
@@ -277,11 +285,33 @@ def interval_texts(case: Case) -> dict[str, str]:
         radii = "no radii"
     else:
         radii = f"Its 95 % cone and radius, {fit['axis_cone95_deg']:.2g}° and {fit['point_radius95_mm']:.2g} mm, are "
+    of = "those of the marker clusters' frames, from"
+    by_errors = "the errors that the file states of its markers and how they go with the motion"
+    by_markers = by_errors if markers_in(case) == "errors" else "the markers' motion among themselves"
+    left_out = ", for bodies that are rigid on their bones, as the file tells nothing of markers"
+    end = "." if markers_in(case) != "nothing" else f"{left_out}."
     return {
-        "A": f"{radii}those of the marker clusters' frames, from the markers' motion among themselves.",
-        "B": f"{radii}those of the marker clusters' frames, from the residuals of the joint's model and how they go",
-        "J": f"{radii}those of the marker clusters' frames, from blocks of the motion.",
+        "A": f"{radii}{of} {by_markers}.",
+        "B": f"{radii}{of} the residuals of the joint's model and how they go together in time{end}",
+        "J": f"{radii}{of} blocks of the motion{end}",
     }
+
+
+def markers_in(case: Case) -> str:
+    """What the bodies that were analyzed tell of their markers; chosen markers tell all."""
+    if case.settings.distal_markers:
+        return "motion"
+    told = {
+        "motion" if one.marker_offsets is not None else "nothing" if one.reported_error is None else "errors"
+        for one in case.recording.bodies
+        if not np.ptp(one.dual_quat_lab_body[np.isfinite(one.dual_quat_lab_body[:, 0])], axis=0).max() < 1e-9
+    }
+    return next(one for one in ("nothing", "errors", "motion") if one in told)
+
+
+def holds_if(case: Case) -> str:
+    fit = case.told.joint["mean_axis"] or reported(case)
+    return "no radii" if fit is None or fit["axis_cone95_deg"] is None else markers_in(case)
 
 
 def noise(case: Case) -> str:
@@ -412,7 +442,19 @@ DECISIONS: dict[str, tuple[Outcome, Sentences]] = {
                 "option",
                 "option, markers assumed",
                 "option, shared out as the poses jitter",
+                "error column, shared out as the poses jitter",
             )
+        },
+    ),
+    "holds": (
+        holds_if,
+        lambda case: {
+            "motion": "They hold if the clusters move on the bone no more as a whole than their markers among "
+            "themselves;",
+            "errors": "They hold if the clusters move on the bone no more as a whole than the stated errors show their "
+            "markers to move among themselves;",
+            "nothing": "They hold if the clusters do not move on the bone with the motion, of which nothing here "
+            "tells;",
         },
     ),
     "single axis": (
@@ -573,7 +615,7 @@ def test_what_was_done_is_said_and_nothing_else(name: str, cases: Callable[[str]
             if other != outcome and sentence != own:
                 assert sentence not in case.text, f"{decision}: {sentence!r} is not so: {case.text}"
         if own is None:  # an outcome of which nothing is said
-            assert outcome in ("none", "as exported", "None", "ends"), (decision, outcome)
+            assert outcome in ("none", "as exported", "None", "ends", "no radii"), (decision, outcome)
 
 
 @pytest.mark.parametrize("name", CASES)

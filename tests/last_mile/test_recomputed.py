@@ -38,7 +38,7 @@ NOT_IN_TABLES_OF_JOINT = {
     r"joint_type\.(type|status|reason|candidates.*)|two_axes|ball|second_rotation.*": (
         "tests/motion/joint/test_joint_type.py"
     ),
-    r"joint_type\.(decided_by|interval_method)": f"{HERE}::test_intervals_name_their_source",
+    r"joint_type\.(decided_by|interval_method|markers_told)": f"{HERE}::test_intervals_name_their_source",
     r"two_axes\.axis.*": f"{HERE}::test_two_axes_are_those_of_the_motion",
     r"two_axes\..*_(low|high)": f"{HERE}::test_two_axes_are_those_of_the_motion",
     r"two_axes\.(parallel_offset_mm|order_determined)": "tests/motion/joint/test_joint_type.py",
@@ -200,6 +200,9 @@ def test_intervals_name_their_source(told: Told) -> None:
             for cone, sd in (("axis_cone95_deg", "axis_sd_deg"), ("point_radius95_mm", "point_sd_mm")):
                 assert 1.73 <= fit[cone] / fit[sd] <= 1.961
     kind, head = told.joint["joint_type"], told.joint["mean_axis"]
+    bodies = (told.summary["trial"][name] for name in ("proximal", "distal"))
+    markers = {body["markers"] > 0 for body in bodies if body is not None}
+    assert kind["markers_told"] == ("motion" if markers == {True} else None)
     if told.joint["preferred"] is not None:
         head = head or told.joint[told.joint["preferred"]]
         assert (kind["decided_by"], kind["interval_method"]) == (head["decided_by"], head["interval_method"])

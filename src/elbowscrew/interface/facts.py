@@ -55,11 +55,16 @@ def _joint(summary: Summary, joint: JointSummary) -> Iterator[Fact]:
     where = f"in the {joint['expressed_in']} frame" + (" at the reference" if joint["expressed_in"] == "distal" else "")
     two, ball, axis = joint["two_axes"], joint["ball"], summary["motion"]["joint_axis"]
     if two is not None:
-        for name, line in (("axis 1", two["axis1"]), ("axis 2", two["axis2"])):
+        # Each in the body it is fixed in, where its cone and radius hold.
+        first, second = two["axis1"], two["axis2"]
+        for name, line, drawn, body in (
+            ("axis 1", first, _line(first["direction_in_proximal"], first["point_in_proximal_mm"]), "proximal"),
+            ("axis 2", second, _line(second["direction_in_distal"], second["point_in_distal_mm"]), "distal"),
+        ):
             known = _within(line["cone95_deg"], line["radius95_mm"]) if line["determined"] else "not determined"
             wander = line["wander"]
             mean = " (mean of an axis that wanders)" if wander is not None and wander["significant"] else ""
-            yield name, f"{_line(line['direction'], line['point_mm'])} {where}{mean}; {known}"
+            yield name, f"{drawn} in the {body} frame{mean}; {known}"
     elif ball is not None:
         radius = ball["radius95_mm"]
         known = "not known how surely" if radius is None else f"95 % within {brief(radius)} mm"

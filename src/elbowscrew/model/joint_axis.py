@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowscrew import tables
+from elbowscrew.choices import MarkersTold
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.model.array_record import ArrayRecord
 from elbowscrew.model.table_record import TableRecord
@@ -27,11 +28,14 @@ class PoseNoise(ArrayRecord):
         Where it is known from.
     marker_noise : float or None
         Standard deviation of each coordinate of each marker, meters; None if it was found without markers.
+    jitter : ndarray, shape (6, 6), or None
+        How the poses themselves jitter from frame to frame, where the file tells of no markers.
     """
 
     covariance: Float
     source: str
     marker_noise: float | None
+    jitter: Float | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -205,6 +209,9 @@ class JointAxis(ArrayRecord):
         RMS rotation that a hinge leaves over the RMS rotation about it: 0 for a hinge, 1 and more for a ball joint.
     stated : {"hinge", "screw_hinge"} or None
         Which of both the joint is stated to be.
+    markers_told : {"motion", "errors"} or None
+        What the file tells of the moving bodies' markers: how they move among themselves, or of one of the bodies no
+        more than how large their errors are; None if of one it tells nothing.
     noise : mapping of str to PoseNoise or None
         Of "proximal" and "distal".
     wander : AxisWander or None
@@ -226,6 +233,7 @@ class JointAxis(ArrayRecord):
     mean_axis: MeanLine | None = None
     path: AxisPath | None = None
     stated: Literal["hinge", "screw_hinge"] | None = None
+    markers_told: MarkersTold | None = None
 
     @property
     def preferred(self) -> Literal["hinge", "screw_hinge"] | None:

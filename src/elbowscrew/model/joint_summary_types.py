@@ -11,7 +11,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 from typing_extensions import TypedDict
 
-from elbowscrew.choices import ExpressIn
+from elbowscrew.choices import ExpressIn, MarkersTold
 from elbowscrew.model.anatomy import BonyJoint, FunctionalAxisName, Side
 from elbowscrew.model.joint_type import JointTypeName
 
@@ -220,6 +220,8 @@ class JointTypeSummary(TypedDict):
     """What the intervals of the joint stand on, in a letter: markers, residuals or blocks."""
     interval_method: str | None
     """What the intervals of the joint stand on, in words."""
+    markers_told: MarkersTold | None
+    """What the file tells of the markers: how they move among themselves, how large their errors are, or nothing."""
 
 
 class SkinMotionSummary(TypedDict):

@@ -73,7 +73,7 @@ def analyze(recording: Recording, settings: Settings | None = None, *, landmarks
         + cut_warnings(cuts, wanted)
         + given_warnings(cuts.cycles)
         + model.warnings
-        + joint_axis_warnings(joint_axis, joint_type, measured)
+        + joint_axis_warnings(joint_axis, joint_type, measured, wanted)
     )
     listed_velocity = velocity if sense.signed else np.full_like(velocity, np.nan)
     repetitions = repetitions_of(

@@ -17,6 +17,14 @@ def joint_sentences(view: TrialView) -> tuple[str, ...]:
 
 _TWO_AXES: Final = "Seen in the other segment an axis has the reference pose’s error."
 
+HOLDS_IF: Final = {
+    "motion": "the clusters move on the bone no more as a whole than their markers among themselves",
+    "errors": "the clusters move on the bone no more as a whole than the stated errors show their markers to move "
+    "among themselves",
+    None: "the clusters do not move on the bone with the motion, of which nothing here tells",
+}
+"""What the intervals of clusters leave out, by what the file tells of markers."""
+
 
 def _sentences(view: TrialView) -> Iterator[str]:
     joint = view.joint_summary
@@ -114,7 +122,8 @@ def _and_mm(value: float | None) -> str:
 
 
 def _intervals(joint: JointSummary, *, located: bool) -> Iterator[str]:
-    method, skin, kappa = joint["joint_type"]["interval_method"], joint["skin_motion"], joint["sensitivity_deg_per_deg"]
+    method, told = joint["joint_type"]["interval_method"], joint["joint_type"]["markers_told"]
+    skin, kappa = joint["skin_motion"], joint["sensitivity_deg_per_deg"]
     if method is None:
         return
     if not located:
@@ -124,9 +133,8 @@ def _intervals(joint: JointSummary, *, located: bool) -> Iterator[str]:
         )
     else:
         yield (
-            f"The 95 % intervals are those of the clusters’ frames, {method}. They hold if the clusters move on the "
-            "bone no more as a whole than their markers among themselves; skin often moves more: --skin-motion states "
-            "it."
+            f"The 95 % intervals are those of the clusters’ frames, {method}. They hold if {HOLDS_IF[told]}; skin "
+            "often moves more: --skin-motion states it."
         )
     one = "cluster" if located else "sensor"
     if kappa is not None:

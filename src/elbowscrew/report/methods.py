@@ -12,6 +12,7 @@ from elbowscrew.model.summary_types import ModelSummary, TrialSummary
 from elbowscrew.quantities import rounded
 from elbowscrew.report.bones_words import bones_methods
 from elbowscrew.report.facts import Facts
+from elbowscrew.report.joint_words import HOLDS_IF
 from elbowscrew.results.joint_summary import preferred_fit
 from elbowscrew.view.trial_view import TrialView
 
@@ -225,8 +226,8 @@ def _joint_axis(trial: TrialView) -> Iterator[str]:
             yield (
                 f"Its 95 % cone and radius, {rounded(told['axis_cone95_deg'])}° and "
                 f"{rounded(told['point_radius95_mm'])} mm, are those of the marker clusters' frames, "
-                f"{told['interval_method']}. They hold if the clusters move on the bone no more as a whole than their "
-                "markers among themselves; each degree that a cluster turns with the motion turns the axis by up to "
+                f"{told['interval_method']}. They hold if {HOLDS_IF[joint['joint_type']['markers_told']]}; each degree "
+                "that a cluster turns with the motion turns the axis by up to "
                 f"{rounded(fit['sensitivity_deg_per_deg'])}°."
             )
             if skin is not None:

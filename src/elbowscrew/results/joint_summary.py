@@ -31,7 +31,7 @@ from elbowscrew.model.joint_summary_types import (
 )
 from elbowscrew.motion.screws.frames import frame_called
 from elbowscrew.results.anatomy_summary import anatomy_summary
-from elbowscrew.results.joint_type_summary import INTERVAL_METHODS, joint_type_summary, numbers_of_type
+from elbowscrew.results.joint_type_summary import interval_method, joint_type_summary, numbers_of_type
 from elbowscrew.results.statistics import known, known_vector, rms, statistic
 
 
@@ -44,10 +44,10 @@ def joint_summary(analysis: Analysis) -> JointSummary:
         "single_axis": axis.single,
         "preferred": axis.preferred,
         "unexplained_share": known(axis.unexplained) if axis.unexplained <= 1.0 else None,
-        "hinge": _fitted(axis.hinge),
-        "screw_hinge": _fitted(axis.screw_hinge),
+        "hinge": _fitted(axis.hinge, analysis),
+        "screw_hinge": _fitted(axis.screw_hinge, analysis),
         **numbers_of_type(analysis),
-        "mean_axis": _mean_axis(axis.mean_axis),
+        "mean_axis": _mean_axis(axis.mean_axis, analysis),
         "sensitivity_deg_per_deg": None if axis.best is None else known(axis.best.sensitivity),
         "skin_motion": _skin_motion(analysis),
         "weighted_mean": _line(axis.weighted_mean),
@@ -83,7 +83,7 @@ def preferred_fit(joint: JointSummary) -> FitSummary | None:
     return None if joint["preferred"] is None else joint[joint["preferred"]]
 
 
-def _fitted(fit: FittedJoint | None) -> FitSummary | None:
+def _fitted(fit: FittedJoint | None, analysis: Analysis) -> FitSummary | None:
     if fit is None:
         return None
     return {
@@ -102,7 +102,7 @@ def _fitted(fit: FittedJoint | None) -> FitSummary | None:
         "frames_that_count_as_one": known(fit.correlation),
         "outlier_share": known(np.mean(fit.weight < 0.5)),
         "decided_by": fit.decided_by,
-        "interval_method": None if fit.decided_by is None else INTERVAL_METHODS[fit.decided_by],
+        "interval_method": interval_method(fit.decided_by, analysis),
     }
 
 
@@ -119,7 +119,7 @@ def _skin_motion(analysis: Analysis) -> SkinMotionSummary | None:
     }
 
 
-def _mean_axis(mean: MeanLine | None) -> MeanAxisSummary | None:
+def _mean_axis(mean: MeanLine | None, analysis: Analysis) -> MeanAxisSummary | None:
     if mean is None:
         return None
     return {
@@ -129,7 +129,7 @@ def _mean_axis(mean: MeanLine | None) -> MeanAxisSummary | None:
         "point_sd_mm": known(1000.0 * mean.point_sd),
         "point_radius95_mm": known(1000.0 * mean.point_radius),
         "decided_by": mean.decided_by,
-        "interval_method": None if mean.decided_by is None else INTERVAL_METHODS[mean.decided_by],
+        "interval_method": interval_method(mean.decided_by, analysis),
     }
 
 

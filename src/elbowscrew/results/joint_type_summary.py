@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Final, NamedTuple
+from typing import Final, Literal, NamedTuple
 
 import numpy as np
 
@@ -29,12 +29,13 @@ from elbowscrew.results.statistics import known, known_vector
 _MILLIMETERS: Final = 1000.0
 _BEYOND: Final = 0.5 * np.pi
 _DEGREES: Final = float(np.degrees(1.0))
-INTERVAL_METHODS: Final = {
+_INTERVAL_METHODS: Final = {
     "A": "from the markers' motion among themselves",
     "B": "from the residuals of the joint's model and how they go together in time",
     "J": "from blocks of the motion",
 }
-"""What an interval stands on."""
+_BY_ERRORS: Final = "from the errors that the file states of its markers and how they go with the motion"
+_NO_SKIN: Final = ", for bodies that are rigid on their bones, as the file tells nothing of markers"
 _NO_REASON: Final = "the positions tell nothing of where the joint is"
 
 
@@ -49,7 +50,8 @@ def joint_type_summary(analysis: Analysis) -> JointTypeSummary:
             "reason": _NO_REASON,
             "candidates": [],
             "decided_by": decided,
-            "interval_method": None if decided is None else INTERVAL_METHODS[decided],
+            "interval_method": interval_method(decided, analysis),
+            "markers_told": analysis.joint_axis.markers_told,
         }
     candidates: list[CandidateSummary] = [
         {
@@ -69,8 +71,19 @@ def joint_type_summary(analysis: Analysis) -> JointTypeSummary:
         "reason": found.reason,
         "candidates": candidates,
         "decided_by": decided,
-        "interval_method": None if decided is None else INTERVAL_METHODS[decided],
+        "interval_method": interval_method(decided, analysis),
+        "markers_told": analysis.joint_axis.markers_told,
     }
+
+
+def interval_method(decided: Literal["A", "B", "J"] | None, analysis: Analysis) -> str | None:
+    """What an interval stands on, and what it leaves out for want of markers."""
+    if decided is None:
+        return None
+    told = analysis.joint_axis.markers_told
+    if told is None and analysis.joint.located:
+        return _INTERVAL_METHODS[decided] + _NO_SKIN
+    return _BY_ERRORS if decided == "A" and told == "errors" else _INTERVAL_METHODS[decided]
 
 
 def numbers_of_type(analysis: Analysis) -> NumbersOfType:

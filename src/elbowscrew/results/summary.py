@@ -17,7 +17,7 @@ from elbowscrew.choices import EXPORT_NAMES, LAW_NAMES
 from elbowscrew.configuring import options_from_settings
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.joints import side_between
-from elbowscrew.model import Analysis, JointAxis, Landmarks, PhaseLaw, Selection
+from elbowscrew.model import Analysis, Landmarks, PhaseLaw, Selection
 from elbowscrew.model.anatomy import Landmark
 from elbowscrew.model.summary_types import (
     JointAxisSummary,
@@ -34,7 +34,7 @@ from elbowscrew.model.summary_types import (
 )
 from elbowscrew.motion.screws.frames import frame_called
 from elbowscrew.results.anatomy_summary import angles_of_bones
-from elbowscrew.results.joint_type_summary import INTERVAL_METHODS, joint_type_summary, numbers_of_type
+from elbowscrew.results.joint_type_summary import interval_method, joint_type_summary, numbers_of_type
 from elbowscrew.results.recording_summary import quality_summary, recording_summary, source_summary, warnings_summary
 from elbowscrew.results.statistics import known, known_vector, rms, statistic
 from elbowscrew.settings import Settings
@@ -191,13 +191,14 @@ def _motion(analysis: Analysis) -> MotionSummary:
         "single_axis": analysis.joint_axis.single,
         "joint_type": joint_type_summary(analysis),
         "joint_numbers": numbers_of_type(analysis),
-        "joint_axis": _joint_axis(analysis.joint_axis),
+        "joint_axis": _joint_axis(analysis),
         "anatomy": angles_of_bones(analysis.anatomy, screw.valid),
     }
 
 
-def _joint_axis(axis: JointAxis) -> JointAxisSummary | None:
+def _joint_axis(analysis: Analysis) -> JointAxisSummary | None:
     """Say the axis with its interval, of one that wanders its mean; the rest stands in ``joint.json``."""
+    axis = analysis.joint_axis
     told, best = axis.headline, axis.best
     if told is None or best is None or axis.preferred is None:
         return None
@@ -209,7 +210,7 @@ def _joint_axis(axis: JointAxis) -> JointAxisSummary | None:
         "axis_cone95_deg": known(np.degrees(told.axis_cone)),
         "point_radius95_mm": known(1000.0 * told.point_radius),
         "pitch_mm_per_rad": known(1000.0 * best.pitch),
-        "interval_method": None if told.decided_by is None else INTERVAL_METHODS[told.decided_by],
+        "interval_method": interval_method(told.decided_by, analysis),
         "sensitivity_deg_per_deg": known(best.sensitivity),
     }
 

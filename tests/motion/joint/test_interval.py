@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from cluster_noise import (
     NEAR,
     ROWS,
+    WHITE_M,
     Hinge,
     Noise,
     Seen,
@@ -21,6 +24,7 @@ from cluster_noise import (
     turning_with_flexion,
     wander,
     white,
+    with_rms_alone,
 )
 from scipy.optimize import brentq
 from scipy.stats import binom, t
@@ -43,7 +47,7 @@ from elbowscrew.motion.joint.interval import (
 )
 from elbowscrew.motion.joint.joint_fit import fit_joint
 from elbowscrew.motion.joint.lines import Z_LINE
-from elbowscrew.motion.joint.nonrigid import nonrigid_covariance, residual_covariance
+from elbowscrew.motion.joint.nonrigid import cluster_like, nonrigid_covariance, residual_covariance
 from elbowscrew.motion.joint.tails import Mixture
 from elbowscrew.motion.screws.pose_noise import covariance_from_markers
 from elbowscrew.motion.screws.uncertainty import joint_covariance
@@ -250,6 +254,59 @@ def test_an_rms_alone_tells_skin_from_white_noise() -> None:
         ratio[name] = np.sqrt(np.trace(alone.mean[:2, :2]) / np.trace(whole.mean[:2, :2]))
     assert ratio["white"] == pytest.approx(1.0, abs=0.1)
     assert 0.4 < ratio["skin"] < 2.5
+
+
+@pytest.mark.parametrize("spread", [(0.03, 0.03, 0.0), (0.12, 0.02, 0.02), (0.05, 0.04, 0.03)])
+def test_four_markers_stand_for_those_that_make_such_turns(spread: tuple[float, float, float]) -> None:
+    """Planar, long and roundish clusters, turned; a pose has no more of its markers than this covariance."""
+    corners = np.array([[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]])
+    shape = qn.rotate(qn.quat_from_rotation_vector([0.3, -0.8, 0.5]), corners * np.array(spread))
+    wanted = covariance_from_markers(shape, 2e-4)
+    like = cluster_like(wanted)
+    assert like.mean(axis=0) == pytest.approx(np.zeros(3), abs=1e-12)
+    assert covariance_from_markers(like, 2e-4) == pytest.approx(wanted, rel=1e-6, abs=1e-20)
+
+
+def test_the_number_of_markers_is_told_by_how_their_errors_stand_to_the_jitter() -> None:
+    """Three leave 3 sigma^2 of squares a frame and a place of sigma^2 / 3, four 6 sigma^2 / 4 and sigma^2 / 4."""
+    rng = np.random.default_rng(4)
+    hinge = Hinge(top_deg=100.0, still=True)
+    case = seen(hinge, white()(hinge, rng))
+    _, influence = fitted(case)
+    shape = hinge.shapes[1]
+    for count in (3, 4):
+        freedom = 3 * count - 6
+        rms = WHITE_M * np.sqrt(rng.chisquare(freedom, hinge.frames) / count)
+        told = residual_covariance(influence, shape, rms, segment="distal", pose_variance=WHITE_M**2 / count)
+        assert told is not None
+        # What three markers make of white noise, in the place of four that have the jitter's shape.
+        psi = influence.of_distal @ np.linalg.cholesky(covariance_from_markers(shape, 1.0))
+        true = 4.0 / count * WHITE_M**2 * np.tensordot(psi, psi, axes=((0, 2), (0, 2)))
+        assert np.diag(told.mean) == pytest.approx(np.diag(true), rel=0.15)
+
+
+@pytest.mark.parametrize("rest", ["first frame", "middle"])
+def test_errors_alone_hold_the_axis_of_skin_that_goes_with_the_flexion(rest: str) -> None:
+    """The residuals alone held 4 of 10 in one cycle, and 1 of 30 in eight; the shape is that of a frame at rest."""
+    rng = np.random.default_rng(8)
+    hinge = Hinge(top_deg=140.0, cycles=2)
+    held = []
+    for _ in range(TRIALS):
+        arm, forearm = skin(5e-3)(hinge, rng)
+        off = (arm, forearm) if rest == "first frame" else (arm - arm[112], forearm - forearm[112])
+        case = with_rms_alone(seen(hinge, off))
+        unseen = tuple(
+            replace(one, shape=cluster_like(noise.covariance), pose_variance=WHITE_M**2 / len(one.shape))
+            for one, noise in zip(case.clusters, case.noise, strict=True)
+            if noise is not None
+        )
+        fit, influence = fitted(case)
+        interval = joint_interval(influence, unseen)
+        error = line_errors(fit.proximal, LINE)
+        held.append([error[0] <= interval.radius(ROWS[0]), error[1] <= interval.radius(ROWS[1])])
+    direction, place = np.mean(held, axis=0)
+    assert direction >= fewest(0.9)
+    assert place >= fewest(0.88)
 
 
 def test_frames_whose_markers_hide_take_their_neighbors_and_too_many_tell_nothing() -> None:

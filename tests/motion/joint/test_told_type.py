@@ -282,6 +282,24 @@ def test_a_gain_beyond_measure_is_not_told_to_the_tenth(real_data: Path) -> None
     assert "a richer type leaves over 1000 times less variance" in analysis.joint_type.reason
 
 
+def test_intervals_that_no_markers_have_a_part_in_are_warned_of(real_data: Path) -> None:
+    """Skin then passes for a slide, a wander or a second axis; stated, it is in the interval."""
+    cases = real_data / "cases"
+    for name, settings, warned in (
+        ("two_axis_elbow.csv", Settings(proximal="none"), True),
+        ("two_axis_elbow.csv", Settings(proximal="none", skin_motion=(2.0, 1.0)), False),
+        ("strokes_sign.csv", Settings(), True),
+        ("noise_error_column_only.csv", Settings(), False),
+        ("imu_only.csv", Settings(), False),
+    ):
+        told = analyze(read_recording(cases / name), settings)
+        assert ("skin-unseen" in {warning.code for warning in told.warnings}) == warned, name
+        method = joint_summary(told)["joint_type"]["interval_method"]
+        assert method is not None
+        nothing = ", for bodies that are rigid on their bones, as the file tells nothing of markers"
+        assert method.endswith(nothing) == (warned or settings.skin_motion is not None)
+
+
 def test_error_bars_of_bodies_without_markers_are_those_of_their_unseen_markers(real_data: Path) -> None:
     """An error column alone: three markers at 30 mm make 0.6 deg, where four at 50 mm would make 0.22."""
     analysis = analyze(read_recording(real_data / "cases" / "noise_error_column_only.csv"))

@@ -32,6 +32,7 @@ _HARDLY: Final = "so little motion tells no axis"
 _NO_CENTER: Final = "whether it turns about one center, orientations alone do not tell"
 _NO_ORDER: Final = "it hardly turns about both at once, which would tell which of them goes with which body"
 _OUTLIERS: Final = "as outliers have it, which a robust fit would weigh down"
+_SOFT: Final = "as skin on a long lever leaves it"
 _LITTLE: Final = "a second rotation is seen, but is too small to tell its axis"
 
 
@@ -90,7 +91,6 @@ def choose_type(
 
 def _explained(contest: Contest) -> Choice | None:
     """Take the simplest type that the stated noise explains; None if it explains none."""
-    simpler: dict[Fitted, Fitted] = {"two_axes": "hinge", "ball": "two_axes"}
     for name in contest.order:
         tried = contest[name]
         # What leaves more of the frames it was fitted to leaves no less of others.
@@ -98,8 +98,8 @@ def _explained(contest: Contest) -> Choice | None:
             continue
         if name == "screw_hinge" and contest.one == "hinge":
             continue
-        if name in simpler:
-            less = contest.one if name == "two_axes" else simpler[name]
+        if name in ("two_axes", "ball"):
+            less = contest.one if name == "two_axes" else contest.rival_of_ball
             if contest.heldout(less) < _TIMES_BETTER * contest.heldout(name):
                 continue
             if contest[contest.one].leaves_little or (name == "two_axes" and _doubtful(contest)):
@@ -138,8 +138,9 @@ def _best(contest: Contest) -> Choice:
     retraced = over(left_single - contest.heldout_wandering(one), left_single - least)
     if retraced > _ALL_RETRACED and single.range_left < _LARGEST_WANDER:
         return _unless_too_far(contest, one, gain, doubt=_WANDERS)
-    gain = over(left_two, left_ball)
-    if ball_valid and gain >= two.need:
+    rival = contest.rival_of_ball
+    gain = over(contest.heldout(rival), left_ball)
+    if ball_valid and gain >= contest[rival].need:
         return _unless_too_far(contest, "ball", 0.0)
     if not contest.poses.located and two.leaves_much:
         left = f"two axes leave {in_digits(np.degrees(two.fit.residual_rotation))} deg RMS of rotation; {_NO_CENTER}"
@@ -186,6 +187,8 @@ def _none_fits(contest: Contest, reason: str) -> Choice:
         left = f"every type leaves {1000.0 * contest[least].fit.residual_translation:.0f} mm or more"
         if contest.left_by_few_frames(least):
             return _chosen(contest, "undetermined", None, f"{left}, but most of it in few frames, {_OUTLIERS}")
+        if not contest.leaves_most(least):
+            return _chosen(contest, "undetermined", None, f"{left}, a small part of what moves, {_SOFT}")
         return _chosen(contest, "free", "determined", f"no joint explains the motion: {left}")
     return _chosen(contest, "undetermined", None, reason)
 

@@ -29,6 +29,7 @@ _LITTLE_ROTATION: Final = np.radians(2.5)
 _LITTLE_SHIFT: Final = 0.0015
 _LEAST_MOTION: Final = np.radians(1.5)
 _LARGEST_LEFT: Final = 0.012
+_LARGEST_PART: Final = 0.25
 _LEAST_OF_MOST: Final = 0.1  # share of the squares that the better three quarters of the frames have
 _LARGEST_CENTER_SD: Final = 0.05
 _LARGEST_ANGLE_SD: Final = np.radians(8.0)
@@ -156,6 +157,11 @@ class Contest:
         return _heldout_variance(design, pieces.whitened, float(fit.weight.sum()))
 
     @property
+    def rival_of_ball(self) -> Fitted:
+        """What a ball must beat: two axes, but not those that wind, as which any circumduction can be written."""
+        return self.one if is_phantom(self["two_axes"].fit) else "two_axes"
+
+    @property
     def one(self) -> Fitted:
         """Hinge or screw-hinge: as the joint's axis was found to be, else by the pitch's own interval."""
         if self.stated_one is not None:
@@ -176,12 +182,16 @@ class Contest:
         return _white_square(self._on_successive_frames(name).whitened) / self[name].fit.frame_freedom
 
     def too_far(self, name: Fitted) -> bool:
-        """Whether a type leaves more than a joint may, noise that is white in time aside."""
+        """Whether a type leaves more than a joint may, noise that is white in time or that explains it aside."""
         fit = self[name].fit
-        if fit.residual_translation <= _LARGEST_LEFT:
+        if fit.residual_translation <= _LARGEST_LEFT or (self.noise_known and self.heldout(name) < NEED_LARGE):
             return False
         white = _white_square(self._on_successive_frames(name).residual[:, 3:]) / _MEDIAN_ACROSS_A_LEVER
         return bool(fit.residual_translation**2 - white > _LARGEST_LEFT**2)
+
+    def leaves_most(self, name: Fitted) -> bool:
+        """Whether a type leaves much of the translation that there is: skin on a long lever leaves a part."""
+        return self[name].fit.residual_translation >= _LARGEST_PART * self["rigid"].fit.residual_translation
 
     def left_by_few_frames(self, name: Fitted) -> bool:
         """Whether most of the translation that a type leaves is that of a few frames, as outliers make it."""

@@ -44,6 +44,8 @@ class ClusterMotion:
         RMS distance of the markers, where no more is kept.
     own_shape : bool
         Whether the shape is the trial's own mean.
+    pose_variance : float, optional
+        As `residual_covariance` wants it, where the shape stands for markers that are not known.
     """
 
     segment: Segment
@@ -51,6 +53,7 @@ class ClusterMotion:
     nonrigid: Float | None = None
     rms: Float | None = None
     own_shape: bool = False
+    pose_variance: float | None = None
 
     def at(self, rows: Index) -> ClusterMotion:
         """Of some of the frames."""
@@ -67,7 +70,9 @@ class ClusterMotion:
                 return found
         if self.rms is None:
             return None
-        return residual_covariance(influence, self.shape, self.rms, segment=self.segment)
+        return residual_covariance(
+            influence, self.shape, self.rms, segment=self.segment, pose_variance=self.pose_variance
+        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -7,7 +7,7 @@ from typing import Final, Literal, NamedTuple
 
 import numpy as np
 
-from elbowscrew.choices import ExpressIn
+from elbowscrew.choices import ExpressIn, MarkersTold
 from elbowscrew.geometry._blocks import evenly_thinned
 from elbowscrew.geometry.arrays import Float, Index
 from elbowscrew.geometry.dual_quaternion import conjugate, pose_from_dual_quat, transform_lines
@@ -115,6 +115,7 @@ def estimate_joint_axis(
         unexplained=unexplained,
         noise={"proximal": noise.proximal, "distal": noise.distal},
         stated=stated,
+        markers_told=told_by(markers),
     )
     if found.best is None:
         return EstimatedAxis(found, None)
@@ -149,12 +150,18 @@ class BodyMarkers(NamedTuple):
         How they move among themselves.
     rms : ndarray, shape (N,), or None
         Their RMS in each frame, which tells less, but also where some are hidden.
+    unseen : bool
+        Whether the file does not have them, and tells only how large their errors are.
+    pose_variance : float, optional
+        Of unseen markers: the jitter of the body's position, square meters, a coordinate.
     """
 
     segment: Segment
     shape: Float
     motion: MarkerMotion | None
     rms: Float | None
+    unseen: bool = False
+    pose_variance: float | None = None
 
     def at(self, rows: Index) -> ClusterMotion:
         """Of the frames that a joint is fitted to."""
@@ -165,7 +172,13 @@ class BodyMarkers(NamedTuple):
             nonrigid=None if motion is None else motion.at(rows),
             rms=None if self.rms is None else self.rms[rows],
             own_shape=motion is not None and motion.own_shape,
+            pose_variance=self.pose_variance,
         )
+
+
+def told_by(markers: tuple[BodyMarkers, ...]) -> MarkersTold | None:
+    """What the file tells of the markers' motion."""
+    return None if not markers else "errors" if any(one.unseen for one in markers) else "motion"
 
 
 def clusters_of(markers: tuple[BodyMarkers, ...], rows: Index) -> tuple[ClusterMotion, ...]:

@@ -25,10 +25,10 @@ from elbowscrew.motion.joint.joint_axis import (
     estimate_joint_axis,
     fitted_frames,
 )
-from elbowscrew.motion.joint.nonrigid import Segment
+from elbowscrew.motion.joint.nonrigid import Segment, cluster_like
 from elbowscrew.motion.joint.typed import identify_joint
 from elbowscrew.motion.screws.measurement import Measurement
-from elbowscrew.motion.screws.pose_noise import MARKERS_ASSUMED, STILL_STRETCH, fix_a_pose
+from elbowscrew.motion.screws.pose_noise import MARKERS_ASSUMED, STILL_STRETCH, fix_a_pose, stated_rms
 from elbowscrew.motion.screws.uncertainty import fitted_covariance
 from elbowscrew.quantities import in_digits
 from elbowscrew.settings import Settings
@@ -167,10 +167,27 @@ def markers_of(measured: Measurement) -> tuple[BodyMarkers, ...]:
     for segment, body in _moving(measured):
         motion, rms = body.marker_motion, body.marker_residual
         shape = body.marker_offsets if motion is None else motion.shape
-        if shape is None or (motion is None and rms is None) or not fix_a_pose(shape):
+        if shape is not None and fix_a_pose(shape) and not (motion is None and rms is None):
+            found.append(BodyMarkers(segment, shape, motion, rms))
+            continue
+        unseen = _unseen_markers(segment, body, measured)
+        if unseen is None:
             return ()
-        found.append(BodyMarkers(segment, shape, motion, rms))
+        found.append(unseen)
     return tuple(found)
+
+
+def _unseen_markers(segment: Segment, body: RigidBody, measured: Measurement) -> BodyMarkers | None:
+    """What an error column tells of markers that the file does not have: four, as the poses jitter."""
+    rms = stated_rms(body)
+    if not body.located or rms is None or not np.nansum(rms) > 0.0:
+        return None
+    noise = measured.noise.assumed[1 if segment == "distal" else 0]
+    if noise is None:
+        return None
+    jitter = noise.jitter
+    variance = None if jitter is None else float(np.trace(jitter[3:, 3:])) / 3.0
+    return BodyMarkers(segment, cluster_like(noise.covariance), None, rms, unseen=True, pose_variance=variance)
 
 
 def _skin(measured: Measurement, settings: Settings) -> tuple[SkinMotion, ...]:
@@ -195,7 +212,7 @@ def _moving(measured: Measurement) -> list[tuple[Segment, RigidBody]]:
 
 
 def joint_axis_warnings(
-    joint_axis: JointAxis, joint_type: JointType | None, measured: Measurement
+    joint_axis: JointAxis, joint_type: JointType | None, measured: Measurement, settings: Settings
 ) -> tuple[QualityWarning, ...]:
     """Say where there is no single axis, and what its error bars rest on."""
     warnings = [*_doubts_of_type(joint_axis, joint_type)]
@@ -224,6 +241,13 @@ def joint_axis_warnings(
             "is not a perfect hinge, or the markers move on the skin; the joint axis' interval is that of the residuals"
         )
         warnings.append(QualityWarning(code="beyond-noise", message=message, severity="note"))
+    if _told_without_markers(joint_axis, joint_type, measured, settings):
+        message = (
+            "the file tells nothing of markers, so that the joint's 95 % intervals hold for bodies that are rigid on "
+            "their bones: skin that moves with the motion is in none of them, and passes for a slide, a wander or a "
+            "second axis; --skin-motion MM,DEG states how far it goes"
+        )
+        warnings.append(QualityWarning(code="skin-unseen", message=message))
     known = measured.noise.known or ()
     if any(one is not None and one.source.endswith(MARKERS_ASSUMED) for one in known):
         warnings.append(_assumed_markers(joint_axis))
@@ -236,6 +260,18 @@ def joint_axis_warnings(
         )
         warnings.append(QualityWarning(code="noise-from-jitter", message=message))
     return tuple(warnings)
+
+
+def _told_without_markers(
+    joint_axis: JointAxis, joint_type: JointType | None, measured: Measurement, settings: Settings
+) -> bool:
+    """Whether an interval is given that no markers' motion, seen or stated, has a part in."""
+    if joint_axis.markers_told is not None or not measured.joint.located or settings.skin_motion is not None:
+        return False
+    axis = joint_axis.headline
+    return (axis is not None and axis.decided_by is not None) or (
+        joint_type is not None and joint_type.decided_by is not None
+    )
 
 
 def _assumed_markers(joint_axis: JointAxis) -> QualityWarning:

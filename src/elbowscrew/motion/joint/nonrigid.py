@@ -30,6 +30,8 @@ _PAIR_BINS: Final = 5  # of each of two angles
 _ALIKE: Final = 3.0
 _RANK: Final = 1e-6
 _LEAST_POWER: Final = 1e-12
+# Mean square of the markers' distances over the variance of each coordinate of the pose: 3 M - 6, so 3 or 6 and more.
+_OF_THREE_OR_FOUR: Final = 4.5
 _UNLIKELY: Final = 1e-9  # beside the likeliest
 
 
@@ -78,7 +80,7 @@ def nonrigid_covariance(
 
 
 def residual_covariance(
-    influence: Influence, shape: Float, rms: Float, *, segment: Segment, freedom: int | None = None
+    influence: Influence, shape: Float, rms: Float, *, segment: Segment, pose_variance: float | None = None
 ) -> Mixture | None:
     """As `nonrigid_covariance`, where nothing is kept of a frame but the RMS distance of its markers.
 
@@ -89,34 +91,52 @@ def residual_covariance(
     rms : ndarray, shape (F,)
         Of the markers about the rigid body.
     segment : {"proximal", "distal"}
-    freedom : int, optional
-        ``3 M - 6`` if not told.
+    pose_variance : float, optional
+        Of each coordinate of the body's position as it jitters, square meters, where the markers' number is not known
+        (`cluster_like`): three, if their distances are no larger beside it, else four, which is the less certain.
 
     References
     ----------
     The mean square in bins of the angle: its lowest is white noise, and the root of what a bin has more is one series
-    that goes with the angle. Bins that differ by no more than chance are all white.
+    that goes with the angle, with another sign on each side of the lowest. Bins that differ by no more than chance are
+    all white.
     """
-    nu = 3 * len(shape) - 6 if freedom is None else freedom
+    nu = 3 * len(shape) - 6
     known = np.isfinite(rms)
     if nu < 1 or not influence.determined or np.mean(known) < _LEAST_KNOWN:
         return None
-    square = len(shape) * rms[known] ** 2 / nu
     bins, count = _bins_of(influence.angles)
     number = np.bincount(bins[known], minlength=count)
-    mean = np.bincount(bins[known], square, count) / np.maximum(number, 1)
-    whole = float(square.mean())
-    chance = whole * np.sqrt(2.0 / (nu * np.maximum(number, 1)))
     used = number > 0
+    mean = np.bincount(bins[known], rms[known] ** 2, count) / np.maximum(number, 1)
+    if pose_variance is not None and mean[used].min() < _OF_THREE_OR_FOUR * pose_variance:
+        nu = 3
+    mean = len(shape) / nu * mean
+    whole = float(number @ mean / number.sum())
+    chance = whole * np.sqrt(2.0 / (nu * np.maximum(number, 1)))
     alike = bool((np.abs(mean - whole) <= _ALIKE * chance)[used].all())
     lowest = whole if alike else float(mean[used].min())
     psi = _of_rigid_coordinates(influence, shape, segment)
     covariance = lowest * np.tensordot(psi, psi, axes=((0, 2), (0, 2)))
     if alike:
         return Mixture.of_one(covariance, float(nu * known.sum()))
-    pattern = np.sqrt(np.maximum(mean - lowest, 0.0))[bins]
-    moved = np.tensordot(pattern, psi, axes=(0, 0))
+    # A least inside the range is where a motion that goes on and on passes the shape that distances are from.
+    first = np.arange(count) if influence.second is None else np.arange(count) // _PAIR_BINS
+    away = np.where(first < first[int(np.argmin(np.where(used, mean, np.inf)))], -1.0, 1.0)
+    moved = np.tensordot((away * np.sqrt(np.maximum(mean - lowest, 0.0)))[bins], psi, axes=(0, 0))
     return Mixture.of_one(covariance + moved @ moved.T, float(nu))
+
+
+def cluster_like(covariance: Float) -> Float:
+    """Four markers (4, 3) that make of errors such turns and shifts as the covariance (6, 6) of a pose has.
+
+    Corners of a box along the principal axes of the turns; where no markers make such turns, the nearest that can.
+    """
+    values, axes = np.linalg.eigh(covariance[:3, :3])
+    inertia = 4.0 / 3.0 * float(np.trace(covariance[3:, 3:])) / values
+    half = np.sqrt(np.maximum(0.5 * inertia.sum() - inertia, 0.0) / 4.0)
+    corners = np.array([[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]])
+    return np.asarray((corners * half) @ axes.T, dtype=np.float64)
 
 
 class _Stationary:

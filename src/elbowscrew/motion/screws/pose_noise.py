@@ -175,7 +175,7 @@ def covariance_from_markers(offsets: Float, marker_noise: float) -> Float:
 
 def _shapes(bodies: tuple[RigidBody, ...]) -> list[Float]:
     """How the poses of bodies jitter; a common cluster's noise of all where one does not tell and moves."""
-    shapes = [jitter_covariance(body, _ROUNDING_SD) for body in bodies]
+    shapes = [jitter_of(body) for body in bodies]
     silent = (
         shape is None and _share_shown(body, _COMMON_NOISE) > _LEAST_SHOWN
         for shape, body in zip(shapes, bodies, strict=True)
@@ -212,13 +212,13 @@ def _from_marker_noise(body: RigidBody, marker_noise: float, source: str, settin
             covariance=covariance_from_markers(offsets, marker_noise), source=source, marker_noise=marker_noise
         )
     position = marker_noise**2 / _ASSUMED_MARKERS
-    jitter = jitter_covariance(body, _ROUNDING_SD)
+    jitter = jitter_of(body)
     if jitter is not None:
         # Never less than what jitters, but for a noise that is stated: three markers make the most of that.
         most = marker_noise**2 / _FEWEST_MARKERS if settings.marker_noise_mm is not None else np.inf
         shown = float(np.trace(jitter[3:, 3:])) / 3.0
         covariance = np.clip(shown, position, most) / shown * jitter
-        return PoseNoise(covariance=covariance, source=source + BY_JITTER, marker_noise=marker_noise)
+        return PoseNoise(covariance=covariance, source=source + BY_JITTER, marker_noise=marker_noise, jitter=jitter)
     # Of the cluster nothing is known but its size: as many points as a common cluster has, spread alike in space.
     radius = DEFAULT_RADIUS if settings.radius_mm is None else settings.radius_mm / 1000.0
     rotation = position / (2.0 / 3.0 * radius**2)
@@ -231,12 +231,24 @@ def _residuals(body: RigidBody, rate_hz: float, settings: Settings) -> PoseNoise
     return _from_square(body, square, "marker residuals", settings)
 
 
+def stated_rms(body: RigidBody) -> Float | None:
+    """RMS distance (N,) of the markers by the file's error column, which has their mean; NaN where it tells nothing."""
+    stated = body.reported_error
+    if stated is None:
+        return None
+    # What is negative, or a meter and more, is no error of a marker.
+    usable = body.tracked & (stated >= 0.0) & (stated < _LARGEST_ERROR_M)
+    return np.asarray(np.where(usable, stated, np.nan) / _MEAN_TO_RMS, dtype=np.float64)
+
+
+def jitter_of(body: RigidBody) -> Float | None:
+    """Covariance (6, 6) of a body's poses by how they jitter; None where that tells nothing."""
+    return jitter_covariance(body, _ROUNDING_SD)
+
+
 def _error_column(body: RigidBody, rate_hz: float, settings: Settings) -> PoseNoise | None:
-    reported = None if body.reported_error is None else body.reported_error[body.tracked]
-    if reported is not None:  # what is negative, or a meter and more, is no error of a marker
-        reported = reported[(reported >= 0.0) & (reported < _LARGEST_ERROR_M)]
-    square = None if reported is None else (reported / _MEAN_TO_RMS) ** 2
-    return _from_square(body, square, "error column", settings)
+    rms = stated_rms(body)
+    return _from_square(body, None if rms is None else rms**2, "error column", settings)
 
 
 def _from_square(body: RigidBody, square: Float | None, source: str, settings: Settings) -> PoseNoise | None:
