@@ -121,6 +121,18 @@ def test_soft_tissue_on_a_long_lever_makes_no_free_joint(noise_known: bool) -> N
     assert noise_known or found.reason.endswith("a small part of what moves, as skin on a long lever leaves it")
 
 
+def test_what_goes_a_long_way_has_no_skin_of_100_mm() -> None:
+    """A boat on a circle of ten meters that leaves a decimeter: 1 % of its way, but no joint's."""
+    rng = np.random.default_rng(3)
+    exact = mj.hinge(300, 180.0, rng).poses
+    away = dq.dual_quat_from_pose([1.0, 0.0, 0.0, 0.0], [0.0, 10.0, 0.0])
+    shift = 0.15 * np.sin(np.linspace(0.0, 9.0, 300)[:, None] * rng.uniform(1.0, 3.0, 3) + rng.uniform(0.0, 6.0, 3))
+    off = dq.dual_quat_from_pose(np.tile([1.0, 0.0, 0.0, 0.0], (300, 1)), shift)
+    seen, covariance = mj.noisy(dq.multiply(dq.multiply(exact, away), off), rng, 0.1, 2e-4)
+    found = choose_type(Poses.of(seen, covariance), noise_known=False)
+    assert (found.type, found.status) == ("free", "determined")
+
+
 def test_a_joint_that_some_types_come_near_is_not_free() -> None:
     """A ball that hardly turns, in much noise: of a rigid joint it is 20 mm off, of others not."""
     rng = np.random.default_rng(0)

@@ -30,6 +30,7 @@ _LITTLE_SHIFT: Final = 0.0015
 _LEAST_MOTION: Final = np.radians(1.5)
 _LARGEST_LEFT: Final = 0.012
 _LARGEST_PART: Final = 0.15
+_LARGEST_SKIN: Final = 0.05
 _LEAST_OF_MOST: Final = 0.1  # share of the squares that the better three quarters of the frames have
 _LARGEST_CENTER_SD: Final = 0.05
 _LARGEST_ANGLE_SD: Final = np.radians(8.0)
@@ -190,8 +191,9 @@ class Contest:
         return bool(fit.residual_translation**2 - white > _LARGEST_LEFT**2)
 
     def leaves_most(self, name: Fitted) -> bool:
-        """Whether a type leaves much of the translation that there is: skin on a long lever leaves a part."""
-        return self[name].fit.residual_translation >= _LARGEST_PART * self["rigid"].fit.residual_translation
+        """Whether a type leaves more translation than skin on a long lever does, 50 mm or much of what there is."""
+        left = self[name].fit.residual_translation
+        return left >= min(_LARGEST_SKIN, _LARGEST_PART * self["rigid"].fit.residual_translation)
 
     def left_by_few_frames(self, name: Fitted) -> bool:
         """Whether most of the translation that a type leaves is that of a few frames, as outliers make it."""
