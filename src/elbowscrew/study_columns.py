@@ -34,6 +34,7 @@ def _study_vector(stem: str, quantity: Quantity, *keys: str) -> tuple[StudyColum
 _MEAN: Final = ("motion", "mean_axis")
 _JOINT: Final = ("motion", "joint_axis")
 _TWO: Final = ("motion", "joint_numbers", "two_axes")
+_BALL: Final = ("motion", "joint_numbers", "ball")
 _BONES: Final = ("motion", "anatomy")
 _MODEL: Final = "interpolation"
 
@@ -42,6 +43,17 @@ def _study_range(name: str) -> tuple[StudyColumn, ...]:
     """Range of an anatomical angle."""
     kinds = ("start", "min", "max", "range")
     return tuple(_study(Quantity.ANGLE, *_BONES, name, f"{kind}_deg", name=f"{name}_{kind}") for kind in kinds)
+
+
+def _study_line(axis: str, body: str) -> tuple[StudyColumn, ...]:
+    """One of two axes, in the body that it is fixed in and that its cone and radius are of."""
+    return (
+        *_study_vector(axis, Quantity.NUMBER, *_TWO, axis, f"direction_in_{body}"),
+        *_study_vector(f"{axis}_point", Quantity.LENGTH, *_TWO, axis, f"point_in_{body}_mm"),
+        _study(Quantity.ANGLE, *_TWO, axis, "range_deg", name=f"{axis}_range"),
+        _study(Quantity.ANGLE, *_TWO, axis, "cone95_deg", name=f"{axis}_cone95"),
+        _study(Quantity.LENGTH, *_TWO, axis, "radius95_mm", name=f"{axis}_radius95"),
+    )
 
 
 def _study_limits(quantity: Quantity, name: str, key: str) -> tuple[StudyColumn, ...]:
@@ -89,11 +101,11 @@ STUDY_COLUMNS: Final = (
     _study(Quantity.LABEL, "motion", "joint_type", "status", name="joint_type_status"),
     _study(Quantity.ANGLE, *_TWO, "angle_between_deg", name="axes_angle"),
     _study(Quantity.LENGTH, *_TWO, "distance_mm", name="axes_distance"),
-    _study(Quantity.ANGLE, *_TWO, "axis1", "range_deg", name="axis1_range"),
-    _study(Quantity.ANGLE, *_TWO, "axis1", "cone95_deg", name="axis1_cone95"),
-    _study(Quantity.ANGLE, *_TWO, "axis2", "range_deg", name="axis2_range"),
-    _study(Quantity.ANGLE, *_TWO, "axis2", "cone95_deg", name="axis2_cone95"),
-    _study(Quantity.LENGTH, "motion", "joint_numbers", "ball", "radius95_mm", name="center_radius95"),
+    *_study_line("axis1", "proximal"),
+    *_study_line("axis2", "distal"),
+    *_study_vector("center", Quantity.LENGTH, *_BALL, "center_in_proximal_mm"),
+    *_study_vector("center_in_distal", Quantity.LENGTH, *_BALL, "center_in_distal_mm"),
+    _study(Quantity.LENGTH, *_BALL, "radius95_mm", name="center_radius95"),
     _study(Quantity.ANGLE, "motion", "joint_numbers", "wander", "size_deg", name="axis_wander"),
     _study(Quantity.INTEGER, "motion", "single_axis"),
     _study(Quantity.LABEL, *_JOINT, "model", name="joint_model"),

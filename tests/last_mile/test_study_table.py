@@ -41,6 +41,18 @@ NAMED: dict[str, tuple[str | int, ...]] = {
         for k in (1, 2)
         for name in ("range", "cone95")
     },
+    **{f"axis{k}_radius95": ("motion", "joint_numbers", "two_axes", f"axis{k}", "radius95_mm") for k in (1, 2)},
+    **{
+        f"axis{k}{column}_{x}": ("motion", "joint_numbers", "two_axes", f"axis{k}", key.format(body), n)
+        for k, body in ((1, "proximal"), (2, "distal"))
+        for column, key in (("", "direction_in_{}"), ("_point", "point_in_{}_mm"))
+        for n, x in enumerate("xyz")
+    },
+    **{
+        f"{column}_{x}": ("motion", "joint_numbers", "ball", f"center_in_{body}_mm", n)
+        for column, body in (("center", "proximal"), ("center_in_distal", "distal"))
+        for n, x in enumerate("xyz")
+    },
     "center_radius95": ("motion", "joint_numbers", "ball", "radius95_mm"),
     "axis_wander": ("motion", "joint_numbers", "wander", "size_deg"),
     "landmarks_side": (*BONES, "side"),
