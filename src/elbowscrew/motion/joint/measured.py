@@ -26,6 +26,7 @@ from elbowscrew.motion.joint.joint_axis import (
     fitted_frames,
 )
 from elbowscrew.motion.joint.nonrigid import Segment, cluster_like
+from elbowscrew.motion.joint.single_step import single_step
 from elbowscrew.motion.joint.typed import identify_joint
 from elbowscrew.motion.screws.measurement import Measurement
 from elbowscrew.motion.screws.pose_noise import MARKERS_ASSUMED, STILL_STRETCH, fix_a_pose, stated_rms
@@ -215,7 +216,7 @@ def joint_axis_warnings(
     joint_axis: JointAxis, joint_type: JointType | None, measured: Measurement, settings: Settings
 ) -> tuple[QualityWarning, ...]:
     """Say where there is no single axis, and what its error bars rest on."""
-    warnings = [*_doubts_of_type(joint_axis, joint_type)]
+    warnings = [*_doubts_of_type(joint_axis, joint_type), *_steps(joint_type, measured)]
     stated = joint_type is not None and joint_type.status == "forced"
     if not joint_axis.single and not (stated and joint_axis.unexplained <= LARGEST_UNEXPLAINED):
         left = joint_axis.unexplained
@@ -323,6 +324,24 @@ def _doubts_of_type(joint_axis: JointAxis, joint_type: JointType | None) -> list
     else:
         return []
     return [QualityWarning(code=code, message=message)]
+
+
+def _steps(joint_type: JointType | None, measured: Measurement) -> list[QualityWarning]:
+    """Say of which angle a cluster that slipped once may be the reason."""
+    if joint_type is None or joint_type.type not in (*_ONE_AXIS, "two_axes"):
+        return []
+    found = []
+    for number, angle in enumerate(joint_type.angle.T, start=1):
+        step = single_step(angle)
+        if step is None:
+            continue
+        name = f"angle {number} of the joint" if joint_type.angle.shape[1] > 1 else "the joint's angle"
+        message = (
+            f"{name} {step.words}; the step is at frame {measured.recording.frame[step.row]}: analyze the parts before "
+            "and after it each by itself"
+        )
+        found.append(QualityWarning(code="steps-once", message=message))
+    return found
 
 
 def _moves(rigid: JointType) -> str:

@@ -17,6 +17,7 @@ from elbowscrew.motion.joint.fitting import frames_that_count_as_one, shared_cov
 from elbowscrew.motion.joint.interval import JointInterval, pose_radii
 from elbowscrew.motion.joint.likelihood import Fit, Mechanism
 from elbowscrew.motion.joint.lines import Z_LINE
+from elbowscrew.motion.joint.single_step import single_step
 from elbowscrew.motion.joint.two_axes import (
     LARGEST_UNDONE,
     SHIFTS,
@@ -123,7 +124,9 @@ def axes_lines(
                 axis_sd=tilt_sd,
                 range=reach,
                 angle_sd=float(deviation[k]),
-                determined=bool(apart and reach >= least * deviation[k] and known),
+                determined=bool(
+                    apart and reach >= least * deviation[k] and known and single_step(at.frames[:, k]) is None
+                ),
             )
         )
     return lines[0], lines[1]

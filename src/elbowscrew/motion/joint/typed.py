@@ -28,6 +28,7 @@ from elbowscrew.motion.joint.lines import nearest_points
 from elbowscrew.motion.joint.poses import Poses
 from elbowscrew.motion.joint.robust_fit import fit_robustly, refined_robustly
 from elbowscrew.motion.joint.simple_types import Ball, OneAxis
+from elbowscrew.motion.joint.single_step import single_step
 from elbowscrew.motion.joint.two_axes import TILTS, TwoAxesMechanism
 from elbowscrew.motion.joint.two_axes_told import at_feet, axes_lines, between_axes, oriented, told_axes
 from elbowscrew.motion.joint.type_interval import Evidence, interval_of_type
@@ -121,6 +122,7 @@ def identify_joint(
         angle = near_zero(every.angle)
         sense = 1.0 if np.nanmax(angle) >= -np.nanmin(angle) else -1.0
         second = _second_rotation(choice, poses, reference, evidence)
+        choice = _doubted_for_steps(choice, angle)
         allowed = None if allowed is None else replace(allowed, axis=sense * allowed.axis)
         return _result(choice, every._replace(angle=sense * angle), scale, coordinates=allowed, second=second)
     return _result(choice, every, scale)
@@ -167,6 +169,7 @@ def _with_two_axes(
             choice = choice._replace(status=status, reason=f"{choice.reason}; {found.words}")
         lines = [replace(line, wander=wander) for line, wander in zip(two.lines, found.each, strict=True)]
         two = replace(two, axis1=lines[0], axis2=lines[1])
+    choice = _doubted_for_steps(choice, at.frames)
     if choice.status == "determined" and not all(line.determined for line in two.lines):
         reason = f"{choice.reason}; errors that go together are too large to tell both directions"
         choice = choice._replace(status="approximate", reason=reason)
@@ -174,6 +177,16 @@ def _with_two_axes(
     every = every._replace(angle=near_zero(every.angle))
     decided_by = interval.decided_by(TILTS[0])
     return _result(choice, every, scale, coordinates=allowed, two_axes=two, decided_by=decided_by)
+
+
+def _doubted_for_steps(choice: Choice, angles: Float) -> Choice:
+    """Take a joint for approximate of which an angle, of (F, A), only steps once."""
+    if choice.status not in ("determined", "approximate"):
+        return choice
+    several = angles.shape[1] > 1
+    steps = [(f"angle {k}" if several else "its angle", single_step(one)) for k, one in enumerate(angles.T, start=1)]
+    words = "; ".join(f"{name} {step.words}" for name, step in steps if step is not None)
+    return choice._replace(status="approximate", reason=f"{choice.reason}; {words}") if words else choice
 
 
 def _counted_from(at: TwoAxesMechanism, everywhere: Everywhere, reference: Float) -> TwoAxesMechanism:
