@@ -77,7 +77,7 @@ def test_lost_frames_and_leaps_hardly_change_it() -> None:
     assert relative(found, "three at 30 mm") == pytest.approx(np.ones(6), abs=0.25)
 
 
-@pytest.mark.parametrize("kind", ["no noise", "rounding", "few frames", "a filter", "no run"])
+@pytest.mark.parametrize("kind", ["no noise", "rounding", "one axis", "few frames", "a filter", "no run"])
 def test_what_does_not_tell_is_not_told(kind: str) -> None:
     shape = CLUSTERS["five at 80 mm"] - CLUSTERS["five at 80 mm"].mean(axis=0)
     off = np.random.default_rng(1).normal(scale=SIGMA, size=(2000, len(shape), 3))
@@ -85,7 +85,10 @@ def test_what_does_not_tell_is_not_told(kind: str) -> None:
     assert jitter_covariance(told, LEAST) is not None
     loss = told.loss.copy()
     loss[::6] = 1
+    turns = np.radians(0.2) * np.random.default_rng(2).normal(size=(2000, 1)) * [0.0, 0.0, 1.0]
+    about_z = Rotation.from_rotvec(turns).as_quat(scalar_first=True)
     silent = {
+        "one axis": replace(told, dual_quat_lab_body=dual_quat_from_pose(about_z, np.zeros((2000, 3)))),
         "no noise": body(throw(2000), 0.0 * off, shape),
         "rounding": body(throw(2000), 1e-3 * off, shape),
         "few frames": body(throw(105), off[:105], shape),

@@ -34,6 +34,7 @@ _CROSSING_ROUNDS: Final = 4
 _TINY: Final = float(np.finfo(np.float64).tiny)
 _SCALE: Final = np.array([1.0, 1.0, 1.0, _LENGTH, _LENGTH, _LENGTH])
 
+_LEFT_TOGETHER: Final = 0.005  # of an angle's variance: what the other one, cubed at most, does not tell of it
 LARGEST_UNDONE: Final = 0.36
 """Of `undone_share`: errors that draw the axes together to that extent leave nothing of where they were."""
 
@@ -243,6 +244,17 @@ def undone_share(at: TwoAxesMechanism) -> float:
     spread = np.cov(at.frames.T)
     cosine = float(dq.transform_lines(at.between, Z_LINE)[2])
     return -2.0 * cosine * float(spread[0, 1]) / max(float(np.trace(spread)), _TINY)
+
+
+def angles_go_together(at: TwoAxesMechanism) -> bool:
+    """Whether one angle follows from the other: then all that tells the axes is how one path is curved.
+
+    Ever another pair of axes, tens of degrees off, has nearly the same path, and no interval about one pair holds it.
+    """
+    first, second = (at.frames - at.frames.mean(axis=0)).T
+    powers = np.vander(first / max(float(np.abs(first).max()), _TINY), 4)
+    left = second - powers @ np.linalg.lstsq(powers, second, rcond=None)[0]
+    return float(left @ left) <= _LEFT_TOGETHER * float(second @ second)
 
 
 def is_phantom(fit: Fit[Mechanism]) -> bool:

@@ -25,6 +25,7 @@ from elbowscrew.motion.joint.two_axes import (
     AxesGeometry,
     TwoAxesMechanism,
     angle_sd,
+    angles_go_together,
     axes_geometry,
     geometry_slopes,
     undone_share,
@@ -101,7 +102,7 @@ def axes_lines(
         (at.proximal, dq.multiply(dq.conjugate(reference), at.proximal)),
         (dq.multiply(reference, at.distal), at.distal),
     ]
-    apart = undone_share(at) <= LARGEST_UNDONE or between_axes(at, interval)[1]
+    apart = between_axes(at, interval)[1] or (undone_share(at) <= LARGEST_UNDONE and not angles_go_together(at))
     linear = replace(interval, nearby=())
     lines = []
     for k, (proximal, distal) in enumerate(poses):

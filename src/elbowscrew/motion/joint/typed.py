@@ -29,7 +29,7 @@ from elbowscrew.motion.joint.poses import Poses
 from elbowscrew.motion.joint.robust_fit import fit_robustly, refined_robustly
 from elbowscrew.motion.joint.simple_types import Ball, OneAxis
 from elbowscrew.motion.joint.single_step import single_step
-from elbowscrew.motion.joint.two_axes import TILTS, TwoAxesMechanism
+from elbowscrew.motion.joint.two_axes import TILTS, TwoAxesMechanism, angles_go_together
 from elbowscrew.motion.joint.two_axes_told import at_feet, axes_lines, between_axes, oriented, told_axes
 from elbowscrew.motion.joint.type_interval import Evidence, interval_of_type
 from elbowscrew.motion.joint.wander_of_two import wander_of_two
@@ -170,6 +170,9 @@ def _with_two_axes(
         lines = [replace(line, wander=wander) for line, wander in zip(two.lines, found.each, strict=True)]
         two = replace(two, axis1=lines[0], axis2=lines[1])
     choice = _doubted_for_steps(choice, at.frames)
+    if choice.status in ("determined", "approximate") and angles_go_together(at) and not two.lines[0].determined:
+        reason = f"{choice.reason}; one angle follows from the other, so that other axes explain the motion as well"
+        choice = choice._replace(status="approximate", reason=reason)
     if choice.status == "determined" and not all(line.determined for line in two.lines):
         reason = f"{choice.reason}; errors that go together are too large to tell both directions"
         choice = choice._replace(status="approximate", reason=reason)

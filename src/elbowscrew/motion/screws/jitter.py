@@ -20,6 +20,7 @@ _LOWER_ORDER: Final = 4
 # What falls to less than this of itself at the higher order is no noise of single frames: a motion, or a filter's rest.
 _LEAST_KEPT: Final = 0.3
 _FEWEST: Final = 100
+_LEAST_BESIDE: Final = 1e-10  # of a variance beside the largest: less is a noise that is not in all directions
 _MOST_FRAMES: Final = 20_000
 # Of the differences: the others may be moments of fast motion, or leaps. In the end only what is far out is left out.
 _KEPT: Final = (*(0.75,) * 8, 0.99, 0.99)
@@ -94,7 +95,8 @@ def _scatter(rows: Float) -> Float | None:
     width = rows.shape[1]
     scatter = np.diag(np.median(rows**2, axis=0))
     for kept in _KEPT:
-        if not np.linalg.eigvalsh(scatter)[0] > 0.0:
+        sizes = np.linalg.eigvalsh(scatter)
+        if not sizes[0] > _LEAST_BESIDE * sizes[-1]:
             return None
         distance = np.einsum("ni,ij,nj->n", rows, np.linalg.inv(scatter), rows)
         limit = np.median(distance) * chi2.ppf(kept, width) / chi2.median(width)
