@@ -28,6 +28,31 @@ def test_one_step_is_seen_with_its_size_and_place(deg: float, frames: int) -> No
     assert abs(found.row - 250) <= frames
 
 
+@pytest.mark.parametrize("offset_deg", [-70.0, 40.0])
+def test_a_step_may_be_anywhere_in_the_range(offset_deg: float) -> None:
+    found = single_step(stepped(600, 5.0, 250) + np.radians(offset_deg))
+    assert found is not None
+    assert found.row == 250
+
+
+@pytest.mark.parametrize(("noise_deg", "seen"), [(0.6, True), (0.9, False)])
+def test_levels_keep_within_15_percent_of_the_step(noise_deg: float, seen: bool) -> None:
+    assert (single_step(stepped(600, 5.0, 250, noise_deg=noise_deg)) is not None) == seen
+
+
+@pytest.mark.parametrize(("frames", "seen"), [(50, True), (75, False)])
+def test_no_more_than_a_twentieth_of_the_frames_are_on_the_way(frames: int, seen: bool) -> None:
+    """Of 600: half of the passage lies between the quarters of the step."""
+    assert (single_step(stepped(600, 10.0, 250, frames)) is not None) == seen
+
+
+@pytest.mark.parametrize("at", [60, 150, 540])
+def test_the_place_does_not_depend_on_how_long_the_levels_are(at: int) -> None:
+    found = single_step(stepped(600, 5.0, at, noise_deg=0.5))
+    assert found is not None
+    assert abs(found.row - at) <= 1
+
+
 def test_lost_frames_change_neither() -> None:
     angle = stepped(600, 5.0, 250)
     angle[::7], angle[240:245] = np.nan, np.nan

@@ -98,6 +98,14 @@ def test_what_does_not_tell_is_not_told(kind: str) -> None:
     assert jitter_covariance(silent, LEAST) is None
 
 
+@pytest.mark.parametrize(("times", "told"), [(2.5, False), (3.5, True)])
+def test_less_than_three_times_the_rounding_is_not_told(times: float, told: bool) -> None:
+    shape = CLUSTERS["five at 80 mm"] - CLUSTERS["five at 80 mm"].mean(axis=0)
+    sd = np.sqrt(np.diag(covariance_from_markers(shape, SIGMA)))
+    found = jitter_covariance(noisy("five at 80 mm"), sd / times)
+    assert (found is not None) == told
+
+
 @pytest.mark.parametrize(
     ("stated", "sd"), [(0.15, 0.15 / np.sqrt(3.0)), (0.3, 0.3 / np.sqrt(3.0)), (0.4, 0.2), (2.0, 1.0)]
 )
