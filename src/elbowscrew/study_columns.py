@@ -53,6 +53,7 @@ def _study_line(axis: str, body: str) -> tuple[StudyColumn, ...]:
         _study(Quantity.ANGLE, *_TWO, axis, "range_deg", name=f"{axis}_range"),
         _study(Quantity.ANGLE, *_TWO, axis, "cone95_deg", name=f"{axis}_cone95"),
         _study(Quantity.LENGTH, *_TWO, axis, "radius95_mm", name=f"{axis}_radius95"),
+        _study(Quantity.INTEGER, *_TWO, axis, "determined", name=f"{axis}_determined"),
     )
 
 

@@ -41,6 +41,7 @@ NAMED: dict[str, tuple[str | int, ...]] = {
         for k in (1, 2)
         for name in ("range", "cone95")
     },
+    **{f"axis{k}_determined": ("motion", "joint_numbers", "two_axes", f"axis{k}", "determined") for k in (1, 2)},
     **{f"axis{k}_radius95": ("motion", "joint_numbers", "two_axes", f"axis{k}", "radius95_mm") for k in (1, 2)},
     **{
         f"axis{k}{column}_{x}": ("motion", "joint_numbers", "two_axes", f"axis{k}", key.format(body), n)

@@ -86,25 +86,25 @@ def _limits(low: float | None, high: float | None) -> str:
 
 def _wander(found: WanderSummary | None) -> str:
     """How far the axis goes with the angle, or what would not be seen."""
-    if found is None or found["size_deg"] is None or found["unseen_deg"] is None:
-        return ""
-    if not found["significant"]:
-        return f"; the axis stays: a wander below {in_digits(found['unseen_deg'])} deg would not be seen"
-    return f"; it wanders by {_size(found)} over the range (axis_path.csv)"
+    return _how_far(
+        found,
+        "; the axis stays: a wander below {} would not be seen",
+        "; it wanders by {} over the range (axis_path.csv)",
+    )
 
 
 def _over_which(found: WanderSummary | None) -> str:
     """How far one of two axes goes with its angle, or what would not be seen."""
+    return _how_far(found, ", over which a wander below {} would not be seen", ", over which it wanders by {}")
+
+
+def _how_far(found: WanderSummary | None, unseen: str, seen: str) -> str:
     if found is None or found["size_deg"] is None or found["unseen_deg"] is None:
         return ""
     if not found["significant"]:
-        return f", over which a wander below {in_digits(found['unseen_deg'])} deg would not be seen"
-    return f", over which it wanders by {_size(found)}"
-
-
-def _size(found: WanderSummary) -> str:
+        return unseen.format(f"{in_digits(found['unseen_deg'])} deg")
     shift = "" if found["size_mm"] is None else f" and {in_digits(found['size_mm'])} mm"
-    return f"{in_digits(found['size_deg'] or 0.0)} deg{shift}"
+    return seen.format(f"{in_digits(found['size_deg'])} deg{shift}")
 
 
 def _second_rotation(found: SecondRotationSummary | None) -> str:

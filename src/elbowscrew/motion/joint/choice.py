@@ -187,7 +187,7 @@ def _none_fits(contest: Contest, reason: str) -> Choice:
         left = f"every type leaves {1000.0 * contest[least].fit.residual_translation:.0f} mm or more"
         if contest.left_by_few_frames(least):
             return _chosen(contest, "undetermined", None, f"{left}, but most of it in few frames, {_OUTLIERS}")
-        if not contest.leaves_most(least):
+        if not contest.leaves_more_than_skin(least):
             return _chosen(contest, "undetermined", None, f"{left}, a small part of what moves, {_SOFT}")
         return _chosen(contest, "free", "determined", f"no joint explains the motion: {left}")
     return _chosen(contest, "undetermined", None, reason)

@@ -190,8 +190,8 @@ class Contest:
         white = _white_square(self._on_successive_frames(name).residual[:, 3:]) / _MEDIAN_ACROSS_A_LEVER
         return bool(fit.residual_translation**2 - white > _LARGEST_LEFT**2)
 
-    def leaves_most(self, name: Fitted) -> bool:
-        """Whether a type leaves more translation than skin on a long lever does, 50 mm or much of what there is."""
+    def leaves_more_than_skin(self, name: Fitted) -> bool:
+        """Whether a type leaves more translation than skin on a long lever: 50 mm, or much of what there is."""
         left = self[name].fit.residual_translation
         return left >= min(_LARGEST_SKIN, _LARGEST_PART * self["rigid"].fit.residual_translation)
 

@@ -8,7 +8,7 @@ from typing import Final, Literal
 import numpy as np
 
 from elbowscrew.geometry.arrays import Float
-from elbowscrew.motion.joint.joint_fit import _integrated_autocorrelation
+from elbowscrew.motion.joint.joint_fit import integrated_autocorrelation
 from elbowscrew.motion.joint.likelihood import Fit, M, Mechanism, fit_mechanism
 from elbowscrew.motion.joint.poses import Poses
 from elbowscrew.motion.joint.robust_fit import fit_robustly
@@ -76,9 +76,4 @@ def shared_covariance(fit: Fit[Mechanism], *, noise_known: bool) -> Float:
 
 def frames_that_count_as_one(fit: Fit[Mechanism]) -> float:
     """Integrated autocorrelation of the residuals: 1 for white noise."""
-    return residuals_that_count_as_one(fit.whitened * np.sqrt(fit.weight)[:, None])
-
-
-def residuals_that_count_as_one(whitened: Float) -> float:
-    """The same of whitened residuals (F, k), weighed."""
-    return _integrated_autocorrelation(whitened)
+    return integrated_autocorrelation(fit.whitened * np.sqrt(fit.weight)[:, None])

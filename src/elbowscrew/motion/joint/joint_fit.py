@@ -325,7 +325,7 @@ def _result(at: _Step, joint: Float, W: Float, weight: Float, screw: bool) -> Li
         weight=weight,
         information=information,
         noise_ratio=float(np.sqrt((weight * square).sum() / max(freedom, 1.0))),
-        correlation=_integrated_autocorrelation(whitened),
+        correlation=integrated_autocorrelation(whitened),
         freedom=freedom,
     )
 
@@ -351,7 +351,7 @@ def linear_model(fit: LineFit, covariance: Float) -> tuple[Float, Float, Float]:
     return derivatives, own, _weights_in_line(at, information_of(covariance))
 
 
-def _integrated_autocorrelation(series: Float) -> float:
+def integrated_autocorrelation(series: Float) -> float:
     """Number of successive rows that count as one, of series (F, k): ``1 + 2 sum rho`` up to Sokal's window."""
     count = len(series)
     if count < 8:

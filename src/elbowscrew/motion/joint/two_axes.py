@@ -249,12 +249,17 @@ def undone_share(at: TwoAxesMechanism) -> float:
 def angles_go_together(at: TwoAxesMechanism) -> bool:
     """Whether one angle follows from the other: then all that tells the axes is how one path is curved.
 
-    Ever another pair of axes, tens of degrees off, has nearly the same path, and no interval about one pair holds it.
+    Another pair of axes, some degrees off, may have nearly the same path, and no interval about one pair holds it.
     """
     first, second = (at.frames - at.frames.mean(axis=0)).T
-    powers = np.vander(first / max(float(np.abs(first).max()), _TINY), 4)
-    left = second - powers @ np.linalg.lstsq(powers, second, rcond=None)[0]
-    return float(left @ left) <= _LEFT_TOGETHER * float(second @ second)
+    return _follows(second, first) or _follows(first, second)
+
+
+def _follows(angle: Float, other: Float) -> bool:
+    """Whether a cubic in the other angle leaves next to nothing of one; both (F,), about their means."""
+    powers = np.vander(other / max(float(np.abs(other).max()), _TINY), 4)
+    left = angle - powers @ np.linalg.lstsq(powers, angle, rcond=None)[0]
+    return float(left @ left) <= _LEFT_TOGETHER * float(angle @ angle)
 
 
 def is_phantom(fit: Fit[Mechanism]) -> bool:

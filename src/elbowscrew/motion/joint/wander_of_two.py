@@ -12,9 +12,9 @@ from elbowscrew.geometry.arrays import Float
 from elbowscrew.geometry.twist import adjoint
 from elbowscrew.model.joint_axis import AxisWander
 from elbowscrew.motion.joint.blocks import block_jackknife
-from elbowscrew.motion.joint.fitting import residuals_that_count_as_one
 from elbowscrew.motion.joint.influence import with_columns
 from elbowscrew.motion.joint.interval import SURE, JointInterval, joint_interval
+from elbowscrew.motion.joint.joint_fit import integrated_autocorrelation
 from elbowscrew.motion.joint.likelihood import Fit
 from elbowscrew.motion.joint.lines import about_z
 from elbowscrew.motion.joint.poses import Poses
@@ -94,7 +94,7 @@ def wander_of_two(fit: Fit[TwoAxesMechanism], poses: Poses, evidence: Evidence) 
         # Slow noise goes with so many numbers: by its spectrum alone one in ten of those that it makes would be told.
         interval = replace(interval, blocks=block_jackknife(more))
     each = (None, None) if interval.residuals is None else (_wander(interval, step, 0), _wander(interval, step, 1))
-    scale = max(more.variance, 1.0 if evidence.noise_known else 0.0) * residuals_that_count_as_one(more.whitened)
+    scale = max(more.variance, 1.0 if evidence.noise_known else 0.0) * integrated_autocorrelation(more.whitened)
     return WanderOfTwo(each, step[:_JOINT], interval.of_first(_JOINT), scale * more.inverse[:_JOINT, :_JOINT])
 
 
