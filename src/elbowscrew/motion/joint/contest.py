@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Final, Literal
 
 import numpy as np
 
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.motion.joint.deciding_frames import deciding_frames
-from elbowscrew.motion.joint.fitting import Fitted, fit_again, fit_type, shared_covariance
+from elbowscrew.motion.joint.fitting import Fitted, fit_again, fit_type, least_hinge, shared_covariance
 from elbowscrew.motion.joint.likelihood import Fit, Mechanism, settled
 from elbowscrew.motion.joint.pieces import influence_pieces
 from elbowscrew.motion.joint.poses import Poses
@@ -118,8 +119,14 @@ class Contest:
 
     def __getitem__(self, name: Fitted) -> Tried:
         if name not in self.tried:
-            self._take(name, fit_type(name, self.poses, robust=self.robust))
+            hinge = self._hinge if name in ("hinge", "screw_hinge") else None
+            self._take(name, fit_type(name, self.poses, robust=self.robust, hinge=hinge))
         return self.tried[name]
+
+    @cached_property
+    def _hinge(self) -> Fit[OneAxis]:
+        """The hinge of least squares, from which a screw-hinge goes on."""
+        return least_hinge(self.poses)
 
     def _take(self, name: Fitted, fit: Fit[Mechanism]) -> None:
         deviation = np.sqrt(np.diag(shared_covariance(fit, noise_known=self.noise_known)))
@@ -228,7 +235,7 @@ class Contest:
 
     def turns_about_one_axis(self) -> bool:
         """Whether a hinge leaves little: then the center of a ball may be anywhere on its axis."""
-        fit = fit_type("hinge", self.poses, robust=self.robust)
+        fit = fit_type("hinge", self.poses, robust=self.robust, hinge=self._hinge)
         return Tried(fit, valid=True, shared_sd=np.zeros(0)).leaves_little
 
     def hardly_turns(self) -> bool:

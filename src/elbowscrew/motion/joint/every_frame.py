@@ -64,6 +64,8 @@ class FrameNumbers(NamedTuple):
         What the errors of the axes add to them; 0 where they are not told.
     residual_rotation, residual_translation : ndarray, shape (N,)
         rad and m, the latter at the origin of `Mechanism.residual_frame`.
+    at_reference : ndarray, shape (1, k)
+        The mechanism's own numbers at the reference pose.
     """
 
     angle: Float
@@ -71,6 +73,7 @@ class FrameNumbers(NamedTuple):
     axes_sd: Float
     residual_rotation: Float
     residual_translation: Float
+    at_reference: Float
 
 
 def numbers_everywhere(
@@ -126,7 +129,7 @@ def numbers_everywhere(
         deviation[block] = np.sqrt(np.diagonal(covariance, axis1=1, axis2=2))
         rotation[block] = length(at.residual[:, :3])
         translation[block] = length(at.residual[:, 3:])
-    return FrameNumbers(angle, deviation, by_axes, rotation, translation)
+    return FrameNumbers(angle, deviation, by_axes, rotation, translation, start.own)
 
 
 class OwnNumbers(NamedTuple):

@@ -25,27 +25,36 @@ _LEAST_INFORMATION: Final = 1e-13
 _LEAST_FREEDOM: Final = 20.0
 
 
-def fit_type(name: Fitted, poses: Poses, *, robust: bool = False) -> Fit[Mechanism]:
-    """Fit one type of joint to poses, from its own start; a screw-hinge from the hinge, and leaving no more."""
-    start: Mechanism
-    iterations = _ITERATIONS
+def fit_type(name: Fitted, poses: Poses, *, robust: bool = False, hinge: Fit[OneAxis] | None = None) -> Fit[Mechanism]:
+    """Fit one type of joint to poses, from its own start; a screw-hinge from the hinge, and leaving no more.
+
+    Who has the hinge of least squares already passes it on.
+    """
+    fit: Fit[Mechanism]
     match name:
         case "rigid":
-            start = Rigid.start(poses.joint)
-        case "hinge" | "screw_hinge":
-            start = OneAxis.start(poses.joint)
-            if name == "screw_hinge":
-                hinge = fit_mechanism(start, poses, iterations=iterations, tolerance=_TOLERANCE).mechanism
-                start = replace(hinge, screw=True)
+            fit = _least(Rigid.start(poses.joint), poses)
+        case "hinge":
+            fit = hinge or least_hinge(poses)
+        case "screw_hinge":
+            fit = _least(replace((hinge or least_hinge(poses)).mechanism, screw=True), poses)
         case "two_axes":
             found = find_two_axes(poses)
-            start = found.mechanism.placed(poses.joint)
             # A phantom has no optimum worth a long search: it only has to be told.
             iterations = _PHANTOM_ITERATIONS if is_phantom(found) else _ITERATIONS
+            fit = _least(found.mechanism.placed(poses.joint), poses, iterations)
         case "ball":
-            start = Ball.start(poses.joint)
-    fit = fit_mechanism(start, poses, iterations=iterations, tolerance=_TOLERANCE)
+            fit = _least(Ball.start(poses.joint), poses)
     return fit_robustly(fit, poses) if robust else fit
+
+
+def least_hinge(poses: Poses) -> Fit[OneAxis]:
+    """Fit a hinge by least squares."""
+    return _least(OneAxis.start(poses.joint), poses)
+
+
+def _least(start: M, poses: Poses, iterations: int = _ITERATIONS) -> Fit[M]:
+    return fit_mechanism(start, poses, iterations=iterations, tolerance=_TOLERANCE)
 
 
 def fit_again(start: M, poses: Poses, weight: Float) -> Fit[M]:

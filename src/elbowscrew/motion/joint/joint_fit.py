@@ -147,18 +147,19 @@ def fit_joint(
     # The distal body's line: where the proximal body's is seen from it, in the middle of the motion.
     F = dq.normalize(dq.multiply(dq.conjugate(joint[len(joint) // 2]), A))
     weight = np.ones(len(joint))
-    best = _Step(A, F, _angles(joint, A, F), 0.0)
+    best = _Numbers(A, F, _angles(joint, A, F), 0.0)
     if start is not None:
-        best = _Step(start.proximal, start.distal, start.angle, start.pitch)
+        best = _Numbers(start.proximal, start.distal, start.angle, start.pitch)
+    at = _seen_from(best, joint, W)
     size = np.inf
     for _ in range(_ITERATIONS):
         before = size
-        best, size = _step(best, joint, W, weight, screw)
+        at, size = _step(at, joint, W, weight, screw)
         if _settled(size, before):
             break
     if robust:
         for k in range(_ROBUST_ROUNDS):
-            distance = np.sqrt(np.maximum(_square(best, joint, W), 0.0))
+            distance = np.sqrt(np.maximum(_square(at), 0.0))
             scale = float(np.median(distance)) / np.sqrt(_MEDIAN_SQUARE)
             relative = distance / max(scale, _LEAST_SCALE)
             if k < _ROBUST_START:
@@ -166,17 +167,40 @@ def fit_joint(
             else:
                 weight = np.maximum(1.0 - (relative / _TUKEY) ** 2, 0.0) ** 2
             before = size
-            best, size = _step(best, joint, W, weight, screw)
+            at, size = _step(at, joint, W, weight, screw)
             if k > _ROBUST_START and _settled(size, before):
                 break
-    return _result(best, joint, W, weight, screw)
+    return _result(at, W, weight, screw)
 
 
-class _Step(NamedTuple):
+class _Numbers(NamedTuple):
+    """What is fitted."""
+
     proximal: Float
     distal: Float
     angle: Float
     pitch: float
+
+    @property
+    def screws(self) -> Float:
+        """Screw motions (F, 8) along z."""
+        half = 0.5 * np.stack([self.angle, self.pitch * self.angle], axis=1)
+        zero = np.zeros((len(half), 2))
+        return dq.exp(np.concatenate([zero, half[:, :1], zero, half[:, 1:]], axis=1))
+
+
+class _Seen(NamedTuple):
+    """The poses as seen from some numbers, whose `screws` (F, 8) are kept: what is left, in the frame of the line.
+
+    `residual` (F, 6) leads from the model's pose to the measured one, `weights` (F, 6, 6) is its information, and
+    `jacobian` (F, 6, 6) how it changes with a small twist of the model.
+    """
+
+    numbers: _Numbers
+    screws: Float
+    residual: Float
+    weights: Float
+    jacobian: Float
 
 
 def _line_pose(line: Float, near: Float) -> Float:
@@ -197,25 +221,24 @@ def _angles(joint: Float, A: Float, F: Float) -> Float:
     return 2.0 * half
 
 
-def _residual(at: _Step, joint: Float) -> Float:
-    """Twist (F, 6) that leads from the model's pose to the measured one, in the frame of the line."""
-    half = 0.5 * np.stack([at.angle, at.pitch * at.angle], axis=1)
-    zero = np.zeros((len(joint), 2))
-    screw = dq.exp(np.concatenate([zero, half[:, :1], zero, half[:, 1:]], axis=1))
-    rest = dq.multiply(dq.multiply(dq.conjugate(screw), dq.conjugate(at.proximal)), dq.multiply(joint, at.distal))
-    return 2.0 * dq.log(dq.canonical(rest))
+def _seen_from(numbers: _Numbers, joint: Float, W: Float) -> _Seen:
+    screws = numbers.screws
+    rest = dq.multiply(
+        dq.multiply(dq.conjugate(screws), dq.conjugate(numbers.proximal)), dq.multiply(joint, numbers.distal)
+    )
+    residual = 2.0 * dq.log(dq.canonical(rest))
+    return _Seen(numbers, screws, residual, _weights_in_line(numbers, W), inverse_left_jacobian(residual))
 
 
-def _weights_in_line(at: _Step, W: Float) -> Float:
+def _weights_in_line(numbers: _Numbers, W: Float) -> Float:
     """Information matrices in the frame of the line: ``Ad(F)^T W Ad(F)``."""
-    turned = adjoint(at.distal)
+    turned = adjoint(numbers.distal)
     return np.swapaxes(turned, -1, -2) @ W @ turned
 
 
-def _square(at: _Step, joint: Float, W: Float) -> Float:
+def _square(at: _Seen) -> Float:
     """Squared whitened distance of each frame, its angle at the optimum."""
-    residual, W_line = _residual(at, joint), _weights_in_line(at, W)
-    return _across(residual, W_line, (inverse_left_jacobian(residual) @ _own_column(at))[..., 0])[0]
+    return _across(at.residual, at.weights, (at.jacobian @ _own_column(at.numbers))[..., 0])[0]
 
 
 def _across(residual: Float, W_line: Float, along: Float) -> tuple[Float, Float, Float, Float]:
@@ -225,23 +248,21 @@ def _across(residual: Float, W_line: Float, along: Float) -> tuple[Float, Float,
     return np.sum(weighted * residual, axis=1) - pull**2 / own, weighted, pull, own
 
 
-def _own_column(at: _Step) -> Float:
+def _own_column(numbers: _Numbers) -> Float:
     """Derivative (F, 6, 1) of the model's pose by the frame's own angle, in the frame of the line."""
-    along = np.array([0.0, 0.0, 1.0, 0.0, 0.0, at.pitch])
-    return np.broadcast_to(along[:, None], (at.angle.size, 6, 1))
+    along = np.array([0.0, 0.0, 1.0, 0.0, 0.0, numbers.pitch])
+    return np.broadcast_to(along[:, None], (numbers.angle.size, 6, 1))
 
 
-def _derivatives(at: _Step, screw: bool) -> Float:
+def _derivatives(angle: Float, screws: Float, screw: bool) -> Float:
     """Derivatives (F, 6, P) of the model's pose by the shared parameters, in the frame of the line."""
-    half = 0.5 * np.stack([at.angle, at.pitch * at.angle], axis=1)
-    zero = np.zeros((at.angle.size, 2))
-    back = adjoint(dq.conjugate(dq.exp(np.concatenate([zero, half[:, :1], zero, half[:, 1:]], axis=1))))
+    back = adjoint(dq.conjugate(screws))
     proximal = back[:, :, list(_SHARED_HINGE)]
     distal = np.broadcast_to(-np.eye(6)[:, list(_SHARED_HINGE)], proximal.shape)
-    slide = np.broadcast_to(np.eye(6)[:, 5:], (at.angle.size, 6, 1))
+    slide = np.broadcast_to(np.eye(6)[:, 5:], (angle.size, 6, 1))
     columns = [proximal, distal, slide]
     if screw:
-        columns.append(slide * at.angle[:, None, None])
+        columns.append(slide * angle[:, None, None])
     return np.concatenate(columns, axis=2)
 
 
@@ -256,37 +277,36 @@ class _Equations(NamedTuple):
     gradient: Float
     own: Float
     mixed: Float
-    residual: Float
     along: Float
     square: Float
 
 
-def _normal_equations(at: _Step, joint: Float, W: Float, weight: Float, screw: bool) -> _Equations:
-    residual, W_line = _residual(at, joint), _weights_in_line(at, W)
+def _normal_equations(at: _Seen, weight: Float, screw: bool) -> _Equations:
+    by_shared = _derivatives(at.numbers.angle, at.screws, screw)
     # The residual's frame turns with the model: without its Jacobian these are not the equations of the least cost.
-    columns = inverse_left_jacobian(residual) @ np.concatenate([_derivatives(at, screw), _own_column(at)], axis=2)
+    columns = at.jacobian @ np.concatenate([by_shared, _own_column(at.numbers)], axis=2)
     G, along = columns[..., :-1], columns[..., -1]
-    WG = W_line @ G
-    square, weighted, own_pull, own = _across(residual, W_line, along)
+    WG = at.weights @ G
+    square, weighted, own_pull, own = _across(at.residual, at.weights, along)
     mixed = np.einsum("fip,fi->fp", WG, along)
     pull = np.einsum("fip,fi->fp", G, weighted)
     # Factors are weighed beforehand: sums of three factors take twice as long, and come to the same.
     information = np.einsum("fip,fiq->pq", weight[:, None, None] * G, WG)
     information -= np.einsum("fp,fq->pq", (weight / own)[:, None] * mixed, mixed)
     gradient = weight @ (pull - mixed * (own_pull / own)[:, None])
-    return _Equations(information, gradient, own_pull / own, mixed / own[:, None], residual, along, square)
+    return _Equations(information, gradient, own_pull / own, mixed / own[:, None], along, square)
 
 
-def _step(at: _Step, joint: Float, W: Float, weight: Float, screw: bool) -> tuple[_Step, float]:
+def _step(at: _Seen, joint: Float, W: Float, weight: Float, screw: bool) -> tuple[_Seen, float]:
     """One step of Gauss and Newton, and the size of a full one in radians and meters; 0 where no step is better."""
-    information, gradient, own, mixed, *_, square = _normal_equations(at, joint, W, weight, screw)
+    information, gradient, own, mixed, *_, square = _normal_equations(at, weight, screw)
     scale = np.sqrt(np.maximum(np.diag(information), np.finfo(np.float64).tiny))
     step = np.linalg.lstsq(information / np.outer(scale, scale), gradient / scale, rcond=1e-13)[0] / scale
     size, gain, cost = float(np.abs(step).max()), float(gradient @ step), float(weight @ square)
     lost = size <= _SHORT and gain <= _LEAST_GAIN * cost  # what it gains is lost in the round-off of the cost
     for _ in range(_HALVINGS):  # a full step may lead too far where the poses are far from any hinge
-        after = _moved(at, step, own - mixed @ step, screw=screw)
-        if lost or weight @ _square(after, joint, W) <= cost:
+        after = _seen_from(_moved(at.numbers, step, own - mixed @ step, screw=screw), joint, W)
+        if lost or weight @ _square(after) <= cost:
             return after, size
         step, own = 0.5 * step, 0.5 * own
     return at, 0.0
@@ -297,30 +317,30 @@ def _settled(size: float, before: float) -> bool:
     return size < _SMALL_STEP or _SHRINKS * before < size < _ROUND_OFF
 
 
-def _moved(at: _Step, step: Float, turn: Float, *, screw: bool) -> _Step:
+def _moved(at: _Numbers, step: Float, turn: Float, *, screw: bool) -> _Numbers:
     tilt = np.zeros((2, 6))
     tilt[0, list(_SHARED_HINGE)] = step[:4]
     tilt[1, list(_SHARED_HINGE)] = step[4:8]
     # The slide at angle 0 is a shift of the distal body's frame against its line: Z(0, s) F^-1 = (F Z(0, -s))^-1.
     tilt[1, 5] = -step[8]
-    proximal = dq.normalize(dq.multiply(at.proximal, dq.exp(0.5 * tilt[0])))
-    distal = dq.normalize(dq.multiply(at.distal, dq.exp(0.5 * tilt[1])))
-    return _Step(proximal, distal, at.angle + turn, at.pitch + (float(step[9]) if screw else 0.0))
+    by_line = dq.exp(0.5 * tilt)
+    lines = dq.normalize([dq.multiply(at.proximal, by_line[0]), dq.multiply(at.distal, by_line[1])])
+    return _Numbers(lines[0], lines[1], at.angle + turn, at.pitch + (float(step[9]) if screw else 0.0))
 
 
-def _result(at: _Step, joint: Float, W: Float, weight: Float, screw: bool) -> LineFit:
-    found = _normal_equations(at, joint, W, weight, screw)
+def _result(at: _Seen, W: Float, weight: Float, screw: bool) -> LineFit:
+    found = _normal_equations(at, weight, screw)
     information, own, square = found.information, found.own, found.square
-    residual = found.residual - own[:, None] * found.along
+    residual = at.residual - own[:, None] * found.along
     count = weight.sum()
     freedom = float(_FREEDOM * count - len(information))
-    in_distal = residual @ adjoint(at.distal).T
+    in_distal = residual @ adjoint(at.numbers.distal).T
     whitened = np.einsum("fji,fj->fi", np.linalg.cholesky(W), in_distal) * np.sqrt(weight)[:, None]
     return LineFit(
-        proximal=at.proximal,
-        distal=at.distal,
-        angle=at.angle + own,
-        pitch=at.pitch,
+        proximal=at.numbers.proximal,
+        distal=at.numbers.distal,
+        angle=at.numbers.angle + own,
+        pitch=at.numbers.pitch,
         residual=residual,
         weight=weight,
         information=information,
@@ -345,8 +365,8 @@ def linear_model(fit: LineFit, covariance: Float) -> tuple[Float, Float, Float]:
         Derivatives (F, 6, P) of the model's poses by the shared parameters and (6,) by a frame's own angle, and the
         information (F, 6, 6) of each pose; all in the frame of the line.
     """
-    at = _Step(fit.proximal, fit.distal, fit.angle, fit.pitch)
-    derivatives = _derivatives(at, screw=len(fit.information) > HINGE_NUMBERS)
+    at = _Numbers(fit.proximal, fit.distal, fit.angle, fit.pitch)
+    derivatives = _derivatives(at.angle, at.screws, screw=len(fit.information) > HINGE_NUMBERS)
     own = np.array([0.0, 0.0, 1.0, 0.0, 0.0, fit.pitch])
     return derivatives, own, _weights_in_line(at, information_of(covariance))
 

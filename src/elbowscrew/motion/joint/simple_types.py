@@ -114,10 +114,12 @@ class OneAxis(Mechanism):
         """Move both lines, the slide at angle 0 (a shift of the distal line's frame) and the pitch."""
         distal = line_twist(shared[4:8])
         distal[5] = -0.5 * shared[8]
+        by_line = dq.exp([line_twist(shared[:4]), distal])
+        lines = dq.normalize([dq.multiply(self.proximal, by_line[0]), dq.multiply(self.distal, by_line[1])])
         return replace(
             self,
-            proximal=dq.normalize(dq.multiply(self.proximal, dq.exp(line_twist(shared[:4])))),
-            distal=dq.normalize(dq.multiply(self.distal, dq.exp(distal))),
+            proximal=lines[0],
+            distal=lines[1],
             pitch=self.pitch + (float(shared[9]) if self.screw else 0.0),
             frames=self.frames + own,
         )

@@ -106,9 +106,8 @@ def identify_joint(
         at = oriented(_counted_from(mechanism, everywhere, reference), left=left, located=poses.located)
         told = fit_mechanism(at, most, iterations=0, weight=fit.weight)
         return _with_two_axes(choice, told, most, evidence.at(rows), everywhere, reference, scale)
-    start = reference_numbers(mechanism, everywhere, reference)
-    allowed = coordinates_of(replace(mechanism, frames=start.own), reference)
     every = numbers_everywhere(mechanism, everywhere, reference)
+    allowed = coordinates_of(replace(mechanism, frames=every.at_reference), reference)
     if isinstance(mechanism, Ball) and not poses.located:
         return _result(choice, every, scale, coordinates=allowed)
     if isinstance(mechanism, Ball):
@@ -210,7 +209,8 @@ def _result(
 ) -> JointType:
     """Put a result together; `scale` is how many times the stated variance the residuals have."""
     if every is None:
-        every = FrameNumbers(*[np.zeros((0, 0))] * 3, *[np.zeros(0)] * 2)
+        none, nothing = np.zeros(0), np.zeros((0, 0))
+        every = FrameNumbers(nothing, nothing, nothing, none, none, nothing)
     return JointType(
         type=choice.type,
         status=choice.status,
