@@ -89,6 +89,10 @@ def test_bodies_and_markers_by_name(samples: Path) -> None:
     read = elbowscrew.read_recording(samples / "elbow_moving_arm_mm.csv", markers=("*",))
     assert all(read[body.name] is body for body in read.bodies)
     assert all(read[marker.name] is marker for marker in read.markers)
+    assert list(read) == [*(body.name for body in read.bodies), *(marker.name for marker in read.markers)]
+    assert len(list(read)) > len(read.bodies)
+    assert "Forearm" in read
+    assert "Fore arm" not in read
     with pytest.raises(KeyError, match="no body or marker 'Fore arm'; did you mean 'Forearm'"):
         read["Fore arm"]
     with pytest.raises(KeyError, match="no body or marker 'q'; there are 'Upper Arm', 'Forearm'"):
