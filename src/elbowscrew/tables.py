@@ -313,7 +313,8 @@ def attributes(read: Sequence[NDArray[Any]], table: tuple[Column, ...]) -> dict[
         places = [column.component for column in columns_of if column.component is not None]
         if places:
             found[attribute] = np.full((values[0].size, max(places) + 1), np.nan)
-            found[attribute][:, places] = np.stack(values, axis=1)
+            for place, one in zip(places, values, strict=True):
+                found[attribute][:, place] = one
         elif columns_of[0].quantity is Quantity.FLAG:
             found[attribute] = values[0] == 1
         else:

@@ -89,3 +89,21 @@ def test_a_row_that_was_not_written_is_refused(row: str, long: bool, tmp_path: P
 def test_a_table_whose_last_line_is_cut_is_refused(long: bool, tmp_path: Path) -> None:
     with pytest.raises(ResultError, match="last line is cut"):
         read(tmp_path / "t.csv", ROWS, long=long, end="")
+
+
+@pytest.mark.parametrize("threads", ["1", "2"], ids=["one core", "spare cores"])
+def test_blocks_keep_their_order_whoever_parses_them(
+    threads: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("OMP_NUM_THREADS", threads)
+    rows = [f"{k},1,,{k},{k}.25," for k in range(300)]
+    found = read(tmp_path / "t.csv", rows, long=True)
+    assert found["frame"].tolist() == found["phase"].tolist() == list(range(300))
+    assert found["theta"].tolist() == [k + 0.25 for k in range(300)]
+
+
+@pytest.mark.parametrize("threads", ["1", "2"], ids=["one core", "spare cores"])
+def test_the_first_fault_is_told(threads: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("OMP_NUM_THREADS", threads)
+    with pytest.raises(ResultError, match="word"):
+        read(tmp_path / "t.csv", ["0,1,,3,word,0.5", *ROWS, *ROWS], long=True, end="")

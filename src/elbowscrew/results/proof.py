@@ -160,7 +160,7 @@ def proof_of(folder: Path) -> Proof:
 class _Digested(io.RawIOBase):
     """A file that is read once, for its content and for its digest."""
 
-    def __init__(self, source: IO[bytes]) -> None:
+    def __init__(self, source: io.BufferedReader) -> None:
         super().__init__()
         self._source = source
         self.sha256 = hashlib.sha256()
@@ -169,10 +169,9 @@ class _Digested(io.RawIOBase):
         return True
 
     def readinto(self, buffer: WriteableBuffer, /) -> int:
-        data = self._source.read(len(memoryview(buffer)))
-        memoryview(buffer)[: len(data)] = data
-        self.sha256.update(data)
-        return len(data)
+        count = self._source.readinto(buffer)
+        self.sha256.update(memoryview(buffer)[:count])
+        return count
 
     def rest(self) -> None:
         """Read what has not been asked for."""

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Collection, Iterator
+from collections import deque
+from collections.abc import Callable, Collection, Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
+from functools import partial
 from io import BytesIO, StringIO
 from typing import IO, Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from elbowscrew._process import has_spare_cores
 from elbowscrew.choices import AngleUnit, LengthUnit
 from elbowscrew.errors import ResultError
 from elbowscrew.geometry.arrays import Float
@@ -25,6 +29,10 @@ _LARGEST_WHOLE: Final = 2.0**53 - 1.0
 _INTEGERS: Final = (Quantity.INTEGER, Quantity.MASKED_INTEGER, Quantity.FLAG)
 _AS_THEY_ARE: Final = (*_INTEGERS, Quantity.NUMBER, Quantity.LABEL)
 
+# Blocks that are parsed at a time: to read one and to digest it takes half as long as to parse it.
+_AHEAD: Final = 2
+
+_Values = list[NDArray[Any]]
 Attributes = dict[str, NDArray[Any]]
 """Columns of a result by the attributes that they are of."""
 
@@ -95,28 +103,17 @@ def _read(
             places = [header.index(column.name + suffixes.get(column.quantity, "")) for column in table]
             quantities = [column.quantity for column in table]
             columns: list[list[NDArray[Any]]] = [[] for _ in table]
-            is_long = False
-            while block := _whole_lines(stream):
-                if not block.endswith(b"\n"):
-                    msg = "its last line is cut"
-                    raise ValueError(msg)
-                is_long = is_long or len(block) >= _BLOCK_BYTES
-                values = _numbers_at_once(block, len(header), places, quantities) if is_long else None
-                if values is None:
-                    lines = list(StringIO(block.decode(), newline=""))
-                    values = _cell_by_cell(lines, len(header), places, quantities)
-                for column, one in zip(columns, values, strict=True):
-                    column.append(one)
+            for values in _blocks(stream, partial(_parsed, width=len(header), places=places, quantities=quantities)):
+                for column, one, quantity in zip(columns, values, quantities, strict=True):
+                    column.append(in_si(one, quantity, angle_unit, length_unit))
     except OSError as error:
         msg = f"{path}: cannot be read: {error.strerror or error}; analyze the trial again"
         raise ResultError(msg) from error
     except (ValueError, IndexError, csv.Error) as error:
         msg = f"{path}: not the table that was written: {error}; analyze the trial again"
         raise ResultError(msg) from error
-    return [
-        in_si(_joined(blocks, column.quantity), column.quantity, angle_unit, length_unit)
-        for column, blocks in zip(table, columns, strict=True)
-    ]
+    columns.reverse()  # so that each goes as soon as it is joined
+    return [_joined(columns.pop(), column.quantity) for column in table]
 
 
 def read_attributes(
@@ -149,6 +146,46 @@ def read_attributes(
     """
     wanted = tuple(column for column in table if column.attribute in names)
     return attributes(_read(source, wanted, angle_unit, length_unit), wanted)
+
+
+def _blocks(stream: IO[bytes], parsed: Callable[..., _Values]) -> Iterator[_Values]:
+    """Parse a table block by block; a long one, where there is another core, while what follows is read and digested.
+
+    What comes of a block, be it a fault, comes when its turn has come.
+    """
+    block = _whole_lines(stream)
+    is_long = len(block) >= _BLOCK_BYTES
+    if not is_long or not has_spare_cores():
+        while block:
+            yield parsed(block, is_long=is_long)
+            block = _whole_lines(stream)
+        return
+    with ThreadPoolExecutor(_AHEAD) as background:
+        ahead: deque[Future[_Values]] = deque()
+        while block:
+            ahead.append(background.submit(parsed, block, is_long=is_long))
+            block = _whole_lines(stream)
+            if len(ahead) == _AHEAD:
+                yield ahead.popleft().result()
+        while ahead:
+            yield ahead.popleft().result()
+
+
+def _parsed(block: bytes, width: int, places: list[int], quantities: list[Quantity], *, is_long: bool) -> _Values:
+    """Columns of a block of lines.
+
+    Raises
+    ------
+    ValueError, csv.Error
+        If they are not as they are written.
+    """
+    if not block.endswith(b"\n"):
+        msg = "its last line is cut"
+        raise ValueError(msg)
+    values = _numbers_at_once(block, width, places, quantities) if is_long else None
+    if values is not None:
+        return values
+    return _cell_by_cell(list(StringIO(block.decode(), newline="")), width, places, quantities)
 
 
 def _whole_lines(stream: IO[bytes]) -> bytes:
