@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import json
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
@@ -129,6 +130,20 @@ def test_what_cannot_be_made_is_told_with_the_reason() -> None:
     assert all("weighs them by up to" in note for note in models.note)
     assert np.isnan(models.rms_displacement).all()
     assert models.max_displacement_frame.mask.all()
+
+
+def test_each_model_has_its_own_errors_whatever_stands_beside_it() -> None:
+    plan = ComparisonPlan(laws=("linear",), blends=("piecewise",), counts=(3, 20), knots=("uniform",), data=("raw",))
+    every = compare(TRIAL, plan=plan).models
+    assert {bool(note) for note in every.note} == {True, False}
+    for method in set(every.method):
+        alone = compare(TRIAL, plan=ComparisonPlan(**{**_fields(plan), "methods": (method,)})).models
+        for count in plan.counts:
+            rows = (np.flatnonzero((of.method == method) & (of.keyframes_per_phase == count)) for of in (every, alone))
+            for beside, single in itertools.zip_longest(*(of.tolist() for of in rows)):
+                for name in {field.name for field in fields(alone)} - {"rank", "ns_per_frame"}:
+                    told, expected = getattr(every, name)[beside], getattr(alone, name)[single]
+                    np.testing.assert_array_equal(np.ma.filled(told, -1), np.ma.filled(expected, -1), err_msg=name)
 
 
 def hinge(count: int = 1201) -> Recording:

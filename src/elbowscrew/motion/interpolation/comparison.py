@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import fields
 from typing import Any, Final, NamedTuple
 
@@ -12,6 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from elbowscrew.errors import AnalysisError, SettingError
+from elbowscrew.geometry._blocks import BLOCK
+from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import (
     BodyPoints,
     ComparedModels,
@@ -72,6 +74,8 @@ def compare(
     laws: dict[str, tuple[PhaseLaw, ...]] = {}
     sources, models = list(keyframe_sources_of(measured, phases, plan, wanted)), list(models_of(plan))
     steps = len(sources) * len(models) + 1
+    # Of short series: there, each call of NumPy takes longer than its numbers do.
+    at_once = max(BLOCK // measured.elapsed.size, 1)
     for source in sources:
         fitted: dict[str, tuple[FittedLaw, ...] | str] = {
             name: _laws_of(name, source, measured, points) for name in plan.laws
@@ -82,9 +86,13 @@ def compare(
                 for name, found in fitted.items()
             }
         ways = {method: _way(method, source, joint) for method in {model.method for model in models}}
-        for model in models:
-            rows.append(_row(model, source, fitted[model.law], ways[model.method], measured, points, raw))
-            report(len(rows), steps)
+        for first in range(0, len(models), at_once):
+            made = []
+            for model in models[first : first + at_once]:
+                made.append(_made(model, source, fitted[model.law], ways[model.method], measured))
+                report(len(rows) + len(made), steps)
+            _add_errors(made, measured, points, raw)
+            rows += [one.row for one in made]
     located = points.located
     tolerance = _DEFAULT_TOLERANCE[located] if wanted.tolerance_mm is None else wanted.tolerance_in_si(located=located)
     selections, doubts = _selections(measured, phases, points, tolerance, plan.methods, joint)
@@ -163,15 +171,20 @@ def _laws_of(name: str, source: SourcePoses, measured: Measurement, points: Body
         return str(error)
 
 
-def _row(
+class _Made(NamedTuple):
+    """A row of the table, and the model's poses (N, 8); None where there are none, as the row's note says."""
+
+    row: dict[str, Any]
+    dual_quat: Float | None
+
+
+def _made(
     model: PlannedModel,
     source: SourcePoses,
     laws: tuple[FittedLaw, ...] | str,
     way: Interpolation | str,
     measured: Measurement,
-    points: BodyPoints,
-    settings: Settings,
-) -> dict[str, Any]:
+) -> _Made:
     row: dict[str, Any] = {
         "data": source.name,
         "method": model.method,
@@ -184,9 +197,9 @@ def _row(
     rows = spread_rows(source.phases, source.usable, measured.elapsed, model.keyframes)
     row["keyframes"] = rows.size
     if isinstance(way, str):
-        return {**row, "note": way}
+        return _Made({**row, "note": way}, None)
     if isinstance(laws, str):
-        return {**row, "note": laws}
+        return _Made({**row, "note": laws}, None)
     functions = [law.function for law in laws]
     try:
         keyframes = keyframes_at(
@@ -203,10 +216,21 @@ def _row(
         modeled = model_motion(way.coordinates, measured.elapsed, keyframes, way.method, functions)
         seconds = time.perf_counter() - start
     except SettingError as error:
-        return {**row, "note": str(error)}
-    if not np.isfinite(modeled.dual_quat[~modeled.phase.mask]).all():
-        return {**row, "note": "the blended poses cancel in some frames"}
-    found = model_errors(modeled.dual_quat, measured, points, settings)
+        return _Made({**row, "note": str(error)}, None)
+    modeled_rows = ~modeled.phase.mask
+    if not np.isfinite(modeled.dual_quat[modeled_rows]).all():
+        return _Made({**row, "note": "the blended poses cancel in some frames"}, None)
+    row["ns_per_frame"] = 1e9 * seconds / int(modeled_rows.sum())
+    return _Made(row, modeled.dual_quat)
+
+
+def _add_errors(made: Sequence[_Made], measured: Measurement, points: BodyPoints, settings: Settings) -> None:
+    """Put the errors of models into their rows."""
+    rows = [row for row, dual_quat in made if dual_quat is not None]
+    if not rows:
+        return
+    poses = np.stack([dual_quat for _, dual_quat in made if dual_quat is not None])
+    found = model_errors(poses, measured, points, settings)
     errors = {"angle_error": found.angle_error, "axis_error": found.axis_error}
     if points.located:
         errors |= {
@@ -214,14 +238,15 @@ def _row(
             "translation_error": found.translation_error,
             "axis_distance": found.axis_distance,
         }
+        for row, last in zip(rows, np.nanargmax(found.rms_displacement, axis=-1), strict=True):
+            row["max_displacement_frame"] = int(measured.screw.frame[last])
     for name, values in errors.items():
-        known = np.isfinite(values).any()
-        row[f"rms_{name}"] = float(np.sqrt(np.nanmean(values**2))) if known else np.nan
-        row[f"max_{name}"] = float(np.nanmax(values)) if known else np.nan
-    if points.located:
-        row["max_displacement_frame"] = int(measured.screw.frame[int(np.nanargmax(errors["displacement"]))])
-    row["ns_per_frame"] = 1e9 * seconds / int((~modeled.phase.mask).sum())
-    return row
+        known = np.isfinite(values).any(axis=-1)
+        rms, largest = np.full((2, len(rows)), np.nan)
+        rms[known] = np.sqrt(np.nanmean(values[known] ** 2, axis=-1))
+        largest[known] = np.nanmax(values[known], axis=-1)
+        for k, row in enumerate(rows):
+            row[f"rms_{name}"], row[f"max_{name}"] = float(rms[k]), float(largest[k])
 
 
 def _ranked(rows: list[dict[str, Any]], error: str) -> ComparedModels:

@@ -23,11 +23,11 @@ class ModelErrors(NamedTuple):
 
     Attributes
     ----------
-    expressed : ndarray, shape (N, 8)
+    expressed : ndarray, shape (..., N, 8)
     series : HelicalSeries
-    angle_error, axis_error : ndarray, shape (N,)
+    angle_error, axis_error : ndarray, shape (..., N)
         Radians; as all errors NaN where nothing was measured.
-    translation_error, rms_displacement, axis_distance : ndarray, shape (N,)
+    translation_error, rms_displacement, axis_distance : ndarray, shape (..., N)
         Meters.
     """
 
@@ -45,8 +45,8 @@ def model_errors(dual_quat: Float, measured: Measurement, points: BodyPoints, se
 
     Parameters
     ----------
-    dual_quat : ndarray, shape (N, 8)
-        Of the model, in the frame of the measured displacements.
+    dual_quat : ndarray, shape (..., N, 8)
+        Of one model or of several, in the frame of the measured displacements.
     measured : Measurement
     points : BodyPoints
         What the RMS displacement is averaged over.
@@ -58,7 +58,7 @@ def model_errors(dual_quat: Float, measured: Measurement, points: BodyPoints, se
     """
     D, sense = measured.displacement, measured.sense
     D_model = expressed(dual_quat, measured.joint, measured.express_in)
-    angle, sign = modeled_angle(D_model[:, :4], measured.screw.euler_parameters, sense, measured.elapsed)
+    angle, sign = modeled_angle(D_model[..., :4], measured.screw.euler_parameters, sense, measured.elapsed)
     series = helical_series(D_model, np.radians(settings.min_angle_deg), angle, sign)
     near = pose_from_dual_quat(measured.change)[1]
     found = ModelErrors(
@@ -71,5 +71,5 @@ def model_errors(dual_quat: Float, measured: Measurement, points: BodyPoints, se
         axis_distance=distance_across(measured.line, series.line, near),
     )
     for error in found[2:]:
-        error[~measured.joint.measured] = np.nan
+        error[..., ~measured.joint.measured] = np.nan
     return found

@@ -158,7 +158,7 @@ def displacement(joint: JointMotion) -> NDArray[np.float64]:
 
 
 def expressed(dual_quat: NDArray[np.float64], joint: JointMotion, express_in: ExpressIn) -> NDArray[np.float64]:
-    """Write displacements, shape (N, 8), given in the distal body's reference frame in another frame.
+    """Write displacements, shape (..., N, 8), given in the distal body's reference frame in another frame.
 
     The proximal body's is ``J_0 D J_0^-1``, the laboratory's ``A_0 J_0 D J_0^-1 A_0^-1``: same angle, same slide,
     another description of the line.

@@ -48,8 +48,8 @@ class _Rotation(NamedTuple):
 
     @classmethod
     def of(cls, quat: Float) -> _Rotation:
-        positive = np.where(quat[:, :1] < 0.0, -quat, quat)
-        scalar, vector = positive[:, 0], positive[:, 1:]
+        positive = np.where(quat[..., :1] < 0.0, -quat, quat)
+        scalar, vector = positive[..., 0], positive[..., 1:]
         return cls(scalar, vector, 2.0 * np.arctan2(length(vector), scalar))
 
 
@@ -170,7 +170,7 @@ def modeled_angle(modeled: Float, measured: Float, sense: Sense, time_s: Float) 
 
     Parameters
     ----------
-    modeled, measured : ndarray, shape (N, 4)
+    modeled, measured : ndarray, shape (..., N, 4) and (N, 4)
         Unit quaternions of the displacements since the reference, each of any sign; NaN where unknown.
     sense : Sense
         Of the measured ones.
@@ -178,7 +178,7 @@ def modeled_angle(modeled: Float, measured: Float, sense: Sense, time_s: Float) 
 
     Returns
     -------
-    angle, sign : ndarray, shape (N,)
+    angle, sign : ndarray, shape (..., N)
         Theta, radians, and the sign of its axis as in `Sense`; NaN where the model has no pose.
     """
     if not sense.signed:
@@ -198,7 +198,7 @@ def angle_beside(quat: Float, axis: Float, angle: Float) -> tuple[Float, Float]:
 
     Parameters
     ----------
-    quat : ndarray, shape (N, 4)
+    quat : ndarray, shape (..., N, 4)
         Unit quaternions, each of any sign; NaN where unknown.
     axis : ndarray, shape (N, 3) or (3,)
         Unit directions about which a positive angle turns.
@@ -207,11 +207,11 @@ def angle_beside(quat: Float, axis: Float, angle: Float) -> tuple[Float, Float]:
 
     Returns
     -------
-    angle, sign : ndarray, shape (N,)
+    angle, sign : ndarray, shape (..., N)
         As of `modeled_angle`.
     """
     rotation = _Rotation.of(quat)
-    along = np.sum(rotation.vector * axis, axis=1)
+    along = np.sum(rotation.vector * axis, axis=-1)
     near = np.abs(along) >= _NEAR_AXIS * length(rotation.vector)
     plus, minus = (phi + _TURN * np.round((angle - phi) / _TURN) for phi in (rotation.phi, -rotation.phi))
     nearer = np.abs(plus - angle) <= np.abs(minus - angle)
