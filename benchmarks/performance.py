@@ -15,6 +15,7 @@ import os
 import platform
 import tempfile
 from collections.abc import Callable
+from dataclasses import replace
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -130,7 +131,9 @@ def page(results: dict[str, Any]) -> str:
         for part in results["parts"].values()
         for row in part
     ]
+    pace = next((row.value / trial.PACE_S for row in rows if row.what == trial.PACE), None)
     missed = [row for row in rows if row.met is False]
+    late = [row for row in missed if pace is not None and row.unit in ("s", "ms")]
     wanted = [row for row in rows if row.met is not None]
     parts = [
         INTRODUCTION.format(
@@ -142,8 +145,9 @@ def page(results: dict[str, Any]) -> str:
             libraries=libraries,
             reached=len(wanted) - len(missed),
             wanted=len(wanted),
+            pace="" if pace is None else PACE.format(here=trial.PACE_S * pace, there=trial.PACE_S, times=pace),
         ),
-        *(f"- {row.what}: {row.cells()[1]}, wanted {row.sense} {row.wanted:g}\n" for row in missed),
+        *(f"- {told_missed(row, pace if row in late else None)}\n" for row in missed),
         "\n",
     ]
     for name in PARTS:
@@ -155,6 +159,21 @@ def page(results: dict[str, Any]) -> str:
     return "".join(parts).rstrip() + "\n"
 
 
+def told_missed(row: Row, pace: float | None) -> str:
+    """Tell a number that was missed; a time also as it would be on the machine for which it was wanted."""
+    told = f"{row.what}: {row.cells()[1]}, wanted {row.sense} {row.wanted:g}"
+    if pace is None or row.wanted is None:
+        return told
+    there = replace(row, value=row.value / pace)
+    return f"{told}; {there.cells()[1]} there, which is {'reached' if there.met else 'missed'}"
+
+
+PACE = """
+Times were wanted of a machine on which the pandas script, with the same versions of its libraries, took {there:.2f} s.
+In this run it took {here:.2f} s, {times:.2f} times as long. A time that was missed is also told divided by that
+("there").
+"""
+
 INTRODUCTION = """# Performance
 
 Made by `python benchmarks/performance.py --docs docs/explanation/performance.md`; do not edit. Everything is measured
@@ -165,7 +184,7 @@ When it began, {load:.1f} other processes ran in the mean of a minute; where tha
 and ratios rough.
 Tasks take turns with their yardsticks; a ratio is that of the
 medians, its range that of the rounds. Read the ratios: the times are those of one machine.
-
+{pace}
 Of {wanted} numbers that were wanted {reached} are reached. Missed:
 
 """

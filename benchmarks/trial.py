@@ -28,6 +28,9 @@ DRAWN, SCRIPTED = "pandas read and pyplot figures", "the pandas script"
 CYCLE = 450
 EXPORT_COLUMNS = 50
 WANTED_S = {450: 0.8, 1_000_000: 11.0}
+PACE = f"{SCRIPTED}, 450 frames"
+PACE_S = 2.08
+"""What the script took on the machine, with the same versions of its libraries, for which times are wanted."""
 SIZES = (10_000, 30_000, 100_000, 300_000, 1_000_000, 2_000_000)
 
 
@@ -84,6 +87,7 @@ def beside(folder: Path, frames: int, rounds: int, *, most: tuple[float, float],
         share(what, times, DRAWN, most[0]),
         script,
         Row(what=what, value=statistics.median(times["ours"]), unit="s", wanted=WANTED_S.get(frames)),
+        Row(what=f"{SCRIPTED}, {frames:,} frames", value=statistics.median(times[SCRIPTED]), unit="s"),
         Row(
             what=f"most memory at {frames:,} frames",
             value=memory["ours"],
