@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Final
 
 import numpy as np
@@ -75,12 +76,15 @@ def _with_slope(ax: Axes, view: TrialView) -> Axes:
 
 
 def _ribbon(x: Float, y: Float, reach: Float) -> PolyCollection:
-    """A band about a curve that may turn back: a piece between each two of its points."""
+    """A band about a curve that may turn back: a piece for each part on which it does not, for one would cut itself."""
     low, high = np.column_stack([x, y - reach]), np.column_stack([x, y + reach])
-    corners = np.stack([low[:-1], low[1:], high[1:], high[:-1]], axis=1)
-    known = np.isfinite(corners).all(axis=(1, 2))
+    known = np.isfinite(x + y + reach)
+    way = np.where(known[:-1] & known[1:], np.sign(np.diff(x)), np.nan)
+    turns = np.flatnonzero(np.diff(way) != 0.0) + 1  # a gap, which is NaN, is a part of its own
+    ends = pairwise([0, *turns.tolist(), way.size])
+    parts = [slice(first, last + 1) for first, last in ends if np.isfinite(way[first:last]).all()]
     look = {**style.BAND, "edgecolor": style.ORANGE}
-    return PolyCollection(list(corners[known]), label="95 % interval", **look)
+    return PolyCollection([np.concatenate([low[k], high[k][::-1]]) for k in parts], label="95 % interval", **look)
 
 
 def plot_slide_span(ax: Axes, analysis: Analysis | TrialView) -> Axes:
