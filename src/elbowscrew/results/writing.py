@@ -17,7 +17,7 @@ from elbowscrew.model.table_record import TableRecord
 from elbowscrew.motion.interpolation.rebuilding import keyframes_of
 from elbowscrew.opening import create
 
-BLOCK_ROWS: Final = 4096
+BLOCK_ROWS: Final = 2048  # a text of more is new memory each time, which costs more than the calls
 # What JSON would escape, what CSV quotes, and the word that JSON has for an empty cell.
 _NOT_PLAIN: Final = re.compile(r'[",\\\x00-\x1f]|null')
 
