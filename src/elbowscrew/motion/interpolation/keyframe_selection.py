@@ -132,6 +132,10 @@ class _Track(NamedTuple):
         moves = span > 0.0
         return np.where(moves, (self.parameter[rows] - self.parameter[first]) / np.where(moves, span, 1.0), 0.0)
 
+    def moved_on(self, first: int) -> int:
+        """Give the first row where the parameter is beyond that of a row."""
+        return int(np.searchsorted(self.parameter, self.parameter[first], side="right"))
+
     def reach(self, first: int) -> int:
         """Give the last row that a segment from a row may end at: the next one that must be a keyframe."""
         return int(self.stops[np.searchsorted(self.stops, first, side="right")])
@@ -271,10 +275,10 @@ def _fewest(track: _Track, tolerance: float) -> Index:
     while before[-1] < 0:
         reached = []
         for first in frontier[::-1].tolist():  # the farthest first: it reaches most of what there is to reach
-            open_rows = np.flatnonzero(before[first + 1 : track.reach(first) + 1] < 0) + first + 1
-            open_rows = open_rows[track.parameter[open_rows] > track.parameter[first]]
+            later = track.moved_on(first)
+            open_rows = np.flatnonzero(before[later : track.reach(first) + 1] < 0) + later
             if cone is not None and open_rows.size:
-                open_rows = open_rows[cone.may_hold(first, open_rows)]
+                open_rows = cone.leaves(first, open_rows)
             if not open_rows.size:
                 continue
             new = _reached_from(track, screen, first, open_rows, tolerance)

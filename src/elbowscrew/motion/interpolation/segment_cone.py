@@ -45,21 +45,19 @@ class Cone(NamedTuple):
     tolerance: float
     even: bool
 
-    def may_hold(self, first: int, ends: Index) -> Bool:
-        """Whether frames between allow a segment to later rows (J,), increasing; never False where one holds."""
-        count = ends.size
+    def leaves(self, first: int, ends: Index) -> Index:
+        """Give those of later rows, increasing, to which frames between allow a segment, all that hold among them."""
         least, most = self._allowed(first, int(ends[-1]))
+        ends = ends[: np.searchsorted(ends, first + _STRIDE * least.size)]
         passed = (ends - first) // _STRIDE
-        reached = int(np.searchsorted(passed, least.size))
-        ends, passed = ends[:reached], passed[:reached]
         c = self.quat[ends] @ self.quat[first]
         speed = self._distance(first, ends) / (self.parameter[ends] - self.parameter[first])
         slowest, fastest = self._factors(c)
-        holds = np.zeros(count, dtype=np.bool_)
         with np.errstate(over="ignore"):
-            holds[:reached] = (speed * slowest <= most[passed]) & (speed * fastest >= least[passed])
-        holds[:reached] |= c < _WHOLE_TURN
-        return holds
+            holds: Bool = (speed * slowest <= most[passed]) & (speed * fastest >= least[passed])
+        holds |= c < _WHOLE_TURN
+        left: Index = ends[holds]
+        return left
 
     def _allowed(self, first: int, last: int) -> tuple[Float, Float]:
         """Least and largest ``f(u)/u`` by the frames looked at, before any, after one, and so on while any is left."""
