@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from pathlib import Path
 
 MAKE = """
 import gc, weakref
@@ -43,5 +44,35 @@ collect_garbage()
 assert left() is not None
 assert gc.get_freeze_count() == 0
 assert gc.get_threshold() == before
+"""
+    )
+
+
+LOAD = """
+from elbowscrew._process import load_matplotlib
+load_matplotlib()
+from matplotlib.patches import Patch
+"""
+
+
+def test_the_program_loads_matplotlib_without_its_manual() -> None:
+    run(f"set_up_process(){LOAD}assert 'antialiased' not in Patch.set.__doc__")
+
+
+def test_matplotlib_keeps_its_manual_in_a_process_of_somebody_else() -> None:
+    run(f"{LOAD}assert 'antialiased' in Patch.set.__doc__")
+
+
+def test_a_first_trial_is_finished_without_a_search_for_garbage(tmp_path: Path) -> None:
+    run(
+        f"""
+set_up_process()
+searched = []
+gc.callbacks.append(lambda phase, info: searched.append(info))
+from elbowscrew import analyze, save_analysis, simulate_trial
+save_analysis(analyze(simulate_trial(frames=450).recording), {str(tmp_path / "result")!r})
+assert not searched, searched
+from matplotlib.patches import Patch
+assert 'antialiased' not in Patch.set.__doc__
 """
     )

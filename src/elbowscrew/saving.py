@@ -9,6 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
+from elbowscrew._process import load_matplotlib
 from elbowscrew.choices import DRAWN_FORMATS
 from elbowscrew.errors import ElbowscrewError, OutputError, UsageError
 from elbowscrew.model import Analysis, Comparison, Landmarks, RebuiltMotion, TrialsComparison
@@ -188,6 +189,7 @@ def _write_json(path: Path, content: Mapping[str, object]) -> None:
 
 
 def _write_figures(staged: Path, view: TrialView, figures: Sequence[str], formats: Sequence[str]) -> None:
+    load_matplotlib()
     from elbowscrew.report.figure_files import figure_files
 
     _write_all(staged / "figures", figure_files(view, figures, formats))
@@ -286,6 +288,7 @@ def save_paper_figures(folder: str | os.PathLike[str]) -> tuple[Path, ...]:
     OutputError
         If a file is there already, or the disk does not take them.
     """
+    load_matplotlib()
     from elbowscrew.report.figure_files import figure_files
     from elbowscrew.simulate import simulate_trial
 
@@ -400,6 +403,7 @@ def write_comparison(
         write_table(staged / "compare.csv", comparison.models, settings.angle_unit, settings.length_unit)
         _write_json(staged / "compare.json", summary)
         if formats:
+            load_matplotlib()
             from elbowscrew.plots.comparison import comparison_figure
             from elbowscrew.report.captions import comparison_caption
             from elbowscrew.report.figure_files import files_of
