@@ -10,7 +10,14 @@ from hypothesis import strategies as st
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry import quaternion as qn
 from elbowscrew.geometry.arrays import Float
-from elbowscrew.motion.difference import angle_between, points_from_markers, points_from_radius, rms_displacement
+from elbowscrew.motion.difference import (
+    angle_between,
+    origin_distance,
+    points_from_markers,
+    points_from_radius,
+    rms_displacement,
+    turn_and_distance,
+)
 
 SEEDS = st.integers(0, 1_000_000)
 
@@ -50,3 +57,10 @@ def test_it_is_a_metric_and_knows_no_laboratory(seed: int) -> None:
     assert rms_displacement(a, -a, points) == pytest.approx(0.0, abs=1e-15)
     assert distance <= rms_displacement(a, c, points) + rms_displacement(c, b, points) + 1e-15
     assert rms_displacement(dq.multiply(moved, a), dq.multiply(moved, b), points) == pytest.approx(distance, abs=1e-12)
+
+
+def test_turn_and_distance_in_one_pass_are_the_same_numbers() -> None:
+    a, b = (poses(np.random.default_rng(seed), 50) for seed in (1, 2))
+    turn, distance = turn_and_distance(a, b)
+    assert turn.tolist() == angle_between(a, b).tolist()
+    assert distance.tolist() == origin_distance(a, b).tolist()

@@ -33,6 +33,12 @@ def origin_distance(pose_a: Float, pose_b: Float) -> Float:
     return in_blocks(lambda a, b: [row_length(_shift(a, b))], pose_a, pose_b, width=1)[..., 0]
 
 
+def turn_and_distance(pose_a: Float, pose_b: Float) -> tuple[Float, Float]:
+    """Give `angle_between` and `origin_distance` in one pass over the poses."""
+    found = in_blocks(lambda a, b: [*_angle_between(a, b), row_length(_shift(a, b))], pose_a, pose_b, width=2)
+    return found[..., 0], found[..., 1]
+
+
 def _shift(a: _rows.Rows, b: _rows.Rows) -> list[Float]:
     return [one - other for one, other in zip(_rows.position(a), _rows.position(b), strict=True)]
 

@@ -19,7 +19,9 @@ from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import TrackingLoss
 from elbowscrew.motion.screws.measurement import measure
 from elbowscrew.motion.smoothing.gaps import fill_gaps
+from elbowscrew.motion.tracking.body_pairs import turns_on_the_spot
 from elbowscrew.motion.tracking.clock import elapsed_time
+from elbowscrew.motion.tracking.losses import is_same_pose
 from elbowscrew.motion.tracking.lost_poses import check_tracking
 from elbowscrew.motion.tracking.quality import check_bodies, clock_quality, clock_warnings
 
@@ -392,3 +394,21 @@ def test_a_leap_is_told_by_its_size_and_by_the_limits_that_it_breaks() -> None:
     (warning,) = check_tracking(one, taken, elapsed_time(taken), Settings()).warnings
     assert "leaps out of its motion by up to 180 deg" in warning.message
     assert "120 deg and 0.5 m within 0.1 s" in warning.message
+
+
+def test_a_pose_is_the_same_to_the_last_digit_of_either_sign() -> None:
+    poses = random_poses((6,), seed=3)
+    others = poses.copy()
+    others[1] = -others[1]
+    others[2, 0] = np.nextafter(others[2, 0], 2.0)
+    others[3, 7] = -np.nextafter(others[3, 7], 2.0)
+    others[4, 4:] = -others[4, 4:]
+    assert is_same_pose(others, poses).tolist() == [True, True, False, False, False, True]
+
+
+def test_a_body_that_goes_away_late_is_not_on_the_spot() -> None:
+    turn = np.linspace(0.0, 1.0, 1500)
+    poses = dual_quat_from_screw(turn, 0.0, [0.0, 0.0, 1.0], [0.0, 0.0, 0.0])
+    assert turns_on_the_spot(body(poses))
+    poses[1400:] = dual_quat_from_screw(turn[1400:], 0.01, [0.0, 0.0, 1.0], [0.0, 0.0, 0.0])
+    assert not turns_on_the_spot(body(poses))

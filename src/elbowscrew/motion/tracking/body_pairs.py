@@ -8,11 +8,11 @@ from typing import Final
 import numpy as np
 
 from elbowscrew.geometry.arrays import Float
-from elbowscrew.geometry.dual_quaternion import align_signs, pose_from_dual_quat
+from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat
 from elbowscrew.model import QualityWarning, Recording, RigidBody
 from elbowscrew.motion.difference import origin_distance
 from elbowscrew.motion.tracking.leaps import LONGEST_EXCURSION_S
-from elbowscrew.motion.tracking.losses import frames_of, frames_warning, poses_at
+from elbowscrew.motion.tracking.losses import frames_of, frames_warning, is_same_pose, poses_at
 
 # Two bodies are swapped if each comes to lie where the other was, much nearer than to where it was itself.
 _CROSSED_SHARE: Final = 0.25
@@ -21,6 +21,7 @@ _LEAST_SWAP_M: Final = 0.05
 # Positions that were never measured: constant to the arithmetic's last digits while the body turns.
 _CONSTANT_M: Final = 1e-12
 _TURNED: Final = np.radians(1.0)
+_FIRST_POSES: Final = 1024
 
 
 def check_swaps(one: RigidBody, other: RigidBody, recording: Recording, elapsed: Float) -> tuple[QualityWarning, ...]:
@@ -57,8 +58,8 @@ def check_swaps(one: RigidBody, other: RigidBody, recording: Recording, elapsed:
 def check_same_pose(one: RigidBody, other: RigidBody) -> tuple[QualityWarning, ...]:
     """Tell of two bodies, unchecked, that have one and the same changing pose wherever both have one."""
     rows = np.flatnonzero(one.tracked & other.tracked)
-    first, second = one.dual_quat_lab_body[rows], other.dual_quat_lab_body[rows]
-    if rows.size < 2 or not (align_signs(second, first) == first).all():
+    first, second = (poses_at(body.dual_quat_lab_body, rows) for body in (one, other))
+    if rows.size < 2 or not is_same_pose(second, first).all():
         return ()
     message = (
         f"bodies {one.name!r} and {other.name!r} have one and the same pose in every frame, as one body under two "
@@ -69,10 +70,16 @@ def check_same_pose(one: RigidBody, other: RigidBody) -> tuple[QualityWarning, .
 
 def turns_on_the_spot(body: RigidBody) -> bool:
     """Whether a body turns while its position stays exactly as it is."""
-    rotation, position = pose_from_dual_quat(body.dual_quat_lab_body[body.tracked])
-    if not body.located or len(position) < 2 or (np.ptp(position, axis=0) > _CONSTANT_M).any():
+    poses = poses_at(body.dual_quat_lab_body, np.flatnonzero(body.tracked))
+    # The first poses tell it of nearly all bodies.
+    if not body.located or len(poses) < 2 or _goes_away(poses[:_FIRST_POSES]) or _goes_away(poses):
         return False
+    rotation = poses[:, :4]
     return bool((np.abs(rotation @ rotation[0]) <= np.cos(_TURNED / 2.0)).any())
+
+
+def _goes_away(poses: Float) -> bool:
+    return bool((np.ptp(pose_from_dual_quat(poses)[1], axis=0) > _CONSTANT_M).any())
 
 
 def constant_positions_warning(names: Sequence[str]) -> QualityWarning:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cached_property
 from typing import Final
 
 import numpy as np
@@ -11,7 +12,7 @@ from elbowscrew.geometry import quaternion
 from elbowscrew.geometry._small_angle import length
 from elbowscrew.geometry.arrays import Bool, Float, Index
 from elbowscrew.model import QualityWarning, Recording, RigidBody, TrackingLoss
-from elbowscrew.motion.difference import angle_between, origin_distance
+from elbowscrew.motion.difference import angle_between, turn_and_distance
 from elbowscrew.motion.tracking.losses import as_lost, frames_of, frames_warning, poses_at
 from elbowscrew.settings import Settings
 
@@ -89,7 +90,6 @@ class _Steps:
 
     def __init__(self, pose: Float, elapsed: Float, period_s: float, settings: Settings) -> None:
         self._pose, self._elapsed, self._period_s = pose, elapsed, period_s
-        self._known = np.flatnonzero(np.isfinite(pose).all(axis=1))
         self._turn_limit, self._speed_limit = np.radians(settings.max_turn_deg_s), settings.max_speed_m_s
 
     def possible(self, start: Index, end: Index) -> Bool:
@@ -112,6 +112,10 @@ class _Steps:
         possible: Bool = near | (time_s > _LONGEST_STEP_S)
         return possible
 
+    @cached_property
+    def _known(self) -> Index:
+        return np.flatnonzero(np.isfinite(self._pose).all(axis=1))
+
     def limits(self, settings: Settings) -> str:
         """Say what a step may be at most."""
         turns, distances = np.degrees(_LARGEST_TURN), _LARGEST_DISTANCE_M
@@ -124,6 +128,8 @@ class _Steps:
     def _turn_beside(self, start: Index, end: Index, time_s: Float) -> Float:
         """Turn (rad) over a gap at the mean speed of the frames before and after it."""
         speed = np.zeros(start.size)
+        if not start.size:
+            return speed
         for row, away in ((start, -_STEPS_BESIDE), (end, _STEPS_BESIDE)):
             other = self._known[np.clip(np.searchsorted(self._known, row) + away, 0, self._known.size - 1)]
             apart = np.maximum(np.abs(self._elapsed[row] - self._elapsed[other]), self._period_s)
@@ -134,10 +140,10 @@ class _Steps:
         """Rows of single poses far out of two neighbors that are near each other."""
         before, here, after = known[:-2], known[1:-1], known[2:]
         soon = self._elapsed[after] - self._elapsed[before] <= LONGEST_EXCURSION_S
-        out, back, across = self._between(before, here), self._between(here, after), self._between(before, after)
+        steps, across = self._between(known[:-1], known[1:]), self._between(before, after)
         spike = np.zeros(here.size, dtype=np.bool_)
-        for there, here_back, past, least in zip(out, back, across, (_SPIKE_TURN, _SPIKE_DISTANCE_M), strict=True):
-            nearer = np.minimum(there, here_back)
+        for step, past, least in zip(steps, across, (_SPIKE_TURN, _SPIKE_DISTANCE_M), strict=True):
+            nearer = np.minimum(step[:-1], step[1:])
             spike |= (nearer > least) & (past < _SPIKE_SHARE * nearer)
         rows: Index = here[spike & soon]
         # Of two in a row neither is single: they are left to the limits of a step.
@@ -175,8 +181,7 @@ class _Steps:
         return f" by up to {np.degrees(turn.max(initial=0.0)):.0f} deg and {1000 * distance.max(initial=0.0):.0f} mm"
 
     def _between(self, start: Index, end: Index) -> tuple[Float, Float]:
-        before, after = poses_at(self._pose, start), poses_at(self._pose, end)
-        return angle_between(before, after), origin_distance(before, after)
+        return turn_and_distance(poses_at(self._pose, start), poses_at(self._pose, end))
 
 
 def _if_it_is_real(turn_deg_s: float | None) -> str:

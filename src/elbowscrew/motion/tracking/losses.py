@@ -7,7 +7,9 @@ from typing import Final, Literal
 
 import numpy as np
 
-from elbowscrew.geometry.arrays import Float, Index
+from elbowscrew.geometry import _rows
+from elbowscrew.geometry._blocks import in_blocks
+from elbowscrew.geometry.arrays import Bool, Float, Index
 from elbowscrew.model import QualityWarning, Recording, RigidBody, TrackingLoss
 
 _FRAMES_TOLD: Final = 10
@@ -35,6 +37,17 @@ def frames_of(rows: Index, recording: Recording) -> str:
     """Say how many frames some rows are, and where they begin."""
     first = recording.frame[rows[0]]
     return f"frame {first}" if rows.size == 1 else f"{rows.size} of {recording.frame.size} frames (first {first})"
+
+
+def is_same_pose(pose: Float, other: Float) -> Bool:
+    """Whether poses (N, 8) are the same to the last digit, up to the signs of their quaternions."""
+
+    def kernel(Q: _rows.Rows, R: _rows.Rows) -> list[Float]:
+        sign = _rows.sign_towards(Q, R)
+        return [np.logical_and.reduce([sign * q == r for q, r in zip(Q, R, strict=True)])]
+
+    found: Bool = in_blocks(kernel, pose, other, width=1)[..., 0] == 1.0
+    return found
 
 
 def poses_at(pose: Float, rows: Index) -> Float:

@@ -9,11 +9,11 @@ import numpy as np
 
 from elbowscrew.geometry import sclerp
 from elbowscrew.geometry.arrays import Float, Index
-from elbowscrew.geometry.dual_quaternion import align_signs, pose_from_dual_quat
+from elbowscrew.geometry.dual_quaternion import pose_from_dual_quat
 from elbowscrew.model import QualityWarning, Recording, RigidBody, TrackingLoss
 from elbowscrew.motion.difference import angle_between, origin_distance
 from elbowscrew.motion.tracking.leaps import without_leaps
-from elbowscrew.motion.tracking.losses import as_lost, frames_of, frames_warning
+from elbowscrew.motion.tracking.losses import as_lost, frames_of, frames_warning, is_same_pose, poses_at
 from elbowscrew.motion.tracking.resolution import coarse_step
 from elbowscrew.quantities import in_digits
 from elbowscrew.settings import Settings
@@ -71,10 +71,10 @@ def _without_sentinels(
     """Take out single frames of no rotation at all that do not fit the frames around them."""
     pose = body.dual_quat_lab_body
     known = np.flatnonzero(body.tracked)
-    identity = known[(pose[known, 1:4] == 0.0).all(axis=1)]
-    others = np.setdiff1d(known, identity, assume_unique=True)
-    if not identity.size or others.size < 2:
+    identity = known[(poses_at(pose, known)[:, 1:4] == 0.0).all(axis=1)]
+    if not identity.size or known.size - identity.size < 2:
         return body
+    others = np.setdiff1d(known, identity, assume_unique=True)
     # A run of such frames belongs to the motion if its ends lie where the two frames before, and after, lead.
     breaks = np.flatnonzero(np.searchsorted(others, identity[1:]) != np.searchsorted(others, identity[:-1]))
     firsts, lasts = identity[np.r_[0, breaks + 1]], identity[np.r_[breaks, identity.size - 1]]
@@ -118,7 +118,9 @@ def _without_frozen(body: RigidBody, recording: Recording, warnings: list[Qualit
     known = np.flatnonzero(body.tracked)
     if known.size < 2:
         return body
-    if (align_signs(pose[known], pose[known[0]]) == pose[known[0]]).all():
+    poses = poses_at(pose, known)
+    same = is_same_pose(poses[1:], poses[:-1])
+    if same.all():
         if (pose[known[0], 1:] == 0.0).all():
             message = (
                 f"body {body.name!r} stands exactly at the origin without rotation in every frame, like a body that "
@@ -129,8 +131,7 @@ def _without_frozen(body: RigidBody, recording: Recording, warnings: list[Qualit
         message = f"body {body.name!r} has the same pose in every frame: taken as a fixed reference"
         warnings.append(QualityWarning(code="fixed-body", message=message))
         return body
-    repeats = (align_signs(pose[known[1:]], pose[known[:-1]]) == pose[known[:-1]]).all(axis=1) & (np.diff(known) == 1)
-    rows = known[1:][repeats]
+    rows = known[1:][same & (np.diff(known) == 1)]
     if not rows.size:
         return body
     step_m = body.coarse_step or _coarse_step_of_pose(body)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import BodyQuality, ClockQuality, QualityWarning, Recording, RigidBody, Spread
-from elbowscrew.motion.difference import angle_between, origin_distance
+from elbowscrew.motion.difference import turn_and_distance
 from elbowscrew.motion.tracking.body_pairs import (
     check_same_pose,
     check_swaps,
@@ -20,7 +20,7 @@ from elbowscrew.motion.tracking.body_pairs import (
 )
 from elbowscrew.motion.tracking.clock import allowed_offset, elapsed_time
 from elbowscrew.motion.tracking.inserted import inserted_warnings
-from elbowscrew.motion.tracking.losses import frames_warning
+from elbowscrew.motion.tracking.losses import frames_warning, poses_at
 from elbowscrew.motion.tracking.lost_poses import CheckedBody, check_tracking
 from elbowscrew.quantities import in_digits
 from elbowscrew.settings import Settings
@@ -85,8 +85,8 @@ def _body_quality(checked: CheckedBody, sign_flips: int, elapsed: Float) -> Body
     body = checked.body
     known = np.flatnonzero(body.tracked)
     span = np.diff(elapsed[known])
-    pose = body.dual_quat_lab_body[known]
-    turn, distance = angle_between(pose[:-1], pose[1:]), origin_distance(pose[:-1], pose[1:])
+    pose = poses_at(body.dual_quat_lab_body, known)
+    turn, distance = turn_and_distance(pose[:-1], pose[1:])
     return BodyQuality(
         name=body.name,
         identifier=body.identifier,
@@ -189,7 +189,7 @@ BODY_CHECKS: Final = (_residual_warnings, _pivot_warnings, inserted_warnings)
 def _sign_flips(body: RigidBody) -> NDArray[np.intp]:
     """Rows at which the quaternion, as it is in the file, has the other sign than in the last frame."""
     known = np.flatnonzero(body.tracked)
-    real = body.dual_quat_lab_body[known, :4]
+    real = poses_at(body.dual_quat_lab_body, known)[:, :4]
     flips: NDArray[np.intp] = known[1:][np.sum(real[1:] * real[:-1], axis=1) < 0.0]
     return flips
 
