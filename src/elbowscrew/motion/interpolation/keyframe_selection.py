@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from collections import deque
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -20,7 +21,9 @@ from elbowscrew.quantities import in_digits
 MOST_FRAMES_COMPLETE: Final = 600
 _BLOCK: Final = 64
 # Where along a segment it is probed before all of it is: most segments that fail do so in the middle.
-_PROBES: Final = (0.5, 0.25, 0.75, 0.125, 0.375, 0.625, 0.875)
+_PROBES: Final = (0.5, 0.25, 0.75)
+# Then where those from the rows beside it did: so many rows are kept.
+_FAILED: Final = 4
 _ROUND_OFF: Final = 1e-9
 # To this (m) the sums of squares over all pairs are exact.
 _NANOMETERS: Final = 2e-8
@@ -272,6 +275,7 @@ def _fewest(track: _Track, tolerance: float) -> Index:
     before[0] = 0
     frontier: Index = np.zeros(1, dtype=np.int64)
     screen, cone = _Screen.of(track, tolerance), _cone(track, tolerance)
+    failed: deque[int] = deque(maxlen=_FAILED)
     while before[-1] < 0:
         reached = []
         for first in frontier[::-1].tolist():  # the farthest first: it reaches most of what there is to reach
@@ -281,7 +285,7 @@ def _fewest(track: _Track, tolerance: float) -> Index:
                 open_rows = cone.leaves(first, open_rows)
             if not open_rows.size:
                 continue
-            new = _reached_from(track, screen, first, open_rows, tolerance)
+            new = _reached_from(track, screen, first, open_rows, tolerance, failed)
             before[new] = first
             reached.append(new)
             if before[-1] >= 0:
@@ -304,8 +308,13 @@ def _cone(track: _Track, tolerance: float) -> Cone | None:
     return Cone(placed, quat, track.parameter, tolerance, track.method == "sclerp")
 
 
-def _reached_from(track: _Track, screen: _Screen, first: int, ends: Index, tolerance: float) -> Index:
-    """Those of the rows (increasing) to which a segment from a row stays within the tolerance."""
+def _reached_from(
+    track: _Track, screen: _Screen, first: int, ends: Index, tolerance: float, failed: deque[int]
+) -> Index:
+    """Those of the rows (increasing) to which a segment from a row stays within the tolerance.
+
+    `failed` has the rows where segments from other rows failed last, and is given those where segments from this do.
+    """
     ends = ends[track.left[ends] <= tolerance]
     ends = ends[screen.may_hold(track, first, ends)]
     if not ends.size:
@@ -324,6 +333,15 @@ def _reached_from(track: _Track, screen: _Screen, first: int, ends: Index, toler
         keep(segments.displacement(seen, track.fraction(first, ends, rows)) <= tolerance)
         if not ends.size:
             return ends
+    for row in reversed(failed):
+        past = np.flatnonzero(ends > row) if row > first else ends[:0]
+        if past.size:
+            seen = poses.seen_from(first, slice(row, row + 1))
+            good = np.ones(ends.size, dtype=np.bool_)
+            good[past] = segments.at(past).displacement(seen, track.fraction(first, ends[past], row)) <= tolerance
+            keep(good)
+            if not ends.size:
+                return ends
     seen = poses.seen_from(first, slice(first, ends[-1] + 1))
     holds = np.ones(ends.size, dtype=np.bool_)
     for k in range(ends.size - 1, -1, -1):
@@ -336,6 +354,7 @@ def _reached_from(track: _Track, screen: _Screen, first: int, ends: Index, toler
             continue
         # What fails in one row mostly fails there for the nearer ends, too.
         row = first + 1 + int(error.argmax())
+        failed.append(row)
         rest = np.flatnonzero(holds[: k + 1] & (ends[: k + 1] > row))
         at_row = segments.at(rest).displacement(seen[row - first], track.fraction(first, ends[rest], row))
         holds[rest] = at_row <= tolerance
