@@ -15,7 +15,7 @@ from elbowscrew.geometry._small_angle import length
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import BodyPoints, ModelPhases, PhaseLaw
 from elbowscrew.motion.difference import rms_displacement, told_error
-from elbowscrew.motion.interpolation.laws import LAWS, Law, asymmetric, named_law
+from elbowscrew.motion.interpolation.laws import LAWS, asymmetric, named_law
 
 LawFunction = Callable[[Float], Float]
 
@@ -117,17 +117,19 @@ class _Phase(NamedTuple):
         return FittedLaw(PhaseLaw(name, peak, self.rms(law)), law)
 
     def best_law(self) -> FittedLaw:
-        fits = [self._fitted(name, law) for name, law in LAWS.items()]
-        return min(fits, key=lambda fit: fit.law.rms)
+        peaks = self._peaks([name for name in LAWS if name != "linear"])
+        return min((self.named(name, peaks.get(name)) for name in LAWS), key=lambda fit: fit.law.rms)
 
-    def _fitted(self, name: str, law: Law) -> FittedLaw:
-        if name == "linear":
-            return self.named(name, None)
+    def _peaks(self, names: list[str]) -> dict[str, float]:
+        """Time of the highest velocity that suits each law best."""
         coarse = np.linspace(*_PEAKS, _COARSE)
-        best = int(np.argmin(self._rms(np.stack([asymmetric(law, peak).position(self.tau) for peak in coarse]))))
-        low, high = coarse[max(best - 1, 0)], coarse[min(best + 1, _COARSE - 1)]
-        peak = _least(lambda peak: self.rms(asymmetric(law, peak).position), float(low), float(high))
-        return self.named(name, round(float(peak), 4))
+        best = np.array([np.argmin(self._rms_of([(name, peak) for peak in coarse])) for name in names])
+        low, high = coarse[np.maximum(best - 1, 0)], coarse[np.minimum(best + 1, _COARSE - 1)]
+        peaks = _least(lambda peaks: self._rms_of(list(zip(names, peaks, strict=True))), low, high)
+        return {name: round(peak, 4) for name, peak in zip(names, peaks.tolist(), strict=True)}
+
+    def _rms_of(self, laws: list[tuple[str, float]]) -> Float:
+        return self._rms(np.stack([asymmetric(LAWS[name], peak).position(self.tau) for name, peak in laws]))
 
     def peak_sd(self, law: PhaseLaw, ends_sd: Float | None) -> float:
         """Standard deviation of a fitted time of highest velocity, to first order, as a share of the phase.
@@ -191,17 +193,15 @@ def _autocorrelated(parts: Float) -> float:
     return max(total, own)
 
 
-def _least(function: Callable[[float], float], low: float, high: float) -> float:
-    """Where a function with one minimum between two points is least, by golden sections."""
-    inner = [high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)]
-    values = [function(x) for x in inner]
-    while high - low > _PEAK_TOLERANCE:
-        if values[0] < values[1]:
-            high = inner[1]
-            inner = [high - _GOLDEN * (high - low), inner[0]]
-            values = [function(inner[0]), values[0]]
-        else:
-            low = inner[0]
-            inner = [inner[1], low + _GOLDEN * (high - low)]
-            values = [values[1], function(inner[1])]
+def _least(function: Callable[[Float], Float], low: Float, high: Float) -> Float:
+    """Where functions, each with one minimum between its two points (K,), are least: golden sections, all at once."""
+    inner = high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)
+    values = function(inner[0]), function(inner[1])
+    while (wide := high - low > _PEAK_TOLERANCE).any():
+        first = values[0] < values[1]
+        high, low = np.where(wide & first, inner[1], high), np.where(wide & ~first, inner[0], low)
+        new = np.where(first, high - _GOLDEN * (high - low), low + _GOLDEN * (high - low))
+        value = function(new)
+        inner = np.where(first, new, inner[1]), np.where(first, inner[0], new)
+        values = np.where(first, value, values[1]), np.where(first, values[0], value)
     return 0.5 * (low + high)
