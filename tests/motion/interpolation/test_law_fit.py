@@ -12,11 +12,12 @@ from scipy.optimize import minimize_scalar
 from elbowscrew import Settings, analyze, simulate_trial
 from elbowscrew.configuring import settings_from
 from elbowscrew.errors import SettingError, UsageError
-from elbowscrew.geometry import dual_quat_from_screw, line_through
+from elbowscrew.geometry import dual_quat_from_screw, line_through, sclerp
 from elbowscrew.geometry import dual_quaternion as dq
 from elbowscrew.geometry.arrays import Float
 from elbowscrew.model import ModelPhases
-from elbowscrew.motion.difference import points_from_radius
+from elbowscrew.motion.difference import points_from_radius, rms_displacement
+from elbowscrew.motion.interpolation import law_fit
 from elbowscrew.motion.interpolation.law_fit import FittedLaw, laws_of
 from elbowscrew.motion.interpolation.laws import LAWS, asymmetric
 
@@ -80,6 +81,34 @@ def test_named_laws_stay_as_they_are_and_say_how_near_they_are() -> None:
     assert (other.law.name, other.law.peak) == ("cycloidal", 0.4)
     assert other.function(TAU) == pytest.approx(asymmetric(LAWS["cycloidal"], 0.4)(TAU))
     assert law_of("best", pose).law.rms <= other.law.rms
+
+
+@pytest.mark.parametrize("batch", [1, 50, 4096])
+def test_each_phase_has_its_own_rms_however_many_are_looked_at_at_a_time(
+    batch: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(law_fit, "_BATCH_FRAMES", batch)
+    pose = moved(np.sin(3.0 * np.pi * TAU))
+    measured = np.ones(COUNT, dtype=np.bool_)
+    measured[60:91] = False
+    bounds = np.array([0, 20, 59, 91, COUNT - 1])
+    rows = np.stack([bounds[:-1], bounds[1:]], axis=1)
+    rows[2] = 60, 90  # with no measured frame
+    points = points_from_radius(0.05)
+    together = laws_of(
+        "harmonic", None, pose, measured, TAU, np.arange(COUNT), ModelPhases(bound_rows=bounds, law_rows=rows), points
+    )
+    for p, found in enumerate(together):
+        alone = ModelPhases(bound_rows=bounds[p : p + 2], law_rows=rows[p : p + 1])
+        (one,) = laws_of("harmonic", None, pose, measured, TAU, np.arange(COUNT), alone, points)
+        assert (found.law.name, found.law.peak) == ("harmonic", None)
+        assert str(found.law.rms) == str(one.law.rms)
+    rms = [found.law.rms for found in together]
+    assert np.isnan(rms).tolist() == [False, False, True, False]
+    kept = np.arange(20, 60)
+    tau = (TAU[kept] - TAU[20]) / (TAU[59] - TAU[20])
+    modeled = sclerp(pose[20], pose[59], LAWS["harmonic"](tau), way="as given")
+    assert rms[1] == pytest.approx(np.sqrt(np.mean(rms_displacement(pose[kept], modeled, points) ** 2)), rel=1e-14)
 
 
 def test_the_best_law_of_a_minimum_jerk_elbow() -> None:

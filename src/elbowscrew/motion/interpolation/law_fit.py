@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -24,6 +24,7 @@ _COARSE: Final = 17
 _PEAK_TOLERANCE: Final = 1e-4
 _LEAST_TURN: Final = 1e-3
 _STEP: Final = 1e-4
+_BATCH_FRAMES: Final = 4096
 _FEWEST_FOR_SD: Final = 6
 # Second differences of white noise have the variance 1 + 4 + 1.
 _SECOND_DIFFERENCE: Final = 6.0
@@ -74,23 +75,65 @@ def laws_of(
     SettingError
         If the law is the recording's own, and a phase does not turn the joint.
     """
+    made = _phases_of(pose, measured, elapsed, phases, points)
+    if name not in ("empirical", "best"):
+        return tuple(_named_laws(name, peak, made))
     found = []
-    for p, (first, last) in enumerate(phases.law_rows.tolist()):
-        ends = pose[phases.bound_rows[p : p + 2]]
-        rows = np.arange(first, last + 1)
-        rows = rows[measured[rows]]
-        phase = _Phase(ends, pose[rows], (elapsed[rows] - elapsed[first]) / (elapsed[last] - elapsed[first]), points)
+    for p, (phase, (first, last)) in enumerate(zip(made, phases.law_rows.tolist(), strict=True)):
         if name == "empirical":
             function = phase.own_law(f"frames {frame[first]} to {frame[last]}")
             found.append(FittedLaw(PhaseLaw(name, None, phase.rms(function)), function))
-        elif name == "best":
+        else:
             best = phase.best_law()
             span = float(elapsed[last] - elapsed[first])
             ends_sd = None if phases.law_sd_s is None else phases.law_sd_s[p] / span
             found.append(best._replace(law=best.law._replace(peak_sd=phase.peak_sd(best.law, ends_sd))))
-        else:
-            found.append(phase.named(name, peak))
     return tuple(found)
+
+
+def _phases_of(
+    pose: Float, measured: NDArray[np.bool_], elapsed: Float, phases: ModelPhases, points: BodyPoints
+) -> Iterator[_Phase]:
+    for p, (first, last) in enumerate(phases.law_rows.tolist()):
+        ends = pose[phases.bound_rows[p : p + 2]]
+        rows = np.arange(first, last + 1)
+        rows = rows[measured[rows]]
+        yield _Phase(ends, pose[rows], (elapsed[rows] - elapsed[first]) / (elapsed[last] - elapsed[first]), points)
+
+
+def _named_laws(name: str, peak: float | None, phases: Iterator[_Phase]) -> Iterator[FittedLaw]:
+    """One law for all phases, which are looked at many at a time: most of what a short one costs are the calls."""
+    law = named_law(name, peak).position
+    for some in _batches(phases):
+        modeled = np.concatenate([phase.modeled(law(phase.tau)) for phase in some])
+        error = _error(np.concatenate([phase.pose for phase in some]), modeled, some[0].points)
+        for part in np.split(error, np.cumsum([phase.tau.size for phase in some[:-1]], dtype=np.intp)):
+            yield FittedLaw(PhaseLaw(name, peak, float(_rms_of(part))), law)
+
+
+def _batches(phases: Iterator[_Phase]) -> Iterator[list[_Phase]]:
+    """Phases of some thousand frames together."""
+    batch: list[_Phase] = []
+    frames = 0
+    for phase in phases:
+        batch.append(phase)
+        frames += phase.tau.size
+        if frames >= _BATCH_FRAMES:
+            yield batch
+            batch, frames = [], 0
+    if batch:
+        yield batch
+
+
+def _error(pose: Float, modeled: Float, points: BodyPoints) -> Float:
+    return told_error(rms_displacement(pose, modeled, points), points)
+
+
+def _rms_of(error: Float) -> Float:
+    """Over the last axis; NaN of none."""
+    if not error.shape[-1]:
+        return np.full(error.shape[:-1], np.nan)
+    return np.asarray(np.sqrt(np.mean(error**2, axis=-1)))
 
 
 class _Phase(NamedTuple):
@@ -106,11 +149,10 @@ class _Phase(NamedTuple):
 
     def _rms(self, share: Float) -> Float:
         """Of shares of the way (..., n), shape (...)."""
-        if not self.tau.size:
-            return np.full(share.shape[:-1], np.nan)
-        modeled = sclerp(self.ends[0], self.ends[1], share, way="as given")
-        error = told_error(rms_displacement(self.pose, modeled, self.points), self.points)
-        return np.asarray(np.sqrt(np.mean(error**2, axis=-1)))
+        return _rms_of(_error(self.pose, self.modeled(share), self.points))
+
+    def modeled(self, share: Float) -> Float:
+        return sclerp(self.ends[0], self.ends[1], share, way="as given")
 
     def named(self, name: str, peak: float | None) -> FittedLaw:
         law = named_law(name, peak).position
