@@ -18,7 +18,7 @@ from matplotlib.font_manager import FontProperties, fontManager
 from matplotlib.offsetbox import OffsetBox
 
 from elbowscrew.errors import UsageError, shown
-from elbowscrew.plots.canvas import Sheet
+from elbowscrew.plots.canvas import Renderer, Sheet
 
 # One color means one thing in all figures. From the palettes of Okabe and Ito and of Tol; line styles, markers and
 # lightness tell the lines apart in grey as well. No transparency, which EPS does not have.
@@ -211,7 +211,7 @@ def _measured_once(box: Any) -> None:
 
 def _columns(figure: Figure, labels: list[str], width: float) -> int:
     """How many columns of a legend fit into a width, points."""
-    renderer = cast(Any, figure.canvas).get_renderer()
+    renderer = cast(Any, Renderer)(1, 1, figure.dpi)  # for words alone: the figure has not its size yet
     font = FontProperties(size=TEXT)
     points = 72.0 / figure.dpi
     widths = [points * renderer.get_text_width_height_descent(label, font, "$" in label)[0] for label in labels]
