@@ -133,7 +133,7 @@ def page(results: dict[str, Any]) -> str:
     ]
     pace = next((row.value / trial.PACE_S for row in rows if row.what == trial.PACE), None)
     missed = [row for row in rows if row.met is False]
-    late = [row for row in missed if pace is not None and row.unit in ("s", "ms")]
+    late = [row for row in missed if pace is not None and row.unit in ("s", "ms", "us")]
     wanted = [row for row in rows if row.met is not None]
     parts = [
         INTRODUCTION.format(

@@ -106,7 +106,8 @@ def scaling(folder: Path, sizes: tuple[int, ...]) -> list[Row]:
     def of(size: Float, constant: float, scale: float, exponent: float) -> Float:
         return constant + scale * size**exponent
 
-    (constant, _, exponent), _ = curve_fit(of, frames, seconds, (1.0, seconds[-1], 1.0), sigma=seconds)
+    start = (1.0, seconds[-1], 1.0)
+    (constant, _, exponent), _ = curve_fit(of, frames, seconds, start, sigma=seconds, bounds=(0.0, np.inf))
     told = ", ".join(f"{count:,}: {taken:.2f} s" for count, taken in found.items())
     return [
         Row(
