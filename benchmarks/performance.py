@@ -164,7 +164,7 @@ def told_missed(row: Row, pace: float | None) -> str:
     told = f"{row.what}: {row.cells()[1]}, wanted {row.sense} {row.wanted:g}"
     if pace is None or row.wanted is None:
         return told
-    there = replace(row, value=row.value / pace)
+    there = replace(row, value=row.value / pace, low=None, high=None)
     return f"{told}; {there.cells()[1]} there, which is {'reached' if there.met else 'missed'}"
 
 
