@@ -392,10 +392,6 @@ class Recording(ArrayRecord):
         hint = did_you_mean(name, names) or f"; there are {', '.join(map(repr, names)) or 'none'}"
         raise KeyError(f"no body or marker {name!r}{hint}")
 
-    def __contains__(self, name: object) -> bool:
-        """Whether a body or a marker has that name."""
-        return any(name == one for one in self)
-
     def __iter__(self) -> Iterator[str]:
         """Names of the bodies, then of the markers."""
         return iter([one.name for one in self.bodies] + [one.name for one in self.markers])

@@ -354,7 +354,8 @@ def _reached_from(
             continue
         # What fails in one row mostly fails there for the nearer ends, too.
         row = first + 1 + int(error.argmax())
-        failed.append(row)
+        if row not in failed:
+            failed.append(row)
         rest = np.flatnonzero(holds[: k + 1] & (ends[: k + 1] > row))
         at_row = segments.at(rest).displacement(seen[row - first], track.fraction(first, ends[rest], row))
         holds[rest] = at_row <= tolerance

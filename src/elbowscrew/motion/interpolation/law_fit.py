@@ -165,12 +165,13 @@ class _Phase(NamedTuple):
     def _peaks(self, names: list[str]) -> dict[str, float]:
         """Time of the highest velocity that suits each law best."""
         coarse = np.linspace(*_PEAKS, _COARSE)
-        best = np.array([np.argmin(self._rms_of([(name, peak) for peak in coarse])) for name in names])
+        best = np.array([np.argmin(self._rms_by([(name, peak) for peak in coarse])) for name in names])
         low, high = coarse[np.maximum(best - 1, 0)], coarse[np.minimum(best + 1, _COARSE - 1)]
-        peaks = _least(lambda peaks: self._rms_of(list(zip(names, peaks, strict=True))), low, high)
+        peaks = _least(lambda peaks: self._rms_by(list(zip(names, peaks, strict=True))), low, high)
         return {name: round(peak, 4) for name, peak in zip(names, peaks.tolist(), strict=True)}
 
-    def _rms_of(self, laws: list[tuple[str, float]]) -> Float:
+    def _rms_by(self, laws: list[tuple[str, float]]) -> Float:
+        """By laws of some names and peaks (K), shape (K,)."""
         return self._rms(np.stack([asymmetric(LAWS[name], peak).position(self.tau) for name, peak in laws]))
 
     def peak_sd(self, law: PhaseLaw, ends_sd: Float | None) -> float:
